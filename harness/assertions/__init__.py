@@ -1,0 +1,1 @@
+"""Verdicts from a recorded run."""

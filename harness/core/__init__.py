@@ -1,0 +1,1 @@
+"""Nouns without dependencies: poses, shapes, trajectories, errors."""

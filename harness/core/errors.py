@@ -1,0 +1,126 @@
+"""Everything the program raises on purpose.
+
+HarnessError
+├── SpecError          a file says things that cannot be meant (exit code 2)
+├── RobotError         a robot's or world's files cannot be used (exit code 2)
+├── StepFailed         a step cannot be carried out; ends the run, named by a MoveIt error code
+│   └── PlanningFailed with the planner's explanation
+└── SimulationDiverged the physics left the finite numbers (exit code 3)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
+
+ErrorCode = Literal[
+    "PLANNING_FAILED",
+    "INVALID_MOTION_PLAN",
+    "MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE",
+    "CONTROL_FAILED",
+    "UNABLE_TO_AQUIRE_SENSOR_DATA",
+    "TIMED_OUT",
+    "PREEMPTED",
+    "START_STATE_IN_COLLISION",
+    "START_STATE_VIOLATES_PATH_CONSTRAINTS",
+    "START_STATE_INVALID",
+    "GOAL_IN_COLLISION",
+    "GOAL_VIOLATES_PATH_CONSTRAINTS",
+    "GOAL_CONSTRAINTS_VIOLATED",
+    "GOAL_STATE_INVALID",
+    "UNRECOGNIZED_GOAL_TYPE",
+    "INVALID_GROUP_NAME",
+    "INVALID_GOAL_CONSTRAINTS",
+    "INVALID_ROBOT_STATE",
+    "INVALID_LINK_NAME",
+    "INVALID_OBJECT_NAME",
+    "FRAME_TRANSFORM_FAILURE",
+    "COLLISION_CHECKING_UNAVAILABLE",
+    "ROBOT_STATE_STALE",
+    "SENSOR_INFO_STALE",
+    "COMMUNICATION_FAILURE",
+    "CRASH",
+    "ABORT",
+    "NO_IK_SOLUTION",
+    "FAILURE",
+]
+"""Names of moveit_msgs/MoveItErrorCodes, spelled as there (UNABLE_TO_AQUIRE_SENSOR_DATA too)."""
+
+ERROR_CODES: tuple[str, ...] = get_args(ErrorCode)
+
+
+class HarnessError(Exception):
+    """Base of every error that the program raises on purpose."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One mistake in a file, with its place.
+
+    Attributes:
+        path: The file, as the user named it.
+        line: From 1; 0 when the problem is of the whole file.
+        column: From 1, at the value, or at the key when the key is what is wrong.
+        message: What is wrong, in a roboticist's words, the offending value quoted.
+        hint: What to do: the nearest valid value, then the rest. May be empty.
+        source_line: The line's text, for the excerpt; empty when there is none.
+        length: How many characters the caret underlines.
+    """
+
+    path: str
+    line: int
+    column: int
+    message: str
+    hint: str = ""
+    source_line: str = ""
+    length: int = 1
+
+    def __str__(self) -> str:
+        place = f"{self.path}:{self.line}:{self.column}" if self.line else self.path
+        text = f"{place}: {self.message}"
+        if not self.source_line:
+            return f"{text}\n  {self.hint}" if self.hint else text
+        number = f"{self.line:>5}"
+        caret = " " * (self.column - 1) + "^" * max(1, self.length)
+        below = f"{caret} {self.hint}".rstrip()
+        return f"{text}\n{number} | {self.source_line}\n      | {below}"
+
+
+class SpecError(HarnessError):
+    """A file says things that cannot be meant; carries all of them, in file order."""
+
+    def __init__(self, problems: Iterable[Problem]) -> None:
+        self.problems = sorted(
+            problems, key=lambda problem: (problem.path, problem.line, problem.column)
+        )
+        super().__init__("\n".join(map(str, self.problems)))
+
+
+class RobotError(HarnessError):
+    """A robot's description, or a file it names, cannot be used."""
+
+
+class StepFailed(HarnessError):
+    """A step could not be carried out.
+
+    Attributes:
+        code: Name of the failure in moveit_msgs/MoveItErrorCodes.
+        facts: The numbers behind it, plain data, kept in the step's record.
+    """
+
+    def __init__(
+        self, code: ErrorCode, message: str, facts: Mapping[str, Any] | None = None
+    ) -> None:
+        self.code: ErrorCode = code
+        self.message = message
+        self.facts: dict[str, Any] = dict(facts or {})
+        super().__init__(f"{code}: {message}")
+
+
+class PlanningFailed(StepFailed):
+    """No motion that could be trusted was found; `facts` say why."""
+
+
+class SimulationDiverged(HarnessError):
+    """The physics produced numbers that are not finite."""

@@ -1,0 +1,91 @@
+"""Shapes of links and objects, as the planner, the physics and the report see them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from harness.core.spatial import SE3
+
+Rgba = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class Box:
+    """A box centred on its frame; `size` is the full size along x, y, z [m]."""
+
+    size: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Cylinder:
+    """A cylinder about the local z axis, centred [m]."""
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """A sphere [m]."""
+
+    radius: float
+
+
+@dataclass(frozen=True)
+class Capsule:
+    """A cylinder of `length` about the local z axis with a half sphere on each end [m]."""
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True)
+class Plane:
+    """The half space below local z = 0."""
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """A triangle mesh file (STL, OBJ, DAE); `scale` multiplies its coordinates to metres."""
+
+    path: Path
+    scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+
+
+Geometry = Box | Cylinder | Sphere | Capsule | Plane | Mesh
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A geometry placed on a body.
+
+    Attributes:
+        geometry: What it is.
+        pose: T_body_shape.
+        rgba: Colour, each 0..1.
+        name: Unique on its body where a file names it; else empty.
+    """
+
+    geometry: Geometry
+    pose: SE3 = field(default_factory=SE3.identity)
+    rgba: Rgba = (0.6, 0.6, 0.6, 1.0)
+    name: str = ""
+
+
+def bounding_radius(shape: Shape) -> float:
+    """Radius of a sphere about the body's origin that holds the shape [m]; planes have none (inf)."""
+    offset = float(np.linalg.norm(shape.pose.translation))
+    match shape.geometry:
+        case Box(size=size):
+            return offset + 0.5 * float(np.linalg.norm(size))
+        case Cylinder(radius=radius, length=length):
+            return offset + float(np.hypot(radius, 0.5 * length))
+        case Sphere(radius=radius):
+            return offset + radius
+        case Capsule(radius=radius, length=length):
+            return offset + radius + 0.5 * length
+        case Plane() | Mesh():
+            return float("inf")

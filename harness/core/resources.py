@@ -1,0 +1,14 @@
+"""Where the bundled robots, worlds and scenarios are: in the checkout, or inside the installed package."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+PACKAGE = Path(__file__).resolve().parent.parent
+
+
+def data_folder(kind: Literal["robots", "worlds", "scenarios"]) -> Path:
+    """The folder of bundled files of a kind."""
+    installed = PACKAGE / "data" / kind
+    return installed if installed.is_dir() else PACKAGE.parent / kind

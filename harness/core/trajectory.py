@@ -1,0 +1,50 @@
+"""Joint-space paths without time, and trajectories with it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.core.types import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class JointPath:
+    """Waypoints joined by straight joint-space segments, without time.
+
+    Attributes:
+        joint_names: The planning group's joints, in order.
+        waypoints: Shape (N, dof), rad or m.
+    """
+
+    joint_names: tuple[str, ...]
+    waypoints: FloatArray
+
+    def length(self) -> float:
+        """Sum of the segments' joint-space L2 norms [rad]."""
+        return float(np.linalg.norm(np.diff(self.waypoints, axis=0), axis=1).sum())
+
+
+@dataclass(frozen=True, eq=False)
+class JointTrajectory:
+    """Set points of a group's joints over time, starting at time zero.
+
+    Attributes:
+        joint_names: The planning group's joints, in order.
+        times: Strictly rising [s], shape (N,), times[0] == 0.
+        positions: Shape (N, dof), rad or m.
+        velocities: Shape (N, dof).
+        accelerations: Shape (N, dof).
+    """
+
+    joint_names: tuple[str, ...]
+    times: FloatArray
+    positions: FloatArray
+    velocities: FloatArray
+    accelerations: FloatArray
+
+    @property
+    def duration(self) -> float:
+        """Time of the last set point [s]."""
+        return float(self.times[-1])

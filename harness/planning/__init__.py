@@ -1,0 +1,1 @@
+"""Planner, planning scene and kinematics on OMPL, Pinocchio, Coal and TOPP-RA."""

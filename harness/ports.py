@@ -1,0 +1,342 @@
+"""What the engine needs from the outside, as protocols: planner, scene, kinematics, physics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from harness.core.spatial import SE3
+from harness.core.trajectory import JointTrajectory
+from harness.core.types import FloatArray
+from harness.core.world import WorldObject
+from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
+
+
+@dataclass(frozen=True, eq=False)
+class JointGoal:
+    """Joint positions of the planning group, shape (dof,)."""
+
+    positions: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class PoseGoal:
+    """A link at a pose.
+
+    Attributes:
+        link: Which link, rigidly behind the group's last joint.
+        pose: T_world_link.
+        position_tolerance: Radius around the target [m].
+        orientation_tolerance: Largest rotation about each axis [rad].
+    """
+
+    link: str
+    pose: SE3
+    position_tolerance: float = 1e-4
+    orientation_tolerance: float = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class PositionGoal:
+    """A link's origin at a point, its orientation free but for an optional pitch.
+
+    Attributes:
+        position: In the world [m], shape (3,).
+        pitch: Angle of the link's x axis below the horizontal [rad] (pi/2 points down), or None.
+    """
+
+    link: str
+    position: FloatArray
+    pitch: float | None = None
+    position_tolerance: float = 1e-4
+    pitch_tolerance: float = 1e-3
+
+
+Goal = JointGoal | PoseGoal | PositionGoal
+
+
+@dataclass(frozen=True)
+class PlanningOptions:
+    """How to plan; every number known.
+
+    Attributes:
+        planner_id: OMPL's or MoveIt's name: `RRTConnect`, `RRTConnectkConfigDefault`.
+        max_state_checks: Budget of state validity checks for one attempt.
+        attempts: Plans tried, each with a seed of its own.
+        velocity_scaling: Of the joint velocity limits, (0, 1].
+        acceleration_scaling: Of the joint acceleration limits, (0, 1].
+        padding: Distance kept between robot (and what it holds) and every object [m].
+        seed: Of this step.
+        parameters: Of the planner: `range`, `goal_bias` ...
+    """
+
+    planner_id: str = "RRTConnect"
+    max_state_checks: int = 200_000
+    attempts: int = 1
+    velocity_scaling: float = 1.0
+    acceleration_scaling: float = 1.0
+    padding: float = 0.0
+    seed: int = 0
+    parameters: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class MotionPlan:
+    """A motion that was found, timed and verified.
+
+    Attributes:
+        trajectory: What to command.
+        statistics: planner_id, state checks, attempts, lengths before and after shortening ...
+        explanation: IK solutions and what became of each, pairs whose margin was lowered ...
+    """
+
+    trajectory: JointTrajectory
+    statistics: Mapping[str, Any]
+    explanation: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Touch:
+    """Two bodies closer than allowed; `distance` is negative for penetration [m]."""
+
+    first: str
+    second: str
+    distance: float
+
+
+class PlanningScene(Protocol):
+    """The planner's belief: robot, objects, attachments, allowed pairs.
+
+    Joint vectors are in description order. Objects of the physics alone are never added here.
+    """
+
+    def add_object(self, obj: WorldObject, pose: SE3) -> None:
+        """Put an object into the scene, at T_world_object."""
+        ...
+
+    def remove_object(self, name: str) -> None:
+        """Take an object out of the scene."""
+        ...
+
+    def move_object(self, name: str, pose: SE3) -> None:
+        """Set T_world_object of an object that is not attached."""
+        ...
+
+    def attach_object(
+        self, name: str, link: str, touch_links: Sequence[str], joint_positions: FloatArray
+    ) -> SE3:
+        """Fix an object of the scene to a link where both stand now; returns T_link_object."""
+        ...
+
+    def detach_object(self, name: str, joint_positions: FloatArray) -> SE3:
+        """Let go of an attached object; it stays in the scene at the returned T_world_object."""
+        ...
+
+    def set_allowed(self, pairs: Sequence[tuple[str, str]], *, allowed: bool) -> None:
+        """Allow (or check again) collisions of pairs of links, objects, or `robot` for all links."""
+        ...
+
+    def object_names(self) -> tuple[str, ...]:
+        """Objects in the scene, attached ones included, in order of adding."""
+        ...
+
+    def attached(self) -> Mapping[str, str]:
+        """Link of each attached object."""
+        ...
+
+    def object_pose(self, name: str, joint_positions: FloatArray) -> SE3:
+        """T_world_object, attached or not."""
+        ...
+
+    def touches(self, joint_positions: FloatArray, padding: float = 0.0) -> Sequence[Touch]:
+        """Pairs closer than allowed at a state, nearest first."""
+        ...
+
+
+class Kinematics(Protocol):
+    """Where the robot's links are, and which joint positions put them somewhere."""
+
+    def link_pose(self, joint_positions: FloatArray, link: str) -> SE3:
+        """T_world_link at joint positions in description order."""
+        ...
+
+    def link_poses(self, joint_positions: FloatArray, links: Sequence[str]) -> FloatArray:
+        """T_world_link of many samples and links: (N, n) -> (N, len(links), 7) as xyz, quat wxyz."""
+        ...
+
+    def solve(
+        self, group: str, goal: PoseGoal | PositionGoal, seed_positions: FloatArray, seed: int
+    ) -> Sequence[FloatArray]:
+        """Every known solution within position limits, nearest to `seed_positions` first.
+
+        Args:
+            group: A chain group.
+            goal: What the link must do.
+            seed_positions: Description order; joints outside the group stay there.
+            seed: Of the restarts of numeric solvers.
+
+        Returns:
+            Group joint positions, shape (dof,) each; empty when there is none.
+        """
+        ...
+
+
+class MotionPlanner(Protocol):
+    """Finds motions of a group that can be trusted, or raises PlanningFailed with an explanation."""
+
+    def plan(
+        self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
+    ) -> MotionPlan:
+        """Plan a collision-free motion to a goal; `start` in description order."""
+        ...
+
+    def plan_joint_motion(
+        self,
+        group: str,
+        start: FloatArray,
+        positions: FloatArray,
+        options: PlanningOptions,
+        duration: float | None = None,
+    ) -> MotionPlan:
+        """Plan Pilz's PTP: all joints together, straight in joint space, in `duration` seconds if given."""
+        ...
+
+    def plan_linear(
+        self, group: str, start: FloatArray, goal: PoseGoal, options: PlanningOptions
+    ) -> MotionPlan:
+        """Plan Pilz's LIN: the link on a straight line, turning at an even rate."""
+        ...
+
+    def plan_relative(
+        self,
+        group: str,
+        start: FloatArray,
+        link: str,
+        twist: FloatArray,
+        distances: tuple[float, float],
+        options: PlanningOptions,
+    ) -> MotionPlan:
+        """Move a link along a direction as far as goes between two distances.
+
+        Args:
+            twist: Unit translation or rotation in world axes, shape (6,): linear, then angular.
+            distances: Least and most [m or rad]; equal for a fixed distance.
+        """
+        ...
+
+    def check_goal(
+        self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
+    ) -> Mapping[str, Any]:
+        """What can be said of a goal without planning to it: IK solutions and what became of each.
+
+        Raises:
+            PlanningFailed: NO_IK_SOLUTION, GOAL_IN_COLLISION ...
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class GripperResult:
+    """What GripperCommand's result says, and more.
+
+    Attributes:
+        position: Of the gripper's joint at the end.
+        effort: Of the gripper's joint at the end.
+        stalled: Stopped before the goal (contact).
+        reached_goal: At the commanded position within tolerance.
+        contacts: Object names in contact with each finger side at the end, by side name.
+    """
+
+    position: float
+    effort: float
+    stalled: bool
+    reached_goal: bool
+    contacts: Mapping[str, tuple[str, ...]]
+
+
+class Simulator(Protocol):
+    """The physics; time only moves inside these calls, and every sample of it is recorded."""
+
+    @property
+    def time(self) -> float:
+        """Simulation time [s]."""
+        ...
+
+    @property
+    def sample_count(self) -> int:
+        """Samples recorded so far."""
+        ...
+
+    def joint_positions(self) -> FloatArray:
+        """Measured, description order."""
+        ...
+
+    def commanded_positions(self) -> FloatArray:
+        """Last commanded set point, description order, mimic joints consistent."""
+        ...
+
+    def object_pose(self, name: str) -> SE3:
+        """T_world_object of a simulated object, as it is now."""
+        ...
+
+    def track(self, trajectory: JointTrajectory) -> None:
+        """Follow a trajectory from where the command stands, then hold its end for the goal time.
+
+        Raises:
+            StepFailed: CONTROL_FAILED, when a joint leaves the controller's tolerances; says which
+                joint, by how much, what it touched.
+        """
+        ...
+
+    def command_gripper(
+        self, position: float, max_effort: float, *, timeout: float
+    ) -> GripperResult:
+        """Drive the gripper's joint to a position under an effort limit until it arrives or stalls."""
+        ...
+
+    def hold(self, duration: float) -> None:
+        """Keep the last commands for some simulated time [s]."""
+        ...
+
+    def settle(self, max_velocity: float, timeout: float) -> bool:
+        """Hold until joints and objects are slower than a limit [m/s, rad/s]; False when time ran out."""
+        ...
+
+    def add_object(self, name: str, pose: SE3) -> None:
+        """Let a prepared object appear at T_world_object."""
+        ...
+
+    def remove_object(self, name: str) -> None:
+        """Park an object without contacts."""
+        ...
+
+    def move_object(self, name: str, pose: SE3) -> None:
+        """Set T_world_object, at rest."""
+        ...
+
+    def weld(self, name: str, link: str) -> None:
+        """Fix an object to a link where it stands (grasp mode `weld`)."""
+        ...
+
+    def unweld(self, name: str) -> None:
+        """Undo `weld`."""
+        ...
+
+    def finish(self) -> Signals:
+        """Everything recorded, without clearances."""
+        ...
+
+
+class ClearanceObserver(Protocol):
+    """Computes distances along a recorded run, exact wherever they are below the cutoff."""
+
+    def observe(
+        self,
+        signals: Signals,
+        objects: Sequence[ObjectRecord],
+        attachments: Sequence[AttachmentRecord],
+        cutoff: float,
+    ) -> Signals:
+        """The same signals with `clearances` and `clearance_links` filled in."""
+        ...

@@ -1,0 +1,297 @@
+"""What happened in a run: plain data, enough to judge it and to draw it without planner or physics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+
+from harness.core.geometry import Shape
+from harness.core.types import FloatArray
+
+StepStatus = Literal["passed", "failed", "expected_error", "not_reached"]
+VerdictStatus = Literal["passed", "failed", "not reached", "not observable"]
+Outcome = Literal["passed", "failed", "invalid", "error"]
+
+
+@dataclass(frozen=True)
+class JointRecord:
+    """Limits of a movable joint, as verdicts and plots need them (SI; inf where there is none)."""
+
+    name: str
+    kind: str
+    lower: float
+    upper: float
+    velocity: float
+    acceleration: float
+    effort: float
+    is_mimic: bool = False
+
+
+@dataclass(frozen=True)
+class GripperRecord:
+    """Which links make up the finger sides, and the joint that closes them."""
+
+    group: str
+    joint: str
+    sides: Mapping[str, tuple[str, ...]]
+    open_position: float
+    closed_position: float
+    widths: tuple[tuple[float, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class RobotRecord:
+    """The robot as the run needs it.
+
+    Attributes:
+        joints: Movable joints in description order: the columns of the joint signals.
+        groups: Joint names of each planning group.
+        named_states: Group -> state -> joint -> position.
+        static_links: Links that cannot move; they are no clearance finding against static objects.
+        link_visuals: Shapes for pictures, by link.
+        urdf: The composed URDF.
+        srdf: The composed SRDF.
+    """
+
+    name: str
+    joints: tuple[JointRecord, ...]
+    groups: Mapping[str, tuple[str, ...]]
+    named_states: Mapping[str, Mapping[str, Mapping[str, float]]]
+    arm_group: str
+    tcp_link: str
+    base_link: str
+    link_names: tuple[str, ...]
+    static_links: tuple[str, ...]
+    gripper: GripperRecord | None = None
+    link_visuals: Mapping[str, tuple[Shape, ...]] = field(default_factory=dict)
+    urdf: str = ""
+    srdf: str = ""
+
+
+@dataclass(frozen=True)
+class ObjectRecord:
+    """An object that took part.
+
+    Attributes:
+        present: Intervals [(from, to)] of simulation time in which it was in the scene [s].
+        represented_by: Planning object that stands for it while attached, if any did.
+    """
+
+    name: str
+    is_static: bool
+    in_planning: bool
+    in_simulation: bool
+    shapes: tuple[Shape, ...]
+    present: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
+class AttachmentRecord:
+    """An object fixed to a link in the planning scene, from one time to another.
+
+    Attributes:
+        pose_in_link: T_link_object at attaching, as the planner believes it (xyz, quat wxyz).
+        represents: The simulated object it stands for; its own name when it is that object.
+    """
+
+    object: str
+    link: str
+    start_time: float
+    end_time: float
+    pose_in_link: tuple[float, ...]
+    represents: str
+
+
+@dataclass(frozen=True)
+class StepRecord:
+    """One executed (or not executed) step.
+
+    Attributes:
+        id: The file's `id`, else its path (`steps[3]`, `steps[3].lift`).
+        path: Place in the expanded file; the step's seed is made from it.
+        verb: `move_to`, `lin`, ...
+        summary: One line for a person: `move_to mogi_home`.
+        line: In the scenario file, from 1; 0 if unknown.
+        status: What became of it.
+        error_code: MoveIt error name of its failure, expected or not; empty when it succeeded.
+        expected_error: What the file expects; empty when success is expected.
+        message: The failure in words.
+        start_time: Simulation time [s].
+        end_time: Simulation time [s].
+        start_index: First sample of the step.
+        end_index: One past its last sample.
+        trajectory: Commanded trajectory (joint_names, times, positions) for motion steps.
+        planner: Statistics: planner_id, checks, attempts, path lengths ...
+        explanation: Plain data: IK solutions and what became of them, blocking pairs, nearest pose.
+        result: What the step reports: `reached_goal`, `stalled`, fraction, allowed pairs ...
+    """
+
+    id: str
+    path: str
+    verb: str
+    summary: str
+    line: int
+    status: StepStatus
+    start_time: float = 0.0
+    end_time: float = 0.0
+    start_index: int = 0
+    end_index: int = 0
+    error_code: str = ""
+    expected_error: str = ""
+    message: str = ""
+    trajectory: Mapping[str, Any] | None = None
+    planner: Mapping[str, Any] = field(default_factory=dict)
+    explanation: Mapping[str, Any] = field(default_factory=dict)
+    result: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A measured quantity against its limit.
+
+    Attributes:
+        name: What was measured: `TCP position error`.
+        value: In `unit`.
+        limit: What it is compared with, in `unit`; NaN where there is none.
+        comparison: How value must stand to limit.
+        unit: `m`, `rad`, `s`, `N`, `1`.
+        time: Simulation time of the sample [s].
+        detail: Which joint, link or pair it was.
+    """
+
+    name: str
+    value: float
+    limit: float
+    comparison: Literal["<=", ">=", "=="]
+    unit: str
+    time: float
+    detail: str = ""
+
+    def __str__(self) -> str:
+        where = f" ({self.detail})" if self.detail else ""
+        sign = self.comparison
+        return f"{self.name}: {self.value:.6g} {self.unit} (must be {sign} {self.limit:.6g}) at t={self.time:.3f} s{where}"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What an expectation came to.
+
+    Attributes:
+        expectation: Its text, one line: `never: collision between robot and Table`.
+        status: Only `passed` passes.
+        margin: How far from flipping, in `unit`; positive when passed, negative when failed.
+        unit: Of the margin.
+        time: The sample that decided it [s]; NaN when none did.
+        line: In the scenario file; 0 if unknown.
+        step: Id of the step it stands on; empty for the whole run.
+        reason: One sentence with the numbers, for a failure why.
+        measures: What was measured at the deciding sample.
+        points: Of a graded expectation.
+    """
+
+    expectation: str
+    status: VerdictStatus
+    margin: float = float("nan")
+    unit: str = ""
+    time: float = float("nan")
+    line: int = 0
+    step: str = ""
+    reason: str = ""
+    measures: tuple[Measure, ...] = ()
+    points: float | None = None
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something a person should know that is no verdict: plan against physics, notes, fallbacks."""
+
+    kind: str
+    message: str
+    time: float = float("nan")
+    step: str = ""
+    values: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Signals:
+    """Recorded arrays; row i of each belongs to `times[i]`.
+
+    Attributes:
+        times: Simulation time of every physics sample [s], shape (N,).
+        joint_positions: Measured, description order, shape (N, n).
+        joint_velocities: Measured, shape (N, n).
+        joint_efforts: Applied by the actuators, shape (N, n) [N m or N].
+        joint_commands: Commanded positions, shape (N, n); NaN for mimic joints.
+        joint_command_velocities: Commanded velocities, shape (N, n); NaN for mimic joints.
+        tcp_pose: T_world_tcp, shape (N, 7): xyz, quat wxyz.
+        frames: T_world_link of the links that expectations observe, (N, 7) each.
+        object_poses: T_world_object of simulated objects, (N, 7) each; NaN while absent.
+        contact_forces: Normal force [N] between two bodies that ever touched, (N,) each; keys are
+            (body, body), robot link first, else sorted. Zero means no contact.
+        clearances: Distance [m] between the robot (key `robot`), or a held object (its name), and
+            an object, or `robot` and itself: (N,) each; NaN while either is absent. Capped at
+            `clearance_cutoff`: a value there means "at least that far".
+        clearance_links: Which robot link was nearest, index into the robot's link_names, (N,) each,
+            for keys of `clearances` that start with `robot`; -1 where none.
+    """
+
+    times: FloatArray
+    joint_positions: FloatArray
+    joint_velocities: FloatArray
+    joint_efforts: FloatArray
+    joint_commands: FloatArray
+    joint_command_velocities: FloatArray
+    tcp_pose: FloatArray
+    frames: Mapping[str, FloatArray] = field(default_factory=dict)
+    object_poses: Mapping[str, FloatArray] = field(default_factory=dict)
+    contact_forces: Mapping[tuple[str, str], FloatArray] = field(default_factory=dict)
+    clearances: Mapping[tuple[str, str], FloatArray] = field(default_factory=dict)
+    clearance_links: Mapping[tuple[str, str], np.ndarray] = field(default_factory=dict)
+    clearance_cutoff: float = 0.15
+
+
+@dataclass(frozen=True)
+class Run:
+    """A whole run of one case.
+
+    Attributes:
+        scenario: Its title.
+        file: As the user named it.
+        case: Empty when the file has one case.
+        seed: Of the run.
+        robot: The robot.
+        objects: Everything that took part.
+        attachments: What the planner believed to hold.
+        steps: In execution order, nested ones flat.
+        signals: What was recorded.
+        gravity: [m/s^2].
+        timestep: Of the physics [s].
+        allowed_contacts: Link or object pairs whose contact is no collision (the SRDF's, and grasps).
+        findings: Notes and disagreements.
+        source: Text of the scenario file.
+        resolved: Text of the resolved scenario; runs again to the same digest.
+        versions: Of every library that could change a number.
+        ended_early: Why the run stopped before its last step; empty when it did not.
+    """
+
+    scenario: str
+    file: str
+    case: str
+    seed: int
+    robot: RobotRecord
+    objects: tuple[ObjectRecord, ...]
+    attachments: tuple[AttachmentRecord, ...]
+    steps: tuple[StepRecord, ...]
+    signals: Signals
+    gravity: tuple[float, float, float] = (0.0, 0.0, -9.8)
+    timestep: float = 0.002
+    allowed_contacts: tuple[tuple[str, str], ...] = ()
+    findings: tuple[Finding, ...] = ()
+    source: str = ""
+    resolved: str = ""
+    versions: Mapping[str, str] = field(default_factory=dict)
+    ended_early: str = ""

@@ -1,0 +1,1 @@
+"""The robot as one description, from URDF, SRDF and robot.yaml."""

@@ -1,0 +1,281 @@
+"""The robot as plain data: what URDF, SRDF and robot.yaml say together, composed with its gripper.
+
+One description feeds the planner (Pinocchio, from `urdf`) and the physics (MuJoCo, from `links`
+and `joints`, in doubles).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from harness.core.geometry import Rgba, Shape
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+
+JointKind = Literal["fixed", "revolute", "continuous", "prismatic"]
+
+
+@dataclass(frozen=True, eq=False)
+class Inertial:
+    """Mass properties of a link.
+
+    Attributes:
+        mass: [kg].
+        center_of_mass: In the link frame [m], shape (3,).
+        inertia: About the centre of mass, link axes [kg m^2], shape (3, 3).
+    """
+
+    mass: float
+    center_of_mass: FloatArray
+    inertia: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """A rigid body of the robot; `inertial` is None for a pure frame."""
+
+    name: str
+    inertial: Inertial | None
+    visuals: tuple[Shape, ...] = ()
+    collisions: tuple[Shape, ...] = ()
+
+
+@dataclass(frozen=True)
+class Mimic:
+    """`value = multiplier * joint + offset`, as in URDF."""
+
+    joint: str
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """A joint and its limits; rad, rad/s, N m for turning joints, m, m/s, N for prismatic ones.
+
+    Attributes:
+        pose: T_parent_joint at zero.
+        axis: Unit vector in the joint frame, shape (3,).
+        lower: -inf when continuous.
+        upper: inf when continuous.
+        velocity: Limit; inf when the description gives none.
+        acceleration: Limit (joint_limits of robot.yaml, as MoveIt's joint_limits.yaml).
+        effort: Limit from a data sheet.
+        effort_source: Where the effort limit is from.
+        mimic: Set when the joint follows another.
+    """
+
+    name: str
+    kind: JointKind
+    parent: str
+    child: str
+    pose: SE3
+    axis: FloatArray
+    lower: float = -np.inf
+    upper: float = np.inf
+    velocity: float = np.inf
+    acceleration: float = 5.0
+    effort: float = np.inf
+    effort_source: str = ""
+    damping: float = 0.0
+    friction: float = 0.0
+    mimic: Mimic | None = None
+
+    @property
+    def is_movable(self) -> bool:
+        """Whether the joint has a position."""
+        return self.kind != "fixed"
+
+
+@dataclass(frozen=True)
+class PlanningGroup:
+    """An SRDF group.
+
+    Attributes:
+        joint_names: Its active joints (movable, not mimic, not passive), from base to tip.
+        base_link: First link of a chain group, else the common ancestor.
+        tip_link: Last link of a chain group: what pose goals speak of; empty for joint groups.
+    """
+
+    name: str
+    joint_names: tuple[str, ...]
+    base_link: str = ""
+    tip_link: str = ""
+
+
+@dataclass(frozen=True)
+class NamedState:
+    """An SRDF group_state: `positions` by joint name."""
+
+    name: str
+    group: str
+    positions: Mapping[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Gripper:
+    """Two finger sides closed by one joint.
+
+    Attributes:
+        group: Its SRDF group.
+        joint: The actuated joint; others mimic it.
+        sides: Links of each finger side, by side name (two of them).
+        pads: The link of each side that touches what is grasped, by side name.
+        palm_link: The link that carries the fingers.
+        open_position: Joint position with the fingers widest apart.
+        closed_position: Joint position with the fingers closest.
+        grip_effort: Effort of the joint when no `max_effort` is given.
+        max_effort: Largest effort of the joint.
+        widths: Rows (joint position, pad gap [m]) with rising position, shape (N, 2); for `width`.
+        friction: Sliding friction coefficient of the pads.
+    """
+
+    group: str
+    joint: str
+    sides: Mapping[str, tuple[str, ...]]
+    pads: Mapping[str, str]
+    palm_link: str
+    open_position: float
+    closed_position: float
+    grip_effort: float
+    max_effort: float
+    widths: FloatArray
+    friction: float = 1.0
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """Finger links of both sides: the default touch_links of what is attached."""
+        return tuple(link for side in self.sides.values() for link in side)
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A camera on a link, in the SDF camera's words; looks along +x of `link`, z up."""
+
+    name: str
+    link: str
+    horizontal_fov: float
+    width: int
+    height: int
+    clip_near: float = 0.01
+    clip_far: float = 15.0
+    noise_mean: float = 0.0
+    noise_stddev: float = 0.0
+    update_rate: float = 20.0
+    optical_frame_id: str = ""
+
+
+@dataclass(frozen=True)
+class TrackingTolerances:
+    """Of a JointTrajectoryController, for every joint [rad or m]."""
+
+    trajectory: float = 0.2
+    goal: float = 0.01
+    goal_time: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class RobotDescription:
+    """A composed robot: arm, gripper if any, base fixed in the world.
+
+    Joint vectors "in description order" have one entry per movable joint, mimic joints included,
+    in the order of `joint_names`.
+
+    Attributes:
+        name: As a person calls it (`ur3e`, or `ur3e + rh_p12_rn_a`).
+        urdf: The composed URDF; its root link is `world`, so frames come out in world coordinates.
+        srdf: The composed SRDF.
+        links: `world` first, then parents before children.
+        joints: In the same order as their child links.
+        groups: By name; the arm's group is `arm_group`.
+        named_states: All group states.
+        allowed_collisions: Unordered link pairs (sorted tuples) that are not checked, with reason.
+        arm_group: Default group of motion steps; empty for a gripper on no arm.
+        gripper: None when there is none.
+        tcp_link: The link whose pose is "the TCP".
+        base_link: First link of the arm.
+        start_state: Joint positions by name at the start of a run.
+        cameras: By name.
+        tracking: Tolerances of the trajectory controller.
+        ik_solver: `ur`, `open_manipulator_x` or `numeric`.
+        links_rgba: Colours of links for pictures, where the visuals say none.
+    """
+
+    name: str
+    urdf: str
+    srdf: str
+    links: tuple[Link, ...]
+    joints: tuple[Joint, ...]
+    groups: Mapping[str, PlanningGroup]
+    named_states: tuple[NamedState, ...]
+    allowed_collisions: Mapping[tuple[str, str], str]
+    arm_group: str
+    gripper: Gripper | None
+    tcp_link: str
+    base_link: str
+    start_state: Mapping[str, float]
+    cameras: Mapping[str, Camera] = field(default_factory=dict)
+    tracking: TrackingTolerances = field(default_factory=TrackingTolerances)
+    ik_solver: Literal["ur", "open_manipulator_x", "numeric"] = "numeric"
+    links_rgba: Mapping[str, Rgba] = field(default_factory=dict)
+
+    @cached_property
+    def movable_joints(self) -> tuple[Joint, ...]:
+        """Joints that have a position, mimic joints included."""
+        return tuple(joint for joint in self.joints if joint.is_movable)
+
+    @cached_property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of `movable_joints`: description order."""
+        return tuple(joint.name for joint in self.movable_joints)
+
+    @cached_property
+    def joint_index(self) -> Mapping[str, int]:
+        """Place of each movable joint in description order."""
+        return {name: index for index, name in enumerate(self.joint_names)}
+
+    @cached_property
+    def link_names(self) -> tuple[str, ...]:
+        """Names of `links`, `world` included."""
+        return tuple(link.name for link in self.links)
+
+    @cached_property
+    def joint_by_name(self) -> Mapping[str, Joint]:
+        """All joints, fixed ones included."""
+        return {joint.name: joint for joint in self.joints}
+
+    @cached_property
+    def static_links(self) -> frozenset[str]:
+        """Links that no movable joint separates from the world; they stand where they are mounted."""
+        static = {"world"}
+        for joint in self.joints:
+            if joint.kind == "fixed" and joint.parent in static:
+                static.add(joint.child)
+        return frozenset(static)
+
+    def group_indices(self, group: str) -> tuple[int, ...]:
+        """Places of a group's joints in description order."""
+        return tuple(self.joint_index[name] for name in self.groups[group].joint_names)
+
+    def states_of(self, group: str) -> Mapping[str, NamedState]:
+        """Named states of a group, by name."""
+        return {state.name: state for state in self.named_states if state.group == group}
+
+    def with_mimics(self, joint_positions: FloatArray) -> FloatArray:
+        """The same positions with every mimic joint set from the joint it follows."""
+        positions = np.array(joint_positions, dtype=float)
+        for index, joint in enumerate(self.movable_joints):
+            if joint.mimic is not None:
+                followed = positions[self.joint_index[joint.mimic.joint]]
+                positions[index] = joint.mimic.multiplier * followed + joint.mimic.offset
+        return positions
+
+    def start_positions(self) -> FloatArray:
+        """`start_state` in description order, mimic joints consistent, missing joints at zero."""
+        positions = np.array([self.start_state.get(name, 0.0) for name in self.joint_names])
+        return self.with_mimics(positions)

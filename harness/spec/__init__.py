@@ -1,0 +1,1 @@
+"""What a scenario, world or robot file says."""

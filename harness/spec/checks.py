@@ -1,0 +1,415 @@
+"""Every expectation a scenario may state. One model a predicate; `check` is its name.
+
+A predicate stands bare, or inside a temporal word. Bare, it is judged by its `judged` word:
+`at_end` at the last sample of its step or run, `always` over all of them, `eventually` at any.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from harness.spec.base import (
+    Angle,
+    AngularVelocity,
+    Color,
+    Duration,
+    Force,
+    JointValue,
+    LinearVelocity,
+    Name,
+    NonNegativeAngle,
+    NonNegativeLength,
+    PositiveDuration,
+    PositiveLength,
+    SpecModel,
+)
+from harness.spec.poses import Pose, PoseTolerance
+
+Judged = Literal["at_end", "always", "eventually"]
+
+
+class CheckFields(SpecModel):
+    """Words that stand in any predicate."""
+
+    judged: ClassVar[Judged] = "at_end"
+
+    for_: PositiveDuration | None = Field(
+        None, alias="for", description="Must hold this long without a break [s]."
+    )
+    within: PositiveDuration | None = Field(
+        None, description="Must come true within this time of the window's start [s]."
+    )
+    during: Name | None = Field(None, description="Judged over the step with this id.")
+    points: Annotated[float, Field(ge=0)] | None = Field(None, description="Of a graded scenario.")
+    name: str | None = Field(None, description="For people.")
+
+
+class ObjectCheck(CheckFields):
+    """A predicate of one object; `- lifted: red_box` is short for `{object: red_box}`."""
+
+    object: Name
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short(cls, value: Any) -> Any:
+        return {"object": value} if isinstance(value, str) else value
+
+
+class Lifted(ObjectCheck):
+    """The object is higher than at the start and nothing but the gripper holds it up."""
+
+    judged = "eventually"
+    check: Literal["lifted"] = "lifted"
+    above: PositiveLength = Field(0.01, description="Above its own start height [m].")
+
+
+class Grasped(ObjectCheck):
+    """Both finger sides touch the object and it moves with the gripper."""
+
+    check: Literal["grasped"] = "grasped"
+    min_force: Annotated[Force, Field(ge=0)] = Field(0.05, description="On each side [N].")
+    max_slip: PositiveLength = Field(0.005, description="In the hand since the grasp began [m].")
+    max_rotation: NonNegativeAngle = Field(0.1, description="In the hand since then [rad].")
+
+
+class Released(ObjectCheck):
+    """No part of the gripper touches the object, and it is not attached."""
+
+    check: Literal["released"] = "released"
+
+
+class Placed(ObjectCheck):
+    """The object rests on a support, released and still, at a pose if one is given."""
+
+    check: Literal["placed"] = "placed"
+    on: Name | None = Field(None, description="The supporting object; default: any but the robot.")
+    pose: Pose | None = None
+    tolerance: PoseTolerance | None = Field(
+        None, description="Of `pose`; default 1 cm, turns about the vertical free."
+    )
+    max_velocity: Annotated[LinearVelocity, Field(gt=0)] = 0.005
+
+
+class On(ObjectCheck):
+    """The object stands on another: in contact, above it, its weight carried by it."""
+
+    check: Literal["on"] = "on"
+    support: Name
+
+
+class In(ObjectCheck):
+    """The object's origin is inside another object's shape."""
+
+    check: Literal["in"] = "in"
+    container: Name
+
+
+class Displaced(ObjectCheck):
+    """The object is away from where it started."""
+
+    check: Literal["displaced"] = "displaced"
+    at_least: PositiveLength = 0.01
+
+
+class Upright(ObjectCheck):
+    """The object's z axis points up."""
+
+    check: Literal["upright"] = "upright"
+    tolerance: Annotated[Angle, Field(gt=0)] = 0.1
+
+
+class Static(CheckFields):
+    """The object, or everything, moves slower than a limit."""
+
+    check: Literal["static"] = "static"
+    object: Name | None = Field(None, description="Default: every dynamic object and the robot.")
+    max_velocity: Annotated[LinearVelocity, Field(gt=0)] = 0.005
+    max_angular_velocity: Annotated[AngularVelocity, Field(gt=0)] = 0.05
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short(cls, value: Any) -> Any:
+        return {"object": value} if isinstance(value, str) else value
+
+
+class Between(CheckFields):
+    """A predicate of two bodies: links, objects, `robot`, `gripper`."""
+
+    between: tuple[Name, Name]
+
+
+class InContact(Between):
+    """The two bodies touch."""
+
+    judged = "eventually"
+    check: Literal["in_contact"] = "in_contact"
+    min_force: Annotated[Force, Field(ge=0)] = Field(0.0, description="[N]")
+
+
+class Collision(CheckFields):
+    """A contact that is neither allowed, nor a grasp, nor an object resting on its support."""
+
+    judged = "eventually"
+    check: Literal["collision"] = "collision"
+    between: tuple[Name, Name] | None = Field(
+        None, description="Default: the robot and anything, what it holds and anything."
+    )
+
+
+class Clearance(CheckFields):
+    """The distance between the two bodies is at least so much."""
+
+    judged = "always"
+    check: Literal["clearance"] = "clearance"
+    between: tuple[Name, Name] = Field(
+        ("robot", "any"), description="`robot`, a held object's name, an object, `any`."
+    )
+    at_least: NonNegativeLength
+
+
+class TcpPose(CheckFields):
+    """The TCP, or another link, stands at a pose."""
+
+    check: Literal["tcp_pose"] = "tcp_pose"
+    pose: Pose
+    link: Name | None = None
+    tolerance: PoseTolerance = Field(default_factory=PoseTolerance)
+    position_only: bool = False
+
+
+class Line(SpecModel):
+    """A straight line between two points."""
+
+    start: Pose
+    end: Pose
+
+
+class Arc(SpecModel):
+    """An arc from start to end through a point."""
+
+    start: Pose
+    interim: Pose
+    end: Pose
+
+
+class TcpPath(CheckFields):
+    """The TCP stays near a line or an arc."""
+
+    judged = "always"
+    check: Literal["tcp_path"] = "tcp_path"
+    line: Line | None = None
+    arc: Arc | None = None
+    max_deviation: PositiveLength = 0.001
+
+
+class Joints(CheckFields):
+    """Joints stand at positions."""
+
+    check: Literal["joints"] = "joints"
+    positions: Annotated[dict[Name, JointValue], Field(min_length=1)]
+    tolerance: Annotated[JointValue, Field(gt=0)] = 0.01
+
+
+class NamedTarget(CheckFields):
+    """A group stands at its named state."""
+
+    check: Literal["named_target"] = "named_target"
+    state: Name
+    group: Name | None = None
+    tolerance: Annotated[JointValue, Field(gt=0)] = 0.01
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short(cls, value: Any) -> Any:
+        return {"state": value} if isinstance(value, str) else value
+
+
+class GripperState(CheckFields):
+    """The gripper stands at a named state, a position or a width, or is stalled."""
+
+    check: Literal["gripper"] = "gripper"
+    named_target: Name | None = None
+    position: JointValue | None = None
+    width: NonNegativeLength | None = None
+    tolerance: Annotated[JointValue, Field(gt=0)] = 0.02
+    stalled: bool | None = Field(None, description="What the last gripper step reported.")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short(cls, value: Any) -> Any:
+        return {"named_target": value} if isinstance(value, str) else value
+
+    @model_validator(mode="after")
+    def _one(self) -> GripperState:
+        given = [
+            key
+            for key in ("named_target", "position", "width", "stalled")
+            if getattr(self, key) is not None
+        ]
+        if len(given) != 1:
+            raise ValueError("exactly one of named_target, position, width, stalled")
+        return self
+
+
+class WithinLimits(CheckFields):
+    """Joints stay within their limits."""
+
+    judged = "always"
+    check: Literal["within_limits"] = "within_limits"
+    position: bool = True
+    velocity: bool = True
+    acceleration: bool = Field(False, description="Of the commanded trajectory.")
+    effort: bool = True
+
+
+class TrackingError(CheckFields):
+    """Joints stay near their commands."""
+
+    judged = "always"
+    check: Literal["tracking_error"] = "tracking_error"
+    max: Annotated[JointValue, Field(gt=0)] = 0.05
+
+
+class Effort(CheckFields):
+    """Joint efforts stay below a share of their limits."""
+
+    judged = "always"
+    check: Literal["effort"] = "effort"
+    max_fraction: Annotated[float, Field(gt=0)] = 1.0
+
+
+class DurationCheck(CheckFields):
+    """The step, or the run, takes at most (at least) so long."""
+
+    check: Literal["duration"] = "duration"
+    at_most: Duration | None = None
+    at_least: Duration | None = None
+
+    @model_validator(mode="after")
+    def _one(self) -> DurationCheck:
+        if self.at_most is None and self.at_least is None:
+            raise ValueError("`at_most`, `at_least`, or both")
+        return self
+
+
+class PathLength(CheckFields):
+    """The TCP travels at most so far."""
+
+    check: Literal["path_length"] = "path_length"
+    at_most: PositiveLength
+
+
+class FractionCheck(CheckFields):
+    """A cartesian path was followed at least so far."""
+
+    check: Literal["fraction"] = "fraction"
+    at_least: Annotated[float, Field(ge=0, le=1)] = 1.0
+
+
+class Sees(CheckFields):
+    """A camera sees a colour blob, a marker or an object."""
+
+    judged = "eventually"
+    check: Literal["sees"] = "sees"
+    camera: Name
+    object: Name | None = None
+    color: Color | None = None
+    marker: int | None = None
+    min_fraction: Annotated[float, Field(ge=0, le=1)] = 0.001
+
+
+class Slip(ObjectCheck):
+    """Where the planner believes a held object to be, against where it is."""
+
+    judged = "always"
+    check: Literal["slip"] = "slip"
+    max_distance: PositiveLength = 0.003
+    max_rotation: Annotated[Angle, Field(gt=0)] = Field(
+        0.05235987755982988, description="Turns about the axis of a round object do not count."
+    )
+
+
+AnyPredicate = (
+    Lifted
+    | Grasped
+    | Released
+    | Placed
+    | On
+    | In
+    | Displaced
+    | Upright
+    | Static
+    | InContact
+    | Collision
+    | Clearance
+    | TcpPose
+    | TcpPath
+    | Joints
+    | NamedTarget
+    | GripperState
+    | WithinLimits
+    | TrackingError
+    | Effort
+    | DurationCheck
+    | PathLength
+    | FractionCheck
+    | Sees
+    | Slip
+)
+Predicate = Annotated[AnyPredicate, Field(discriminator="check")]
+
+
+class TemporalFields(SpecModel):
+    """Words that stand beside a temporal word."""
+
+    for_: PositiveDuration | None = Field(None, alias="for", description="Held this long [s].")
+    within: PositiveDuration | None = Field(
+        None, description="Deadline from the window's start [s]."
+    )
+    during: Name | None = Field(None, description="Judged over the step with this id.")
+    points: Annotated[float, Field(ge=0)] | None = None
+    name: str | None = None
+
+
+class Always(TemporalFields):
+    """At every sample of the window."""
+
+    check: Literal["always"] = "always"
+    predicate: Predicate
+
+
+class Never(TemporalFields):
+    """At no sample of the window."""
+
+    check: Literal["never"] = "never"
+    predicate: Predicate
+
+
+class Eventually(TemporalFields):
+    """At some sample of the window; with `for`, for that long."""
+
+    check: Literal["eventually"] = "eventually"
+    predicate: Predicate
+
+
+class Until(TemporalFields):
+    """The first holds until the second does, and the second does."""
+
+    check: Literal["until"] = "until"
+    predicate: Predicate
+    until: Predicate
+
+
+class Formula(SpecModel):
+    """Signal temporal logic over recorded signals."""
+
+    check: Literal["formula"] = "formula"
+    formula: str
+    points: Annotated[float, Field(ge=0)] | None = None
+    name: str | None = None
+
+
+AnyExpectation = AnyPredicate | Always | Never | Eventually | Until | Formula
+Expectation = Annotated[AnyExpectation, Field(discriminator="check")]

@@ -1,0 +1,98 @@
+"""Poses, positions and directions as a file writes them."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from pydantic import Field, field_validator, model_validator
+
+from harness.core.spatial import SE3, wxyz_from_xyzw
+from harness.spec.base import (
+    Name,
+    NonNegativeAngle,
+    PositiveLength,
+    Quaternion,
+    Rpy,
+    SpecModel,
+    Xyz,
+)
+
+QUATERNION_NORM_TOLERANCE = 1e-2
+
+
+class Pose(SpecModel):
+    """A position and at most one of `rpy`, `quat_xyzw`, `quat_wxyz`, in a frame."""
+
+    xyz: Xyz = Field((0.0, 0.0, 0.0), description="Position [m].")
+    rpy: Rpy | None = Field(None, description="Fixed-axis roll, pitch, yaw [rad], as in URDF.")
+    quat_xyzw: Quaternion | None = Field(None, description="Quaternion in ROS order.")
+    quat_wxyz: Quaternion | None = Field(None, description="Quaternion in MuJoCo's order.")
+    frame: Name = Field("world", description="`world`, a robot link, or an object's name.")
+
+    @field_validator("quat_xyzw", "quat_wxyz")
+    @classmethod
+    def _norm(cls, value: Quaternion | None) -> Quaternion | None:
+        if value is None:
+            return None
+        norm = math.sqrt(sum(part * part for part in value))
+        if abs(norm - 1) > QUATERNION_NORM_TOLERANCE:
+            hint = "no rotation is (0, 0, 0, 1) in xyzw order"
+            if norm > 0:
+                hint = (
+                    "normalised it is [" + ", ".join(f"{part / norm:.6g}" for part in value) + "]"
+                )
+            raise ValueError(f"a quaternion has norm 1, this one {norm:.4g}; {hint}")
+        return value
+
+    @model_validator(mode="after")
+    def _one_rotation(self) -> Pose:
+        given = [key for key in ("rpy", "quat_xyzw", "quat_wxyz") if getattr(self, key) is not None]
+        if len(given) > 1:
+            raise ValueError(f"a pose has one rotation; this one has {' and '.join(given)}")
+        return self
+
+    def se3(self) -> SE3:
+        """The pose in its frame: T_frame_this, quaternion normalised."""
+        if self.rpy is not None:
+            return SE3.from_xyz_rpy(self.xyz, self.rpy)
+        if self.quat_xyzw is not None:
+            return SE3.from_xyz_quat(self.xyz, wxyz_from_xyzw(self.quat_xyzw))
+        if self.quat_wxyz is not None:
+            return SE3.from_xyz_quat(self.xyz, self.quat_wxyz)
+        return SE3.from_xyz_rpy(self.xyz)
+
+
+class Position(SpecModel):
+    """A point in a frame."""
+
+    xyz: Xyz = Field(description="Position [m].")
+    frame: Name = Field("world", description="`world`, a robot link, or an object's name.")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short(cls, value: Any) -> Any:
+        return {"xyz": value} if isinstance(value, list | tuple) else value
+
+
+class Direction(SpecModel):
+    """A direction of travel, or an axis to turn about; its length does not matter."""
+
+    xyz: tuple[float, float, float] = Field(description="Along x, y, z of the frame.")
+    frame: Name = Field("world", description="`world`, a robot link, or an object's name.")
+
+    @field_validator("xyz")
+    @classmethod
+    def _not_zero(cls, value: tuple[float, float, float]) -> tuple[float, float, float]:
+        if math.sqrt(sum(part * part for part in value)) < 1e-9:
+            raise ValueError("a direction has some length; this one is (0, 0, 0)")
+        return value
+
+
+class PoseTolerance(SpecModel):
+    """How near is there: MoveIt's goal tolerances."""
+
+    position: PositiveLength = Field(1e-3, description="Radius around the target [m].")
+    orientation: NonNegativeAngle = Field(
+        1e-2, description="Largest rotation about each axis [rad]."
+    )

@@ -1,0 +1,103 @@
+"""The scenario file as a whole."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import Field, model_validator
+
+from harness.spec.base import Fraction, JointValue, Name, SpecModel
+from harness.spec.checks import Expectation
+from harness.spec.planning import Planning
+from harness.spec.poses import Pose
+from harness.spec.steps import Step
+from harness.spec.world import ObjectSpec
+
+
+class StartState(SpecModel):
+    """Where the robot stands at the start."""
+
+    named_target: Name | None = None
+    joints: dict[Name, JointValue] | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short(cls, value: Any) -> Any:
+        return {"named_target": value} if isinstance(value, str) else value
+
+
+class JointLimits(SpecModel):
+    """MoveIt's joint_limits.yaml words; narrows what the robot's description says."""
+
+    min_position: JointValue | None = None
+    max_position: JointValue | None = None
+    max_velocity: Annotated[float, Field(gt=0)] | None = None
+    max_acceleration: Annotated[float, Field(gt=0)] | None = None
+    max_effort: Annotated[float, Field(gt=0)] | None = None
+
+
+class RobotSpec(SpecModel):
+    """The robot: a bundled model or files, with its gripper and where it stands."""
+
+    model: str | None = Field(None, description="A name under robots/, or a path to such a folder.")
+    urdf: str | None = None
+    xacro: str | None = None
+    args: dict[Name, Any] = Field(default_factory=dict, description="Of the xacro file.")
+    mjcf: str | None = None
+    srdf: str | None = None
+    gripper: str | None = Field(None, description="A gripper's name, mounted on the arm's flange.")
+    base: Pose = Field(default_factory=Pose, description="Where the base stands in the world.")
+    kinematics: str | None = Field(None, description="A UR calibration file.")
+    joint_limits: dict[Name, JointLimits] = Field(default_factory=dict)
+    named_states: dict[Name, dict[Name, dict[Name, JointValue]]] = Field(
+        default_factory=dict, description="Extra group states: group -> state -> joint -> position."
+    )
+    start_state: StartState | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short(cls, value: Any) -> Any:
+        if isinstance(value, str):
+            return {"model": value}
+        if isinstance(value, dict) and "ur_type" in value and "model" not in value:
+            return {("model" if key == "ur_type" else key): item for key, item in value.items()}
+        return value
+
+    @model_validator(mode="after")
+    def _one_source(self) -> RobotSpec:
+        given = [
+            key for key in ("model", "urdf", "xacro", "mjcf") if getattr(self, key) is not None
+        ]
+        if len(given) != 1 and not (not given and self.gripper):
+            raise ValueError("exactly one of model, urdf, xacro, mjcf (or a gripper alone)")
+        return self
+
+
+class Expected(SpecModel):
+    """A success rate to be shown by sampled cases."""
+
+    at_least: Fraction
+    confidence: Annotated[float, Field(gt=0, lt=1)] = 0.95
+
+
+class Scenario(SpecModel):
+    """One test of an arm application."""
+
+    scenario: Annotated[str, Field(min_length=1, max_length=200)] = Field(description="Its title.")
+    description: str = ""
+    tags: tuple[Name, ...] = Field((), description="pytest marks.")
+    points: Annotated[float, Field(ge=0)] | None = None
+    verifies: tuple[str, ...] = Field((), description="Requirements.")
+    robot: RobotSpec
+    world: str = Field("empty", description="A name under worlds/, a .yaml path, or an .sdf path.")
+    objects: tuple[ObjectSpec, ...] = Field((), description="Added to, or replacing, the world's.")
+    seed: Annotated[int, Field(ge=0, le=2**31 - 1)] = 0
+    params: dict[Name, Any] = Field(default_factory=dict, description="For ${name} in the file.")
+    planning: Planning = Field(default_factory=Planning)
+    deterministic: bool = True
+    steps: Annotated[tuple[Step, ...], Field(min_length=1)]
+    expect: tuple[Expectation, ...] = Field((), description="Judged over the whole run.")
+    parametrize: dict[str, Any] | list[Any] | None = None
+    randomize: dict[str, Any] | None = None
+    samples: Annotated[int, Field(ge=1, le=100_000)] | None = None
+    expect_rate: Expected | None = None

@@ -1,0 +1,442 @@
+"""Every step a scenario may say. One model a verb; `do` is the verb."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from harness.core.errors import ErrorCode
+from harness.spec.base import (
+    Angle,
+    AngularVelocity,
+    Duration,
+    Force,
+    Fraction,
+    JointEffort,
+    JointValue,
+    Length,
+    LinearAcceleration,
+    LinearVelocity,
+    Name,
+    NonNegativeLength,
+    PositiveDuration,
+    PositiveLength,
+    SpecModel,
+)
+from harness.spec.checks import Expectation
+from harness.spec.goals import GoalFields
+from harness.spec.planning import PathConstraints, Planning
+from harness.spec.poses import Direction, Pose
+from harness.spec.world import ObjectSpec
+
+GripperAction = Literal["friction", "weld"]
+
+
+class StepFields(SpecModel):
+    """Words that stand beside the verb of any step."""
+
+    id: Name | None = Field(None, description="To speak of the step elsewhere; unique.")
+    name: str | None = Field(None, description="For people.")
+    group: Name | None = Field(None, description="SRDF planning group; default: the arm's.")
+    expect: tuple[Expectation, ...] = Field((), description="Judged over this step.")
+    expect_error: ErrorCode | None = Field(
+        None, description="The step must fail with this moveit_msgs/MoveItErrorCodes name."
+    )
+    timeout: PositiveDuration | None = Field(None, description="In simulated seconds.")
+    planning: Planning | None = Field(None, description="Overrides the scenario's `planning`.")
+
+
+class MoveTo(GoalFields, StepFields):
+    """Plan a collision-free motion to a goal, then execute it."""
+
+    do: Literal["move_to"] = "move_to"
+    path_constraints: PathConstraints | None = Field(None, description="Held along the path.")
+
+
+class CartesianLimits(SpecModel):
+    """Pilz's cartesian limits."""
+
+    max_trans_vel: Annotated[LinearVelocity, Field(gt=0)] | None = None
+    max_trans_acc: Annotated[LinearAcceleration, Field(gt=0)] | None = None
+    max_rot_vel: Annotated[AngularVelocity, Field(gt=0)] | None = None
+
+
+class Ptp(GoalFields, StepFields):
+    """Pilz PTP: all joints together, straight in joint space."""
+
+    do: Literal["ptp"] = "ptp"
+    duration: PositiveDuration | None = Field(
+        None, description="Of the motion: a JointTrajectory point's time_from_start [s]."
+    )
+
+
+class Lin(GoalFields, StepFields):
+    """Pilz LIN: the link moves on a straight line."""
+
+    do: Literal["lin"] = "lin"
+    cartesian_limits: CartesianLimits | None = None
+
+
+class Circ(StepFields):
+    """Pilz CIRC: an arc to `pose`, through `interim` or about `center`."""
+
+    do: Literal["circ"] = "circ"
+    pose: Pose
+    link: Name | None = None
+    interim: Pose | None = Field(None, description="A point on the arc.")
+    center: Pose | None = Field(None, description="The arc's centre.")
+    cartesian_limits: CartesianLimits | None = None
+
+    @model_validator(mode="after")
+    def _one_auxiliary(self) -> Circ:
+        if (self.interim is None) == (self.center is None):
+            raise ValueError("an arc has exactly one of `interim` and `center`")
+        return self
+
+
+class MoveRelative(StepFields):
+    """Task Constructor's MoveRelative: a straight move, or a turn, by a distance."""
+
+    do: Literal["move_relative"] = "move_relative"
+    direction: Direction | None = Field(None, description="Translate along this.")
+    rotation: Direction | None = Field(None, description="Turn about this axis through the link.")
+    distance: Annotated[Length, Field(gt=0)] | None = Field(None, description="Exactly so far [m].")
+    min_distance: PositiveLength | None = Field(None, description="At least so far [m].")
+    max_distance: PositiveLength | None = Field(None, description="At most so far [m].")
+    angle: Annotated[Angle, Field(gt=0)] | None = Field(None, description="With `rotation` [rad].")
+    link: Name | None = Field(None, description="Default: the TCP.")
+
+    @model_validator(mode="after")
+    def _one_amount(self) -> MoveRelative:
+        if (self.direction is None) == (self.rotation is None):
+            raise ValueError("exactly one of `direction` and `rotation`")
+        if self.rotation is not None:
+            if self.angle is None:
+                raise ValueError("a `rotation` has an `angle`")
+            if any((self.distance, self.min_distance, self.max_distance)):
+                raise ValueError("a `rotation` has an `angle`, a `direction` has a distance")
+            return self
+        if self.angle is not None:
+            raise ValueError("an `angle` goes with `rotation`")
+        if self.distance is not None and (self.min_distance or self.max_distance):
+            raise ValueError("either `distance`, or `min_distance` and `max_distance`")
+        if self.distance is None and self.max_distance is None:
+            raise ValueError("a `direction` has a `distance`, or a `max_distance`")
+        if self.min_distance and self.max_distance and self.min_distance > self.max_distance:
+            raise ValueError("`min_distance` is more than `max_distance`")
+        return self
+
+
+class JumpThreshold(SpecModel):
+    """Largest joint step between neighbouring waypoints."""
+
+    revolute: Annotated[Angle, Field(gt=0)] = 0.5
+    prismatic: PositiveLength = 0.1
+
+
+class CartesianPath(StepFields):
+    """MoveIt's computeCartesianPath: straight segments through waypoints."""
+
+    do: Literal["cartesian_path"] = "cartesian_path"
+    waypoints: Annotated[tuple[Pose, ...], Field(min_length=1)]
+    link: Name | None = None
+    max_step: PositiveLength = 0.005
+    precision: PositiveLength = 0.001
+    min_fraction: Fraction = 1.0
+    jump_threshold: JumpThreshold = JumpThreshold()
+
+
+class SequenceItem(SpecModel):
+    """One motion of a sequence, and how it blends into the next."""
+
+    ptp: GoalFields | None = None
+    lin: GoalFields | None = None
+    circ: Circ | None = None
+    blend_radius: NonNegativeLength = 0.0
+
+    @model_validator(mode="after")
+    def _one_motion(self) -> SequenceItem:
+        if sum(motion is not None for motion in (self.ptp, self.lin, self.circ)) != 1:
+            raise ValueError("an item is exactly one of ptp, lin, circ")
+        return self
+
+
+class Sequence(StepFields):
+    """Pilz's motion sequence with blends."""
+
+    do: Literal["sequence"] = "sequence"
+    items: Annotated[tuple[SequenceItem, ...], Field(min_length=1)]
+
+
+class Gripper(StepFields):
+    """GripperCommand: a named state, `position`, or `width`."""
+
+    do: Literal["gripper"] = "gripper"
+    named_target: Name | None = Field(None, description="An SRDF group state of the gripper.")
+    position: JointValue | None = Field(None, description="Of the gripper's joint.")
+    width: NonNegativeLength | None = Field(None, description="Gap between the pads [m].")
+    max_effort: Annotated[JointEffort, Field(gt=0)] | None = Field(
+        None, description="Effort limit of the gripper's joint; default from the robot."
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short(cls, value: Any) -> Any:
+        return {"named_target": value} if isinstance(value, str) else value
+
+    @model_validator(mode="after")
+    def _one_target(self) -> Gripper:
+        given = [k for k in ("named_target", "position", "width") if getattr(self, k) is not None]
+        if len(given) != 1:
+            raise ValueError("exactly one of a named state, `position`, `width`")
+        return self
+
+
+class Grasp(StepFields):
+    """Close until both finger sides touch the object, verify, attach it in the planning scene."""
+
+    do: Literal["grasp"] = "grasp"
+    object: Name
+    mode: GripperAction = Field("friction", description="`weld` fixes it in the physics too.")
+    max_effort: Annotated[JointEffort, Field(gt=0)] | None = None
+    position: JointValue | None = Field(None, description="Closes to here at most; default closed.")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short(cls, value: Any) -> Any:
+        return {"object": value} if isinstance(value, str) else value
+
+
+class Release(StepFields):
+    """Open, verify that nothing is held, detach in the planning scene."""
+
+    do: Literal["release"] = "release"
+    object: Name | None = Field(None, description="Default: what was grasped last.")
+    named_target: Name | None = Field(None, description="Default: the gripper's open position.")
+    position: JointValue | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short(cls, value: Any) -> Any:
+        return {"object": value} if isinstance(value, str) else value
+
+
+class AttachObject(StepFields):
+    """Fix an object to a link, in the planning scene alone."""
+
+    do: Literal["attach_object"] = "attach_object"
+    object: Name | ObjectSpec = Field(description="A name in the scene, or a new object.")
+    link: Name | None = Field(None, description="Default: the TCP link.")
+    touch_links: tuple[Name, ...] | None = Field(
+        None, description="Links that may touch it; default: the gripper's."
+    )
+    represents: Name | None = Field(
+        None,
+        description="The physical object it stands for; leaves the planning scene until detached.",
+    )
+
+
+class DetachObject(StepFields):
+    """Let go of an attached object, in the planning scene alone."""
+
+    do: Literal["detach_object"] = "detach_object"
+    object: Name
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short(cls, value: Any) -> Any:
+        return {"object": value} if isinstance(value, str) else value
+
+
+class AddObject(StepFields):
+    """Add one or several objects."""
+
+    do: Literal["add_object"] = "add_object"
+    objects: Annotated[tuple[ObjectSpec, ...], Field(min_length=1)]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short(cls, value: Any) -> Any:
+        return _listed(value, "objects")
+
+
+class RemoveObject(StepFields):
+    """Remove one or several objects."""
+
+    do: Literal["remove_object"] = "remove_object"
+    objects: Annotated[tuple[Name, ...], Field(min_length=1)]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short(cls, value: Any) -> Any:
+        return _listed(value, "objects")
+
+
+class MoveObject(StepFields):
+    """Put an object somewhere else, at rest."""
+
+    do: Literal["move_object"] = "move_object"
+    object: Name
+    pose: Pose
+
+
+class ClearObjects(StepFields):
+    """Remove what steps added; with `world: true` the world's objects too."""
+
+    do: Literal["clear_objects"] = "clear_objects"
+    world: bool = False
+
+
+class AllowCollisions(StepFields):
+    """Allow collisions of pairs while the nested steps run."""
+
+    do: Literal["allow_collisions"] = "allow_collisions"
+    pairs: Annotated[tuple[tuple[Name, Name], ...], Field(min_length=1)]
+    during: Annotated[tuple[Step, ...], Field(min_length=1)]
+
+
+class Travel(SpecModel):
+    """A straight move of a pick or place."""
+
+    direction: Direction | None = None
+    min_distance: PositiveLength | None = None
+    max_distance: PositiveLength | None = None
+    distance: PositiveLength | None = None
+
+
+class Pick(StepFields):
+    """Approach, grasp, lift; expands into the steps it is made of."""
+
+    do: Literal["pick"] = "pick"
+    object: Name
+    grasp_pose: Pose | None = Field(
+        None, description="Of the TCP; default: from the object's shape."
+    )
+    pitch: Angle | None = Field(None, description="Of the gripper, for arms with fewer joints.")
+    approach: Travel | None = Field(None, description="Default: 10 cm along the gripper.")
+    lift: Travel | None = Field(None, description="Default: 10 cm up.")
+    mode: GripperAction = "friction"
+    max_effort: Annotated[JointEffort, Field(gt=0)] | None = None
+
+
+class Place(StepFields):
+    """Approach, lower, release, retreat; expands into the steps it is made of."""
+
+    do: Literal["place"] = "place"
+    object: Name | None = Field(None, description="Default: what was picked last.")
+    pose: Pose = Field(description="Where the object shall stand.")
+    approach: Travel | None = None
+    retreat: Travel | None = None
+
+
+class Capture(StepFields):
+    """Take an image with a camera."""
+
+    do: Literal["capture"] = "capture"
+    camera: Name
+    kinds: tuple[Literal["color", "depth", "segmentation"], ...] = ("color",)
+
+
+class Wait(StepFields):
+    """Let simulated time pass."""
+
+    do: Literal["wait"] = "wait"
+    duration: PositiveDuration
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short(cls, value: Any) -> Any:
+        return value if isinstance(value, dict) else {"duration": value}
+
+
+class Settle(StepFields):
+    """Wait until everything is slower than a limit."""
+
+    do: Literal["settle"] = "settle"
+    max_velocity: Annotated[LinearVelocity, Field(gt=0)] = Field(
+        1e-3, description="Of objects [m/s] and joints [rad/s]."
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short(cls, value: Any) -> Any:
+        return {} if value is None or value is True else value
+
+
+class Inject(StepFields):
+    """A fault, with a receipt."""
+
+    do: Literal["inject"] = "inject"
+    friction: dict[Name, Annotated[float, Field(ge=0)]] | None = None
+    gripper_effort: Fraction | None = None
+    joint_stall: Name | None = None
+    push: dict[Name, tuple[Force, Force, Force]] | None = None
+    sensor_noise: Annotated[Angle, Field(ge=0)] | None = None
+    command_latency: Duration | None = None
+
+
+class Repeat(StepFields):
+    """The same steps several times."""
+
+    do: Literal["repeat"] = "repeat"
+    times: Annotated[int, Field(ge=1, le=1000)]
+    steps: Annotated[tuple[Step, ...], Field(min_length=1)]
+
+
+class Parallel(StepFields):
+    """Arm and gripper at once."""
+
+    do: Literal["parallel"] = "parallel"
+    steps: Annotated[tuple[Step, ...], Field(min_length=2)]
+
+
+class Include(StepFields):
+    """Steps from another file, with parameters."""
+
+    do: Literal["include"] = "include"
+    file: str
+    params: dict[Name, Any] = Field(default_factory=dict)
+
+
+def _listed(value: Any, key: str) -> Any:
+    """`- verb: x` and `- verb: [x, y]` are short for `- verb: {objects: [...]}`."""
+    if isinstance(value, dict) and key in value:
+        return value
+    if isinstance(value, list | tuple):
+        return {key: value}
+    return {key: [value]}
+
+
+AnyStep = (
+    MoveTo
+    | Ptp
+    | Lin
+    | Circ
+    | MoveRelative
+    | CartesianPath
+    | Sequence
+    | Gripper
+    | Grasp
+    | Release
+    | AttachObject
+    | DetachObject
+    | AddObject
+    | RemoveObject
+    | MoveObject
+    | ClearObjects
+    | AllowCollisions
+    | Pick
+    | Place
+    | Capture
+    | Wait
+    | Settle
+    | Inject
+    | Repeat
+    | Parallel
+    | Include
+)
+Step = Annotated[AnyStep, Field(discriminator="do")]
+
+for _model in (AllowCollisions, Repeat, Parallel):
+    _model.model_rebuild()

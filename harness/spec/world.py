@@ -1,0 +1,157 @@
+"""Objects and worlds as files say them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from harness.spec.base import (
+    Color,
+    Length,
+    Mass,
+    Name,
+    PositiveDuration,
+    PositiveLength,
+    SpecModel,
+    Xyz,
+)
+from harness.spec.poses import Pose
+
+
+class BoxSpec(SpecModel):
+    """Full size along x, y, z [m]."""
+
+    size: tuple[PositiveLength, PositiveLength, PositiveLength]
+
+
+class CylinderSpec(SpecModel):
+    """About its z axis [m]."""
+
+    radius: PositiveLength
+    length: PositiveLength
+
+
+class SphereSpec(SpecModel):
+    """A radius [m]."""
+
+    radius: PositiveLength
+
+
+class CapsuleSpec(SpecModel):
+    """About its z axis; `length` is the cylindrical part [m]."""
+
+    radius: PositiveLength
+    length: PositiveLength
+
+
+class PlaneSpec(SpecModel):
+    """Solid below z = 0 of its pose."""
+
+
+class MeshSpec(SpecModel):
+    """A triangle mesh file beside the world or scenario file."""
+
+    file: str
+    scale: float | tuple[float, float, float] = 1.0
+
+
+class ShapeSpec(SpecModel):
+    """Exactly one geometry, placed on its object."""
+
+    name: Name | None = None
+    pose: Pose = Field(
+        default_factory=Pose, description="On the object; its frame word is ignored."
+    )
+    color: Color | None = None
+    box: BoxSpec | None = None
+    cylinder: CylinderSpec | None = None
+    sphere: SphereSpec | None = None
+    capsule: CapsuleSpec | None = None
+    plane: PlaneSpec | None = None
+    mesh: MeshSpec | None = None
+
+    @model_validator(mode="after")
+    def _one_geometry(self) -> ShapeSpec:
+        kinds = ("box", "cylinder", "sphere", "capsule", "plane", "mesh")
+        given = [kind for kind in kinds if getattr(self, kind) is not None]
+        if len(given) != 1:
+            found = " and ".join(given) or "none"
+            raise ValueError(f"a shape is exactly one of {', '.join(kinds)}; found {found}")
+        return self
+
+
+class FrictionSpec(SpecModel):
+    """Coulomb friction of the surface; a contact takes the smaller of its two."""
+
+    sliding: Annotated[float, Field(ge=0)] = 1.0
+    torsional: Annotated[float, Field(ge=0)] = 0.005
+    rolling: Annotated[float, Field(ge=0)] = 0.0001
+
+
+class InertiaSpec(SpecModel):
+    """About the centre of mass, body axes [kg m^2]."""
+
+    ixx: float
+    iyy: float
+    izz: float
+    ixy: float = 0.0
+    ixz: float = 0.0
+    iyz: float = 0.0
+
+
+class ObjectSpec(SpecModel):
+    """An object: one geometry beside its keys, or several under `shapes`."""
+
+    name: Name
+    pose: Pose = Field(default_factory=Pose)
+    static: bool = Field(False, description="Fixed in the world.")
+    box: BoxSpec | None = None
+    cylinder: CylinderSpec | None = None
+    sphere: SphereSpec | None = None
+    capsule: CapsuleSpec | None = None
+    plane: PlaneSpec | None = None
+    mesh: MeshSpec | None = None
+    shapes: tuple[ShapeSpec, ...] = ()
+    mass: Mass | None = Field(None, description="[kg]; default from the volume at 1000 kg/m^3.")
+    center_of_mass: Xyz = (0.0, 0.0, 0.0)
+    inertia: InertiaSpec | None = Field(None, description="Default: of the solid shape.")
+    friction: Annotated[float, Field(ge=0)] | FrictionSpec | None = None
+    color: Color | None = None
+    in_: Literal["planning", "simulation", "both"] = Field(
+        "both", alias="in", description="Who knows it: the planning scene, the physics, or both."
+    )
+    replace: bool = Field(False, description="In `objects`: replaces the world's object so named.")
+
+    @model_validator(mode="after")
+    def _some_shape(self) -> ObjectSpec:
+        kinds = ("box", "cylinder", "sphere", "capsule", "plane", "mesh")
+        given = [kind for kind in kinds if getattr(self, kind) is not None]
+        if len(given) > 1 or bool(given) == bool(self.shapes):
+            raise ValueError(f"an object is exactly one of {', '.join(kinds)}, or several `shapes`")
+        return self
+
+
+class LightSpec(SpecModel):
+    """A directional light."""
+
+    direction: tuple[float, float, float] = (-0.5, 0.1, -0.9)
+    diffuse: Color = (0.8, 0.8, 0.8, 1.0)
+    casts_shadow: bool = True
+
+
+class PhysicsSpec(SpecModel):
+    """Of the simulation."""
+
+    timestep: Annotated[PositiveDuration, Field(le=0.02)] = 0.002
+    gravity: tuple[Length, Length, Length] = (0.0, 0.0, -9.8)
+
+
+class WorldSpec(SpecModel):
+    """A world file."""
+
+    world: Name
+    description: str = ""
+    objects: tuple[ObjectSpec, ...] = ()
+    lights: tuple[LightSpec, ...] = ()
+    physics: PhysicsSpec = Field(default_factory=PhysicsSpec)

@@ -1,0 +1,1 @@
+"""Many scenarios, each in a process of its own."""
