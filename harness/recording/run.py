@@ -77,6 +77,8 @@ class ObjectRecord:
 
     Attributes:
         present: Intervals [(from, to)] of simulation time in which it was in the scene [s].
+        pose: T_world_object when it was added (xyz, quat wxyz); empty when unknown. Objects of the
+            planning scene alone are not recorded and stand there.
         represented_by: Planning object that stands for it while attached, if any did.
     """
 
@@ -86,6 +88,7 @@ class ObjectRecord:
     in_simulation: bool
     shapes: tuple[Shape, ...]
     present: tuple[tuple[float, float], ...]
+    pose: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
