@@ -32,7 +32,13 @@ class JointRecord:
 
 @dataclass(frozen=True)
 class GripperRecord:
-    """Which links make up the finger sides, and the joint that closes them."""
+    """Which links make up the finger sides, and the joint that closes them.
+
+    Attributes:
+        sides: Links of each finger side, by side name.
+        widths: Rows (joint position, gap between the pads [m]).
+        palm_link: The link that carries the fingers; empty if unknown.
+    """
 
     group: str
     joint: str
@@ -40,6 +46,7 @@ class GripperRecord:
     open_position: float
     closed_position: float
     widths: tuple[tuple[float, float], ...] = ()
+    palm_link: str = ""
 
 
 @dataclass(frozen=True)
@@ -54,6 +61,7 @@ class RobotRecord:
         link_visuals: Shapes for pictures, by link.
         urdf: The composed URDF.
         srdf: The composed SRDF.
+        static_link_poses: T_world_link of `static_links` (xyz, quat wxyz).
     """
 
     name: str
@@ -69,6 +77,7 @@ class RobotRecord:
     link_visuals: Mapping[str, tuple[Shape, ...]] = field(default_factory=dict)
     urdf: str = ""
     srdf: str = ""
+    static_link_poses: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -79,7 +88,7 @@ class ObjectRecord:
         present: Intervals [(from, to)] of simulation time in which it was in the scene [s].
         pose: T_world_object when it was added (xyz, quat wxyz); empty when unknown. Objects of the
             planning scene alone are not recorded and stand there.
-        represented_by: Planning object that stands for it while attached, if any did.
+        mass: [kg]; NaN when unknown.
     """
 
     name: str
@@ -89,6 +98,7 @@ class ObjectRecord:
     shapes: tuple[Shape, ...]
     present: tuple[tuple[float, float], ...]
     pose: tuple[float, ...] = ()
+    mass: float = float("nan")
 
 
 @dataclass(frozen=True)
