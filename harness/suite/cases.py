@@ -1,0 +1,179 @@
+"""Run many cases, each in a process of its own or all in this one, and say what each came to."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+import traceback
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from harness.reporting.result import CaseResult, ProgressEvent
+from harness.suite.environment import use_one_thread
+from harness.suite.warm import Ended, Heard, WarmServer
+
+MODULES = ("harness.session", "mujoco", "pinocchio", "coal", "ompl.base", "toppra")
+"""What the fork server imports: everything that a run would import."""
+
+HARD_CAP_SECONDS = 600.0
+"""Wall time after which a case ends as an error, whatever it is doing; HARNESS_HARD_CAP sets it."""
+
+
+LONGEST_WAIT = 60.0  # [s], then deadlines are looked at again
+
+
+@dataclass(frozen=True)
+class CaseJob:
+    """One case to be run.
+
+    Attributes:
+        file: As the user names it.
+        overrides: Dotted path in the file -> new value, as YAML text.
+        seed: Instead of the file's.
+        report_dir: Where its report goes; None writes none.
+        stills: Whether the report gets a picture of every step.
+    """
+
+    file: Path
+    overrides: Mapping[str, str] = field(default_factory=dict[str, str])
+    seed: int | None = None
+    report_dir: Path | None = None
+    stills: bool = True
+
+
+Function = Callable[[CaseJob, Callable[[ProgressEvent], None]], CaseResult]
+Watcher = Callable[[int, ProgressEvent], None]
+
+
+def nobody_watches(_index: int, _event: ProgressEvent) -> None:
+    """Take no notice of progress."""
+
+
+def run_case(job: CaseJob, notify: Callable[[ProgressEvent], None]) -> CaseResult:
+    """Run a case in this process."""
+    use_one_thread()
+    from harness import session
+
+    return session.run_case(
+        job.file,
+        overrides=job.overrides,
+        seed=job.seed,
+        report_dir=job.report_dir,
+        stills=job.stills,
+        on_progress=notify,
+    )
+
+
+def run_here(
+    jobs: Sequence[CaseJob], *, watch: Watcher = nobody_watches, function: Function = run_case
+) -> Iterator[tuple[int, CaseResult]]:
+    """Run cases in this process, one after the other; for debuggers: nothing contains a crash."""
+    for index, job in enumerate(jobs):
+        try:
+            result = function(job, lambda event, index=index: watch(index, event))
+        except Exception:  # noqa: BLE001 - whatever breaks is this case's outcome
+            result = error_result(job, traceback.format_exc())
+        yield index, result
+
+
+def run_isolated(
+    jobs: Sequence[CaseJob],
+    server: WarmServer,
+    *,
+    workers: int = 1,
+    hard_cap: float | None = None,
+    watch: Watcher = nobody_watches,
+    function: Function = run_case,
+) -> Iterator[tuple[int, CaseResult]]:
+    """Run every case in its own forked process, `workers` side by side.
+
+    Args:
+        jobs: What to run, in this order.
+        server: Forks the processes.
+        workers: How many run at the same time.
+        hard_cap: Wall seconds a case may take before it is ended as an error.
+        watch: Hears (index, event) of running cases.
+        function: What a child calls; importable there by its name.
+
+    Yields:
+        (index into `jobs`, result) in the order in which cases end.
+
+    Raises:
+        ServerStartError: The modules of a run cannot be imported.
+    """
+    cap = hard_cap_seconds() if hard_cap is None else hard_cap
+    waiting = list(enumerate(jobs))[::-1]
+    running: dict[int, _Running] = {}
+    server.open()
+    while waiting or running:
+        while waiting and len(running) < workers:
+            index, job = waiting.pop()
+            number = server.start(function, job)
+            running[number] = _Running(index, job, time.monotonic() + cap)
+        patience = min(case.deadline for case in running.values()) - time.monotonic()
+        for event in server.wait(min(max(0.0, patience), LONGEST_WAIT)):
+            case = running[event.job]
+            match event:
+                case Heard(message=message):
+                    case.last = message
+                    watch(case.index, message)
+                case Ended():
+                    del running[event.job]
+                    yield case.index, _result(case, event, cap)
+        for number, case in running.items():
+            if time.monotonic() >= case.deadline and not case.is_over_cap:
+                case.is_over_cap, case.deadline = True, float("inf")
+                server.kill(number)
+
+
+def hard_cap_seconds() -> float:
+    """The cap in force when nobody names one."""
+    return float(os.environ.get("HARNESS_HARD_CAP", HARD_CAP_SECONDS))
+
+
+@dataclass
+class _Running:
+    index: int
+    job: CaseJob
+    deadline: float
+    is_over_cap: bool = False
+    last: ProgressEvent | None = None
+
+
+def _result(case: _Running, ended: Ended, cap: float) -> CaseResult:
+    if isinstance(ended.result, CaseResult) and ended.code == 0:
+        return ended.result
+    at = f" during {describe(case.last)}" if case.last else ""
+    printed = f"\nIt had printed:\n{ended.log.rstrip()}" if ended.log.strip() else ""
+    if case.is_over_cap:
+        why = f"no end after {cap:g} s of wall time{at}; stopped by the hard cap{printed}"
+    elif ended.traceback:
+        why = f"{ended.traceback.rstrip()}{printed}"
+    elif ended.code is None:
+        why = f"the fork server, or its connection to this case, ended{at}{printed}"
+    elif ended.code < 0:
+        number = -ended.code
+        why = (
+            f"its process was ended by {signal.Signals(number).name} (signal {number}){at}{printed}"
+        )
+    else:
+        why = f"its process ended with code {ended.code} and no result{at}{printed}"
+    return error_result(case.job, why)
+
+
+def describe(event: ProgressEvent) -> str:
+    """Where a case stood, in words."""
+    if event.kind in {"step_started", "step_finished"}:
+        after = "after " if event.kind == "step_finished" else ""
+        return f"{after}step {event.index + 1}/{event.total}: {event.step}"
+    return {"compiled": "the first step", "judged": "the report", "written": "the end"}[event.kind]
+
+
+def error_result(job: CaseJob, message: str) -> CaseResult:
+    """The outcome of a case in which the harness, or a native library, broke."""
+    title = job.file.name.removesuffix(".scenario.yaml")
+    return CaseResult(
+        str(job.file), "", title, "error", seed=job.seed or 0, message=message.rstrip()
+    )

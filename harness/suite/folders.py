@@ -1,0 +1,37 @@
+"""Where each case's report goes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from harness.core.resources import data_folder
+from harness.suite.discovery import SUFFIX
+
+
+def report_folders(files: Sequence[Path], root: Path) -> list[Path]:
+    """The report folder of each file, no two the same and none inside another.
+
+    It repeats the file's path, without its suffix, below the bundled scenarios or else below the
+    working directory; of a file outside both, the whole path.
+    """
+    folders: list[Path] = []
+    for file in files:
+        folder = root / _place(file)
+        number = 2
+        while folder in folders:
+            folder = root / f"{_place(file)}-{number}"
+            number += 1
+        folders.append(folder)
+    return folders
+
+
+def _place(file: Path) -> Path:
+    absolute = file.resolve()
+    stem = absolute.name.removesuffix(SUFFIX).removesuffix(".yaml")
+    if (absolute.parent / stem).is_dir():
+        stem = absolute.name.removesuffix(".yaml")  # the plain name is the folder's beside it
+    for base in (data_folder("scenarios").resolve(), Path.cwd().resolve()):
+        if absolute.is_relative_to(base):
+            return absolute.parent.relative_to(base) / stem
+    return absolute.parent.relative_to(absolute.anchor) / stem

@@ -1,0 +1,16 @@
+"""What a suite comes to: the exit code of its results."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from harness.recording.run import Outcome
+
+EXIT_CODES: dict[Outcome, int] = {"passed": 0, "failed": 1, "invalid": 2, "error": 3}
+USAGE_EXIT_CODE = 2
+INTERRUPTED_EXIT_CODE = 130
+
+
+def exit_code(outcomes: Iterable[Outcome]) -> int:
+    """The gravest outcome's code; 0 when there is none."""
+    return max((EXIT_CODES[outcome] for outcome in outcomes), default=0)

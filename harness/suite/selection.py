@@ -1,0 +1,64 @@
+"""`-k EXPR`: which scenarios an expression of words selects, as in pytest."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from harness.suite.discovery import UsageError
+from harness.suite.header import Header
+
+_TOKEN = re.compile(r"\s*(?:([()])|([^\s()]+))")
+_Part = Callable[[str], bool]
+
+
+def selects(expression: str, file: Path, header: Header) -> bool:
+    """Whether an expression holds for a scenario.
+
+    A word holds if the file's path, the title or a tag contains it, in any case; `and`, `or`,
+    `not` and brackets as in Python.
+
+    Raises:
+        UsageError: The expression cannot be read.
+    """
+    text = "\n".join([file.as_posix(), header.title, *header.tags]).lower()
+    parser = _Parser(expression)
+    value = parser.any_of(text)
+    if parser.tokens:
+        raise UsageError(f"-k '{expression}': cannot read it from '{parser.tokens[0]}' on")
+    return value
+
+
+class _Parser:
+    """Recursive descent; every part is read, whatever came before it, so that mistakes show."""
+
+    def __init__(self, expression: str) -> None:
+        self.expression = expression
+        self.tokens = ["".join(pair) for pair in _TOKEN.findall(expression)]
+
+    def any_of(self, text: str) -> bool:
+        return any(self._joined("or", self._all_of, text))
+
+    def _all_of(self, text: str) -> bool:
+        return all(self._joined("and", self._one, text))
+
+    def _joined(self, word: str, part: _Part, text: str) -> Sequence[bool]:
+        values = [part(text)]
+        while self.tokens[:1] == [word]:
+            self.tokens.pop(0)
+            values.append(part(text))
+        return values
+
+    def _one(self, text: str) -> bool:
+        token = self.tokens.pop(0) if self.tokens else ""
+        if token == "not":
+            return not self._one(text)
+        if token == "(":
+            value = self.any_of(text)
+            if not self.tokens or self.tokens.pop(0) != ")":
+                raise UsageError(f"-k '{self.expression}': a bracket is not closed")
+            return value
+        if token in {"", ")", "and", "or"}:
+            raise UsageError(f"-k '{self.expression}': a word is missing before '{token}'")
+        return token.lower() in text

@@ -1,0 +1,72 @@
+"""What the suite's tests let children do instead of running a scenario."""
+
+import ctypes
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from harness.reporting.result import CaseResult, ProgressEvent
+
+
+def started(job):
+    return ProgressEvent("step_started", 2, 5, f"move_to {job.file.stem}", "", 1.0, "")
+
+
+def passes(job, notify):
+    notify(started(job))
+    return CaseResult(str(job.file), "", "t", "passed", digest=f"pid {os.getpid()}")
+
+
+def passes_after_its_seed_in_ms(job, _notify):
+    time.sleep(job.seed / 1000)
+    return CaseResult(str(job.file), "", "t", "passed")
+
+
+def raises(_job, _notify):
+    raise ZeroDivisionError("one by nothing")
+
+
+def segfaults(job, notify):
+    notify(started(job))
+    print("last words", flush=True)
+    ctypes.string_at(0)
+
+
+def kills_itself(_job, _notify):
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def leaves_without_a_result(_job, _notify):
+    os._exit(0)
+
+
+def never_returns_from_native_code(job, notify):
+    notify(started(job))
+    re.match(r"(a+)+$", "a" * 80 + "b")
+
+
+def leaves_a_process_behind(job, _notify):
+    child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+    Path(job.file).write_text(str(child.pid))
+    return CaseResult(str(job.file), "", "t", "passed")
+
+
+def tells_its_pid_and_sleeps(job, _notify):
+    Path(job.file).write_text(str(os.getpid()))
+    time.sleep(600)
+
+
+def prints(job, _notify):
+    os.system("echo from a native library")
+    print("from Python")
+    return CaseResult(str(job.file), "", sys.stdin.read(), "passed")
+
+
+def counts_threads(job, _notify):
+    threads = re.search(r"Threads:\s+(\d+)", Path("/proc/self/status").read_text())
+    server = re.search(r"Threads:\s+(\d+)", Path(f"/proc/{os.getppid()}/status").read_text())
+    return CaseResult(str(job.file), "", f"{threads[1]} {server[1]}", "passed")

@@ -1,0 +1,192 @@
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from harness.core.errors import HarnessError
+from harness.suite.cases import CaseJob, run_here, run_isolated
+from harness.suite.warm import ServerStartError, WarmServer
+from tests.suite import jobs
+
+LIGHT = ("json",)
+
+
+@pytest.fixture
+def server():
+    with WarmServer(LIGHT) as server:
+        yield server
+
+
+def outcome(server, function, file="a.scenario.yaml", **options):
+    [(_index, result)] = run_isolated([CaseJob(Path(file))], server, function=function, **options)
+    return result
+
+
+def is_alive(pid):
+    status = Path(f"/proc/{pid}/status")
+    return status.exists() and "State:\tZ" not in status.read_text()
+
+
+def wait_until_gone(pid, seconds=10.0):
+    end = time.monotonic() + seconds
+    while is_alive(pid) and time.monotonic() < end:
+        time.sleep(0.02)
+    return not is_alive(pid)
+
+
+def wait_for_text(file, seconds=10.0):
+    end = time.monotonic() + seconds
+    while not (file.exists() and file.read_text()) and time.monotonic() < end:
+        time.sleep(0.02)
+    return file.read_text()
+
+
+def test_every_case_has_a_process_of_its_own(server):
+    cases = [CaseJob(Path(f"{name}.scenario.yaml")) for name in "abc"]
+    digests = {
+        result.digest for _index, result in run_isolated(cases, server, function=jobs.passes)
+    }
+    assert len(digests) == 3
+    assert f"pid {os.getpid()}" not in digests
+
+
+def test_a_case_in_this_process_tells_the_same(server):
+    def without_pid(results):
+        return [(index, result.file, result.outcome) for index, result in results]
+
+    cases = [CaseJob(Path("a.scenario.yaml"))]
+    here = without_pid(run_here(cases, function=jobs.passes))
+    assert here == without_pid(run_isolated(cases, server, function=jobs.passes))
+
+
+def test_progress_of_a_running_case_is_heard(server):
+    heard = []
+    outcome(server, jobs.passes, watch=lambda index, event: heard.append((index, event.step)))
+    assert heard == [(0, "move_to a.scenario")]
+
+
+def test_results_come_as_cases_end_and_carry_their_index(server):
+    cases = [CaseJob(Path("a"), seed=700), CaseJob(Path("b"), seed=0), CaseJob(Path("c"), seed=0)]
+    function = jobs.passes_after_its_seed_in_ms
+    one_by_one = [index for index, _ in run_isolated(cases, server, function=function)]
+    side_by_side = [index for index, _ in run_isolated(cases, server, workers=2, function=function)]
+    assert one_by_one == [0, 1, 2]
+    assert side_by_side == [1, 2, 0]
+
+
+def test_an_exception_is_an_error_with_its_traceback(server):
+    result = outcome(server, jobs.raises)
+    assert result.outcome == "error"
+    assert "ZeroDivisionError: one by nothing" in result.message
+    [(_index, here)] = run_here([CaseJob(Path("a"))], function=jobs.raises)
+    assert here.outcome == "error"
+    assert "ZeroDivisionError: one by nothing" in here.message
+
+
+def test_a_crash_is_an_error_that_names_signal_step_and_last_words(server):
+    result = outcome(server, jobs.segfaults)
+    assert result.outcome == "error"
+    first_line = result.message.splitlines()[0]
+    assert first_line == (
+        "its process was ended by SIGSEGV (signal 11) during step 3/5: move_to a.scenario"
+    )
+    assert "last words" in result.message
+    assert "jobs.py" in result.message  # the Python line that called into the native code
+
+
+def test_a_killed_case_is_an_error_and_the_others_go_on(server):
+    functions = {"a": jobs.kills_itself, "b": jobs.passes}
+    results = {name: outcome(server, function) for name, function in functions.items()}
+    assert results["a"].outcome == "error"
+    assert "SIGKILL (signal 9)" in results["a"].message
+    assert results["b"].outcome == "passed"
+
+
+def test_a_process_that_leaves_without_a_result_is_an_error(server):
+    assert outcome(server, jobs.leaves_without_a_result).outcome == "error"
+
+
+def test_an_endless_native_call_ends_as_an_error_at_the_hard_cap(server):
+    start = time.monotonic()
+    result = outcome(server, jobs.never_returns_from_native_code, hard_cap=0.5)
+    assert time.monotonic() - start < 10
+    assert result.outcome == "error"
+    assert result.message.startswith(
+        "no end after 0.5 s of wall time during step 3/5: move_to a.scenario; stopped by the hard cap"
+    )
+
+
+def test_the_hard_cap_can_come_from_the_environment(server, monkeypatch):
+    monkeypatch.setenv("HARNESS_HARD_CAP", "0.25")
+    assert "after 0.25 s" in outcome(server, jobs.never_returns_from_native_code).message
+
+
+def test_what_a_case_leaves_behind_ends_with_it(server, tmp_path):
+    file = tmp_path / "pid"
+    assert outcome(server, jobs.leaves_a_process_behind, file=file).outcome == "passed"
+    assert wait_until_gone(int(file.read_text()))
+
+
+def test_what_a_case_prints_stays_out_of_this_process(server, capfd):
+    result = outcome(server, jobs.prints)
+    assert result.outcome == "passed"
+    assert result.title == ""  # it had nothing to read either
+    assert capfd.readouterr() == ("", "")
+
+
+def test_closing_the_server_ends_running_cases(tmp_path):
+    file = tmp_path / "pid"
+    with WarmServer(LIGHT) as server:
+        server.start(jobs.tells_its_pid_and_sleeps, CaseJob(file))
+        pid = int(wait_for_text(file))
+        assert is_alive(pid)
+    assert wait_until_gone(pid)
+
+
+def test_a_caller_that_is_killed_leaves_no_process(tmp_path):
+    file = tmp_path / "pid"
+    code = (
+        "import sys; from pathlib import Path; from tests.suite import jobs\n"
+        "from harness.suite.cases import *\n"
+        "server = WarmServer(('json',))\n"
+        "list(run_isolated([CaseJob(Path(sys.argv[1]))], server,"
+        " function=jobs.tells_its_pid_and_sleeps))\n"
+    )
+    root = Path(__file__).parents[2]
+    caller = subprocess.Popen([sys.executable, "-c", code, str(file)], cwd=root)
+    pid = int(wait_for_text(file))
+    caller.send_signal(signal.SIGKILL)
+    caller.wait()
+    assert wait_until_gone(pid)
+
+
+def test_a_server_that_dies_makes_its_cases_errors_and_leaves_no_process(server, tmp_path):
+    file = tmp_path / "pid"
+    number = server.start(jobs.tells_its_pid_and_sleeps, CaseJob(file))
+    pid = int(wait_for_text(file))
+    os.kill(server.pid, signal.SIGKILL)
+    ended = []
+    while not ended:
+        ended = list(server.wait(10))
+    assert (ended[0].job, ended[0].code) == (number, None)
+    assert wait_until_gone(pid)
+    assert outcome(server, jobs.passes).outcome == "passed"  # on a new server
+
+
+def test_a_missing_module_is_told_by_name():
+    with (
+        WarmServer(("json", "no_such_module_at_all")) as server,
+        pytest.raises(ServerStartError, match="No module named 'no_such_module_at_all'") as caught,
+    ):
+        outcome(server, jobs.passes)
+    assert isinstance(caught.value, HarnessError)
+
+
+def test_server_and_child_have_one_thread_with_every_solver_imported():
+    modules = ("numpy", "mujoco", "pinocchio", "coal", "ompl.base")
+    with WarmServer(modules) as server:
+        assert outcome(server, jobs.counts_threads).title == "1 1"
