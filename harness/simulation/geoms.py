@@ -1,0 +1,103 @@
+"""MuJoCo geoms of the program's shapes, and contact parameters that every surface shares."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import mujoco
+
+from harness.core.errors import RobotError
+from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Shape, Sphere
+from harness.core.world import Friction
+
+CONTACT_SOLREF = (0.006, 1.0)
+"""Time constant [s] and damping ratio of a contact: three physics steps, critically damped."""
+
+CONTACT_SOLIMP = (0.95, 0.99, 0.001, 0.5, 2.0)
+"""Impedance of a contact: at touch, when pressed, width of the change [m], its shape."""
+
+CONTACT_DIMENSIONS = 6
+"""Normal force, two sliding, one torsional and two rolling friction directions."""
+
+
+@dataclass(frozen=True)
+class Surfaces:
+    """Ranks surfaces so that the smaller friction of a touching pair counts.
+
+    MuJoCo takes the larger friction of a pair unless one geom has a higher `priority`; then that
+    geom's values count. So the most slippery surface gets the highest priority.
+    """
+
+    ranked: tuple[Friction, ...]
+
+    @classmethod
+    def of(cls, frictions: Iterable[Friction]) -> Surfaces:
+        """Rank all surfaces of a model, the roughest first."""
+        return cls(tuple(sorted(set(frictions), key=_roughness, reverse=True)))
+
+    def priority(self, friction: Friction) -> int:
+        """Contact priority of a surface."""
+        return self.ranked.index(friction)
+
+
+def _roughness(friction: Friction) -> tuple[float, float, float]:
+    return friction.sliding, friction.torsional, friction.rolling
+
+
+def add_collision_geom(
+    spec: mujoco.MjSpec,
+    body: mujoco.MjsBody,
+    shape: Shape,
+    friction: Friction,
+    surfaces: Surfaces,
+    *,
+    collides: bool = True,
+) -> None:
+    """Put a massless contact geom on a body; without `collides` it touches nothing yet."""
+    kind, size = geom_kind_and_size(shape.geometry)
+    geom = body.add_geom(type=kind, size=size)
+    geom.pos = shape.pose.translation
+    geom.quat = shape.pose.quat_wxyz
+    if isinstance(shape.geometry, Mesh):
+        geom.meshname = add_mesh(spec, shape.geometry)
+    geom.mass = 0.0
+    geom.rgba = shape.rgba
+    geom.friction = _roughness(friction)
+    geom.priority = surfaces.priority(friction)
+    geom.condim = CONTACT_DIMENSIONS
+    geom.solref = CONTACT_SOLREF
+    geom.solimp = CONTACT_SOLIMP
+    geom.contype = geom.conaffinity = int(collides)
+
+
+def geom_kind_and_size(geometry: Geometry) -> tuple[mujoco.mjtGeom, list[float]]:
+    """MuJoCo's geom type and its `size`: half lengths, radius first."""
+    match geometry:
+        case Box(size=(x, y, z)):
+            return mujoco.mjtGeom.mjGEOM_BOX, [x / 2, y / 2, z / 2]
+        case Cylinder(radius=radius, length=length):
+            return mujoco.mjtGeom.mjGEOM_CYLINDER, [radius, length / 2, 0.0]
+        case Sphere(radius=radius):
+            return mujoco.mjtGeom.mjGEOM_SPHERE, [radius, 0.0, 0.0]
+        case Capsule(radius=radius, length=length):
+            return mujoco.mjtGeom.mjGEOM_CAPSULE, [radius, length / 2, 0.0]
+        case Plane():
+            return mujoco.mjtGeom.mjGEOM_PLANE, [0.0, 0.0, 0.01]
+        case Mesh():
+            return mujoco.mjtGeom.mjGEOM_MESH, [0.0, 0.0, 0.0]
+
+
+def add_mesh(spec: mujoco.MjSpec, geometry: Mesh) -> str:
+    """Register a mesh file once, as its convex hull collides; returns the asset's name.
+
+    Raises:
+        RobotError: The file is of a kind that MuJoCo cannot read.
+    """
+    if geometry.path.suffix.lower() not in {".stl", ".obj", ".msh"}:
+        raise RobotError(f"{geometry.path.name}: collision meshes must be STL or OBJ files")
+    name = f"{geometry.path}|{geometry.scale}"
+    if spec.mesh(name) is None:
+        mesh = spec.add_mesh(name=name, file=str(geometry.path), scale=geometry.scale)
+        mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
+    return name

@@ -1,0 +1,130 @@
+"""Closes and opens a gripper like a GripperCommand action: until it arrives or stalls."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from harness.core.types import FloatArray, IntArray
+from harness.ports import GripperResult
+from harness.robot.description import Gripper, RobotDescription
+from harness.simulation.model import PhysicsModel
+from harness.simulation.recording import Recording
+from harness.simulation.set_points import SetPoints, ramp
+
+CLOSING_SPEED = 0.075
+"""Rate at which the pad gap changes [m/s]; RH-P12-RN(A) specification table, ROBOTIS e-manual."""
+
+GOAL_TOLERANCE = 0.004
+"""Part of its range by which the joint may miss its position and still have reached it."""
+
+STALL_TIME = 0.15
+"""How long the joint must stand still to count as stalled [s]."""
+
+STALL_SPEED = 0.02
+"""Below this part of its closing speed the joint stands still."""
+
+CHECK_EVERY = 10
+"""Samples between looks at whether it arrived or stalled."""
+
+
+class Servoed(Protocol):
+    """The part of the simulator that a gripper needs."""
+
+    physics: PhysicsModel
+    description: RobotDescription
+
+    def joint_positions(self) -> FloatArray: ...
+    def commanded_positions(self) -> FloatArray: ...
+    def whole(self, points: SetPoints, columns: IntArray) -> SetPoints: ...
+    def follow(self, whole: SetPoints, begin: int, end: int) -> None: ...
+    def command(self, positions: FloatArray) -> None: ...
+    def hold_samples(self, count: int) -> None: ...
+    def limit_effort(self, actuator: int, effort: float) -> None: ...
+
+
+class GripperDrive:
+    """The gripper's joint under a force-limited servo; after a stall it keeps squeezing."""
+
+    def __init__(self, simulator: Servoed, recording: Recording) -> None:
+        gripper = simulator.description.gripper
+        assert gripper is not None
+        self._simulator = simulator
+        self._recording = recording
+        self._gripper = gripper
+        self._joint = simulator.description.joint_index[gripper.joint]
+        self._actuator = int(np.searchsorted(simulator.physics.actuated, self._joint))
+        self._range = abs(gripper.closed_position - gripper.open_position)
+        self._speed = joint_speed(simulator.description, gripper)
+        simulator.limit_effort(self._actuator, gripper.grip_effort)
+
+    def drive(self, position: float, max_effort: float, timeout: float) -> GripperResult:
+        """Move to a position under an effort limit until it arrives, stalls or runs out of time."""
+        simulator, timestep = self._simulator, self._recording.timestep
+        simulator.limit_effort(self._actuator, min(max_effort, self._gripper.max_effort))
+        acceleration = simulator.description.movable_joints[self._joint].acceleration
+        points = ramp(self._start(position), position, self._speed, acceleration, timestep)
+        whole = simulator.whole(points, np.array([self._actuator]))
+        first = self._recording.count
+        stall_samples = round(STALL_TIME / timestep)
+        begin, reached, stalled = 0, False, False
+        while (self._recording.count - first) * timestep < timeout and not (reached or stalled):
+            if begin < len(whole) - 1:
+                end = min(begin + CHECK_EVERY, len(whole) - 1)
+                simulator.follow(whole, begin, end)
+                begin = end
+            else:
+                simulator.command(whole.positions[-1])
+                simulator.hold_samples(CHECK_EVERY)
+                reached = self._miss(position) <= GOAL_TOLERANCE * self._range
+            if not reached and self._recording.count - first >= stall_samples:
+                speeds = self._recording.joint_velocities(self._recording.count - stall_samples)
+                slow = np.abs(speeds[:, self._joint]) < STALL_SPEED * self._speed
+                stalled = bool(slow.all())
+        simulator.command(whole.positions[-1])
+        reached = self._miss(position) <= GOAL_TOLERANCE * self._range
+        return GripperResult(
+            position=float(simulator.joint_positions()[self._joint]),
+            effort=float(self._recording.actuator_efforts()[self._actuator]),
+            stalled=stalled and not reached,
+            reached_goal=reached,
+            contacts=self._contacts(),
+        )
+
+    def _miss(self, position: float) -> float:
+        return abs(float(self._simulator.joint_positions()[self._joint]) - position)
+
+    def _start(self, position: float) -> float:
+        """Where the set point starts: at the last command, or where the joint is when that lies behind it."""
+        measured = float(self._simulator.joint_positions()[self._joint])
+        commanded = float(self._simulator.commanded_positions()[self._joint])
+        turns_back = (position - measured) * (commanded - measured) < 0
+        return measured if turns_back else commanded
+
+    def _contacts(self) -> dict[str, tuple[str, ...]]:
+        last = self._recording.count
+        touching = self._recording.contacts(last - 1, last)
+        objects = self._simulator.physics.objects
+        return {
+            side: tuple(
+                sorted(
+                    {
+                        second
+                        for (first, second), force in touching.items()
+                        if first in links and second in objects and force[0] > 0
+                    }
+                )
+            )
+            for side, links in self._gripper.sides.items()
+        }
+
+
+def joint_speed(description: RobotDescription, gripper: Gripper) -> float:
+    """Speed of the gripper's joint that changes the pad gap at CLOSING_SPEED, within its limit."""
+    limit = description.joint_by_name[gripper.joint].velocity
+    positions, gaps = gripper.widths[:, 0], gripper.widths[:, 1]
+    if len(positions) < 2:
+        return min(limit, abs(gripper.closed_position - gripper.open_position))
+    steepest = float(np.abs(np.diff(gaps) / np.diff(positions)).max())
+    return min(limit, CLOSING_SPEED / steepest)

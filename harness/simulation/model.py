@@ -1,0 +1,170 @@
+"""The compiled physics: robot, servos, objects and sensors, and where each stands in MuJoCo's arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from harness.core.types import FloatArray, IntArray
+from harness.core.world import WorldObject
+from harness.robot.description import RobotDescription
+from harness.simulation.geoms import Surfaces
+from harness.simulation.robot_mjcf import add_robot, joint_range, link_friction
+from harness.simulation.servo import Servos, add_servos, design_servos
+from harness.simulation.world_mjcf import add_object, parking_pose
+
+
+@dataclass(frozen=True, eq=False)
+class ObjectPlace:
+    """Where an object stands in the model.
+
+    Attributes:
+        body: Body id.
+        geoms: Slice of its geoms.
+        qpos: First of its seven position numbers; -1 when static.
+        dof: First of its six velocity numbers; -1 when static.
+        parking: Pose while absent, as xyz and quat wxyz, shape (7,).
+    """
+
+    obj: WorldObject
+    body: int
+    geoms: slice
+    qpos: int
+    dof: int
+    parking: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class PhysicsModel:
+    """A MuJoCo model and the places in it.
+
+    Attributes:
+        model: The compiled model; presence of objects and force limits are changed in place.
+        description: The robot.
+        servos: One for each actuated joint; actuator ids are their places.
+        qpos: Of each movable joint, description order.
+        dof: Of each movable joint, description order.
+        actuated: Places of the actuated joints in description order.
+        ranges: Limits of the movable joints as simulated, shape (n, 2).
+        objects: Simulated objects by name, in order.
+        frames: Observed links; `frame_sensors` holds 7 numbers for each, after the TCP's 7.
+        body_names: By body id.
+        robot_bodies: Whether a body is a link of the robot, by body id.
+    """
+
+    model: mujoco.MjModel
+    description: RobotDescription
+    servos: Servos
+    qpos: IntArray
+    dof: IntArray
+    actuated: IntArray
+    ranges: FloatArray
+    objects: Mapping[str, ObjectPlace]
+    frames: tuple[str, ...]
+    body_names: tuple[str, ...]
+    robot_bodies: frozenset[int]
+
+
+def build_model(
+    description: RobotDescription,
+    objects: Sequence[WorldObject],
+    present: Collection[str],
+    *,
+    gravity: tuple[float, float, float],
+    timestep: float,
+    frames: Sequence[str] = (),
+) -> PhysicsModel:
+    """Compile the physics of a scenario.
+
+    Args:
+        description: The robot.
+        objects: Everything that stands in the world at any time; planning-only objects are left out.
+        present: Names of the objects that are there at the start.
+        gravity: [m/s^2].
+        timestep: [s].
+        frames: Links whose poses are recorded besides the TCP's.
+    """
+    simulated = [obj for obj in objects if obj.in_simulation]
+    surfaces = Surfaces.of(
+        [link_friction(description, link.name) for link in description.links]
+        + [obj.friction for obj in simulated]
+    )
+    servos = design_servos(description, timestep)
+    spec = mujoco.MjSpec()
+    spec.compiler.degree = False
+    option = spec.option
+    option.timestep = timestep
+    option.gravity = gravity
+    option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+    option.impratio = 10.0
+    option.disableflags = mujoco.mjtDisableBit.mjDSBL_AUTORESET
+    add_robot(spec, description, surfaces)
+    add_servos(spec, description, servos)
+    for index, obj in enumerate(simulated):
+        is_present = obj.name in present
+        pose = obj.pose if is_present else parking_pose(index)
+        add_object(spec, obj, pose, surfaces, is_present=is_present)
+    for frame in (description.tcp_link, *frames):
+        _add_frame_sensors(spec, frame)
+    for joint in description.movable_joints:
+        if joint.mimic is None:
+            spec.add_sensor(
+                type=mujoco.mjtSensor.mjSENS_ACTUATORFRC,
+                objtype=mujoco.mjtObj.mjOBJ_ACTUATOR,
+                objname=joint.name,
+            )
+    model = spec.compile()
+    for obj in simulated:
+        if not obj.is_static and obj.name in present:
+            model.body_gravcomp[model.body(obj.name).id] = 0.0
+    return _places(model, description, servos, simulated, tuple(frames))
+
+
+def _add_frame_sensors(spec: mujoco.MjSpec, link: str) -> None:
+    for kind in (mujoco.mjtSensor.mjSENS_FRAMEPOS, mujoco.mjtSensor.mjSENS_FRAMEQUAT):
+        spec.add_sensor(type=kind, objtype=mujoco.mjtObj.mjOBJ_XBODY, objname=link)
+
+
+def _places(
+    model: mujoco.MjModel,
+    description: RobotDescription,
+    servos: Servos,
+    simulated: Sequence[WorldObject],
+    frames: tuple[str, ...],
+) -> PhysicsModel:
+    joints = [model.joint(name) for name in description.joint_names]
+    objects: dict[str, ObjectPlace] = {}
+    for index, obj in enumerate(simulated):
+        body = model.body(obj.name)
+        first = int(body.geomadr[0])
+        joint = None if obj.is_static else model.joint(obj.name)
+        objects[obj.name] = ObjectPlace(
+            obj,
+            int(body.id),
+            slice(first, first + int(body.geomnum[0])) if first >= 0 else slice(0, 0),
+            -1 if joint is None else int(joint.qposadr[0]),
+            -1 if joint is None else int(joint.dofadr[0]),
+            parking_pose(index).as_vector(),
+        )
+    names = tuple(model.body(index).name for index in range(model.nbody))
+    links = set(description.link_names)
+    return PhysicsModel(
+        model,
+        description,
+        servos,
+        np.array([joint.qposadr[0] for joint in joints], dtype=np.int64),
+        np.array([joint.dofadr[0] for joint in joints], dtype=np.int64),
+        np.array(
+            [i for i, joint in enumerate(description.movable_joints) if joint.mimic is None],
+            dtype=np.int64,
+        ),
+        np.array([joint_range(description, joint) for joint in description.movable_joints]),
+        objects,
+        frames,
+        names,
+        frozenset(i for i, name in enumerate(names) if name in links and name != "world"),
+    )

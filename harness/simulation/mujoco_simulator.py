@@ -1,0 +1,289 @@
+"""The simulator port on MuJoCo: trajectories tracked by servos under effort limits, every sample kept."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+import mujoco
+import numpy as np
+
+from harness.core.errors import StepFailed
+from harness.core.spatial import SE3
+from harness.core.trajectory import JointTrajectory
+from harness.core.types import FloatArray, IntArray
+from harness.core.world import WorldObject
+from harness.ports import GripperResult
+from harness.recording.run import Signals
+from harness.robot.description import RobotDescription
+from harness.simulation.contact_report import contact_words, strongest_contacts
+from harness.simulation.gripper_drive import GripperDrive
+from harness.simulation.model import build_model
+from harness.simulation.objects import Objects
+from harness.simulation.recording import Recording, refresh
+from harness.simulation.robot_mjcf import coupling
+from harness.simulation.servo import FeedForward
+from harness.simulation.set_points import SetPoints, sample_trajectory
+
+CHECK_EVERY = 50
+"""Samples between looks at the path tolerance; the record tells the sample that broke it."""
+
+SETTLE_EVERY = 10
+"""Samples between looks at whether a goal is reached or everything is at rest."""
+
+ABORT_HOLD = 0.2
+"""Time for which an aborted arm is held where it was [s]."""
+
+
+class MujocoSimulator:
+    """Physics of one run; equal calls give equal bits, in whatever pieces time is advanced."""
+
+    def __init__(
+        self,
+        description: RobotDescription,
+        world_objects: Sequence[WorldObject],
+        present: Collection[str],
+        *,
+        gravity: tuple[float, float, float] = (0.0, 0.0, -9.8),
+        timestep: float = 0.002,
+        frames: Sequence[str] = (),
+    ) -> None:
+        """Build the model and record its start state as sample 0.
+
+        Args:
+            description: The robot, at its start state.
+            world_objects: Everything that will be in the world at any time.
+            present: Names of the objects that are there at the start.
+            gravity: [m/s^2].
+            timestep: [s].
+            frames: Links whose poses are recorded besides the TCP's.
+        """
+        self.physics = build_model(
+            description, world_objects, present, gravity=gravity, timestep=timestep, frames=frames
+        )
+        self.description = description
+        self._timestep = timestep
+        self._model = self.physics.model
+        self._data = mujoco.MjData(self._model)
+        self._data.qpos[self.physics.qpos] = description.start_positions()
+        self._coupling = coupling(description)
+        self._offsets = description.with_mimics(np.zeros(len(description.joint_names)))
+        self._feed_forward = FeedForward(description, self.physics.servos, gravity)
+        self._command = description.start_positions()[self.physics.actuated]
+        self._control = self._controls(self._still(self._command))[0]
+        self._data.ctrl[:] = self._control
+        self._recording = Recording(self.physics, self._data)
+        refresh(self._model, self._data)
+        self._recording.start(self._command)
+        self._objects = Objects(self.physics, self._data, self._recording, frozenset(present))
+        self._gripper = None if description.gripper is None else GripperDrive(self, self._recording)
+
+    @property
+    def time(self) -> float:
+        """Simulation time [s]."""
+        return (self._recording.count - 1) * self._timestep
+
+    @property
+    def sample_count(self) -> int:
+        """Samples recorded so far; the last one is the present state."""
+        return self._recording.count
+
+    def joint_positions(self) -> FloatArray:
+        """Measured, description order."""
+        return self._data.qpos[self.physics.qpos].copy()
+
+    def commanded_positions(self) -> FloatArray:
+        """Last set point, description order, mimic joints consistent."""
+        return self._coupling @ self._command + self._offsets
+
+    def object_pose(self, name: str) -> SE3:
+        """T_world_object of a simulated object, as it is now."""
+        return self._objects.pose(name)
+
+    def track(self, trajectory: JointTrajectory) -> None:
+        """Follow a trajectory, then hold its end until every joint is within the goal tolerance.
+
+        Raises:
+            StepFailed: CONTROL_FAILED; a joint left the tolerances of the controller.
+        """
+        columns = self._actuated_columns(trajectory.joint_names)
+        points = sample_trajectory(trajectory, self._timestep)
+        whole = self.whole(points, columns)
+        controls = self._controls(whole)
+        for begin in range(0, len(points) - 1, CHECK_EVERY):
+            end = min(begin + CHECK_EVERY, len(points) - 1)
+            first = self._recording.count
+            self._recording.advance(
+                controls[begin:end],
+                whole.positions[begin + 1 : end + 1],
+                whole.velocities[begin + 1 : end + 1],
+            )
+            self._command = whole.positions[end]
+            self._refuse_lag(first, points.positions[begin + 1 : end + 1], columns)
+        self.command(whole.positions[-1])
+        self._wait_for_goal(points.positions[-1], columns)
+
+    def command_gripper(
+        self, position: float, max_effort: float, *, timeout: float
+    ) -> GripperResult:
+        """Drive the gripper's joint to a position under an effort limit until it arrives or stalls."""
+        if self._gripper is None:
+            raise StepFailed("INVALID_GROUP_NAME", f"{self.description.name} has no gripper")
+        return self._gripper.drive(position, max_effort, timeout)
+
+    def hold(self, duration: float) -> None:
+        """Keep the last commands for some simulated time [s]."""
+        self.hold_samples(round(duration / self._timestep))
+
+    def settle(self, max_velocity: float, timeout: float) -> bool:
+        """Hold until joints and objects are slower than a limit [m/s, rad/s] for ten samples on end."""
+        for _ in range(max(1, int(np.ceil(timeout / self._timestep / SETTLE_EVERY)))):
+            first = self._recording.count
+            self.hold_samples(SETTLE_EVERY)
+            moving = (self._recording.joint_velocities, self._recording.object_velocities)
+            if all(np.abs(speeds(first)).max(initial=0.0) < max_velocity for speeds in moving):
+                return True
+        return False
+
+    def add_object(self, name: str, pose: SE3) -> None:
+        """Let a prepared object appear at T_world_object."""
+        self._objects.add(name, pose)
+
+    def remove_object(self, name: str) -> None:
+        """Park an object without contacts."""
+        self._objects.remove(name)
+
+    def move_object(self, name: str, pose: SE3) -> None:
+        """Set T_world_object, at rest."""
+        self._objects.move(name, pose)
+
+    def weld(self, name: str, link: str) -> None:
+        """Fix an object to a link where it stands."""
+        self._objects.weld(name, link)
+
+    def unweld(self, name: str) -> None:
+        """Undo `weld`."""
+        self._objects.unweld(name)
+
+    def finish(self) -> Signals:
+        """Everything recorded, without clearances."""
+        return self._recording.signals(self._objects.recorded_poses())
+
+    def command(self, positions: FloatArray) -> None:
+        """Set the servos to hold actuated joints at positions, shape (m,)."""
+        self._command = np.array(positions)
+        self._control = self._controls(self._still(self._command))[0]
+
+    def hold_samples(self, count: int) -> None:
+        """Hold the last commands for some samples."""
+        shape = (count, len(self._command))
+        self._recording.advance(
+            np.broadcast_to(self._control, shape),
+            np.broadcast_to(self._command, shape),
+            np.zeros(shape),
+        )
+
+    def limit_effort(self, actuator: int, effort: float) -> None:
+        """Change the force limit of one servo from now on."""
+        self._model.actuator_forcerange[actuator] = -effort, effort
+
+    def follow(self, whole: SetPoints, begin: int, end: int) -> None:
+        """Advance along set points of all actuated joints from row `begin` to row `end`."""
+        part = SetPoints(*(rows[begin : end + 1] for rows in vars(whole).values()))
+        self._recording.advance(
+            self._controls(part)[:-1], part.positions[1:], part.velocities[1:]
+        )
+        self._command = part.positions[-1]
+
+    def whole(self, points: SetPoints, columns: IntArray) -> SetPoints:
+        """Set points of all actuated joints, those outside `columns` held, shape (N, m)."""
+        shape = (len(points), len(self._command))
+        positions = np.broadcast_to(self._command, shape).copy()
+        velocities, accelerations = np.zeros(shape), np.zeros(shape)
+        positions[:, columns] = points.positions
+        velocities[:, columns] = points.velocities
+        accelerations[:, columns] = points.accelerations
+        return SetPoints(positions, velocities, accelerations)
+
+    def _actuated_columns(self, joint_names: Sequence[str]) -> IntArray:
+        places = [self.description.joint_index[name] for name in joint_names]
+        return np.searchsorted(self.physics.actuated, places).astype(np.int64)
+
+    def _still(self, command: FloatArray) -> SetPoints:
+        still = np.zeros((1, len(command)))
+        return SetPoints(command[None], still, still)
+
+    def _controls(self, points: SetPoints) -> FloatArray:
+        """Servo inputs whose position, velocity and feed-forward parts follow the set points."""
+        servos = self.physics.servos
+        efforts = self._feed_forward(
+            points.positions @ self._coupling.T + self._offsets,
+            points.velocities @ self._coupling.T,
+            points.accelerations @ self._coupling.T,
+        )
+        lead = servos.damping / servos.stiffness
+        return points.positions + lead * points.velocities + efforts / servos.stiffness
+
+    def _refuse_lag(self, first: int, wanted: FloatArray, columns: IntArray) -> None:
+        tolerance = self.description.tracking.trajectory
+        joints = self.physics.actuated[columns]
+        errors = np.abs(self._recording.joint_positions(first)[:, joints] - wanted)
+        beyond = np.flatnonzero((errors > tolerance).any(axis=1))
+        if len(beyond):
+            row = int(beyond[0])
+            self._abort(first + row, errors[row], joints, tolerance, "lags {} behind its set point")
+
+    def _wait_for_goal(self, goal: FloatArray, columns: IntArray) -> None:
+        tracking = self.description.tracking
+        joints = self.physics.actuated[columns]
+        deadline = self.time + tracking.goal_time
+        while True:
+            errors = np.abs(self.joint_positions()[joints] - goal)
+            if (errors <= tracking.goal).all():
+                return
+            if self.time >= deadline:
+                break
+            self.hold_samples(SETTLE_EVERY)
+        row = self._recording.count - 1
+        self._abort(row, errors, joints, tracking.goal, "is still {} from its goal")
+
+    def _abort(
+        self, row: int, errors: FloatArray, joints: IntArray, tolerance: float, words: str
+    ) -> None:
+        """Hold the arm where it is and say what happened.
+
+        Raises:
+            StepFailed: CONTROL_FAILED, always.
+        """
+        worst = int(np.argmax(errors))
+        joint = self.description.movable_joints[int(joints[worst])]
+        unit = "m" if joint.kind == "prismatic" else "rad"
+        contacts = strongest_contacts(self._recording, row, self.description)
+        time = row * self._timestep
+        command = self._command.copy()
+        columns = np.searchsorted(self.physics.actuated, joints)
+        command[columns] = self.joint_positions()[joints]
+        self.command(command)
+        self.hold(ABORT_HOLD)
+        error = f"{errors[worst]:.3g} {unit}"
+        raise StepFailed(
+            "CONTROL_FAILED",
+            f"{joint.name} {words.format(error)} at t={time:.3f} s "
+            f"(tolerance {tolerance:g} {unit}); {contact_words(contacts)}",
+            {
+                "joint": joint.name,
+                "error": float(errors[worst]),
+                "tolerance": tolerance,
+                "unit": unit,
+                "time": time,
+                "contacts": [
+                    {"bodies": list(pair), "force": force} for pair, force in contacts.items()
+                ],
+            },
+        )
+
+
+def _silence(_message: str) -> None:
+    """MuJoCo's warnings are read from its data; its log file in the working folder is unwanted."""
+
+
+mujoco.set_mju_user_warning(_silence)

@@ -1,0 +1,108 @@
+"""Lets prepared objects appear, move, disappear and be welded in a running physics."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.simulation.model import ObjectPlace, PhysicsModel
+from harness.simulation.recording import Recording, refresh
+from harness.simulation.world_mjcf import weld_name
+
+
+class Objects:
+    """Which objects are there, and where; keeps what is needed to tell it of every sample."""
+
+    def __init__(
+        self, physics: PhysicsModel, data: mujoco.MjData, recording: Recording, present: frozenset[str]
+    ) -> None:
+        self._physics = physics
+        self._data = data
+        self._recording = recording
+        self._present = {name: name in present for name in physics.objects}
+        self._log: dict[str, list[tuple[int, FloatArray | None]]] = {
+            name: [(0, self._pose(place) if self._present[name] else None)]
+            for name, place in physics.objects.items()
+        }
+
+    def pose(self, name: str) -> SE3:
+        """T_world_object, as it is now."""
+        return SE3.from_vector(self._pose(self._physics.objects[name]))
+
+    def add(self, name: str, pose: SE3) -> None:
+        """Let a parked object appear, at rest."""
+        self._set_presence(name, present=True)
+        self.move(name, pose)
+
+    def remove(self, name: str) -> None:
+        """Park an object without contacts and weight."""
+        self.unweld(name)
+        self._set_presence(name, present=False)
+        self._place(name, self._physics.objects[name].parking)
+        self._log[name].append((self._recording.count, None))
+
+    def move(self, name: str, pose: SE3) -> None:
+        """Put an object somewhere, at rest."""
+        self.unweld(name)
+        self._place(name, pose.as_vector())
+        self._log[name].append((self._recording.count, pose.as_vector()))
+
+    def weld(self, name: str, link: str) -> None:
+        """Fix a free object to a link where both stand."""
+        model, data = self._physics.model, self._data
+        refresh(model, data)
+        link_body, object_body = model.body(link).id, self._physics.objects[name].body
+        T_world_link = SE3.from_xyz_quat(data.xpos[link_body], data.xquat[link_body])
+        T_world_object = SE3.from_xyz_quat(data.xpos[object_body], data.xquat[object_body])
+        weld = model.equality(weld_name(name)).id
+        model.eq_obj1id[weld] = link_body
+        model.eq_data[weld, :3] = 0.0
+        model.eq_data[weld, 3:10] = (T_world_link.inverse() @ T_world_object).as_vector()
+        data.eq_active[weld] = 1
+
+    def unweld(self, name: str) -> None:
+        """Let go of a welded object; nothing happens to others."""
+        if not self._physics.objects[name].obj.is_static:
+            self._data.eq_active[self._physics.model.equality(weld_name(name)).id] = 0
+
+    def recorded_poses(self) -> dict[str, FloatArray]:
+        """T_world_object of every sample, NaN while absent, shape (N, 7) each."""
+        count = self._recording.count
+        poses: dict[str, FloatArray] = {}
+        for name, place in self._physics.objects.items():
+            log = self._log[name]
+            free = place.qpos >= 0
+            rows = self._recording.free_poses(place.qpos) if free else np.empty((count, 7))
+            for (begin, pose), (end, _) in zip(log, [*log[1:], (count, None)], strict=True):
+                if pose is None:
+                    rows[begin:end] = np.nan
+                elif not free:
+                    rows[begin:end] = pose
+            poses[name] = rows
+        return poses
+
+    def _pose(self, place: ObjectPlace) -> FloatArray:
+        if place.qpos >= 0:
+            return self._data.qpos[place.qpos : place.qpos + 7].copy()
+        model = self._physics.model
+        return np.concatenate([model.body_pos[place.body], model.body_quat[place.body]])
+
+    def _set_presence(self, name: str, *, present: bool) -> None:
+        model, place = self._physics.model, self._physics.objects[name]
+        self._present[name] = present
+        model.geom_contype[place.geoms] = int(present)
+        model.geom_conaffinity[place.geoms] = int(present)
+        if not place.obj.is_static:
+            model.body_gravcomp[place.body] = 0.0 if present else 1.0
+
+    def _place(self, name: str, pose: FloatArray) -> None:
+        place = self._physics.objects[name]
+        if place.qpos >= 0:
+            self._data.qpos[place.qpos : place.qpos + 7] = pose
+            self._data.qvel[place.dof : place.dof + 6] = 0.0
+            self._data.qacc_warmstart[place.dof : place.dof + 6] = 0.0
+        else:
+            self._physics.model.body_pos[place.body] = pose[:3]
+            self._physics.model.body_quat[place.body] = pose[3:]

@@ -1,0 +1,144 @@
+"""The robot's bodies, joints, mimic couplings and contacts as a MuJoCo specification."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.core.world import Friction
+from harness.robot.description import Inertial, Joint, RobotDescription
+from harness.simulation.geoms import Surfaces, add_collision_geom
+
+LINK_FRICTION = Friction()
+"""Surface of robot links other than the finger pads."""
+
+MIMIC_SOLREF = (0.004, 1.0)
+"""Time constant [s] and damping ratio of a mimic coupling: two physics steps, critically damped."""
+
+MIMIC_SOLIMP = (0.999, 0.9999, 0.001, 0.5, 2.0)
+"""Impedance of a mimic coupling: nearly rigid, so that both fingers press with the same force."""
+
+
+def link_friction(description: RobotDescription, link: str) -> Friction:
+    """Surface of a link: the gripper's pads have their own."""
+    gripper = description.gripper
+    if gripper is not None and link in gripper.pads.values():
+        return Friction(sliding=gripper.friction)
+    return LINK_FRICTION
+
+
+def add_robot(spec: mujoco.MjSpec, description: RobotDescription, surfaces: Surfaces) -> None:
+    """Add one body a link, under the same names, in doubles.
+
+    Args:
+        spec: A specification in radians; `world` is its world body.
+        description: The composed robot.
+        surfaces: Ranking that holds every link's friction.
+    """
+    bodies = {"world": spec.worldbody}
+    links = {link.name: link for link in description.links}
+    for joint in description.joints:
+        link = links[joint.child]
+        body = bodies[joint.parent].add_body(name=link.name)
+        body.pos = joint.pose.translation
+        body.quat = joint.pose.quat_wxyz
+        if link.inertial is not None:
+            set_inertia(body, link.inertial)
+        if joint.is_movable:
+            _add_joint(body, joint, joint_range(description, joint))
+        for shape in link.collisions:
+            add_collision_geom(spec, body, shape, link_friction(description, link.name), surfaces)
+        bodies[link.name] = body
+    for joint in description.joints:
+        if joint.mimic is not None:
+            _couple(spec, joint)
+    _exclude_allowed_pairs(spec, description)
+
+
+def set_inertia(body: mujoco.MjsBody, inertial: Inertial) -> None:
+    """Give a body its mass, centre of mass and inertia explicitly."""
+    inertia = inertial.inertia
+    body.explicitinertial = True
+    body.mass = inertial.mass
+    body.ipos = inertial.center_of_mass
+    rows, columns = [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]
+    body.fullinertia = inertia[rows, columns]
+
+
+def joint_range(description: RobotDescription, joint: Joint) -> tuple[float, float]:
+    """Limits of a joint, cut by what the joints that mimic it can follow."""
+    lower, upper = joint.lower, joint.upper
+    for other in description.movable_joints:
+        mimic = other.mimic
+        if mimic is None or mimic.joint != joint.name or mimic.multiplier == 0:
+            continue
+        ends = sorted((end - mimic.offset) / mimic.multiplier for end in (other.lower, other.upper))
+        lower, upper = max(lower, ends[0]), min(upper, ends[1])
+    return lower, upper
+
+
+def coupling(description: RobotDescription) -> FloatArray:
+    """Velocities of all movable joints by those of the actuated ones, shape (n, actuated)."""
+    actuated = [joint.name for joint in description.movable_joints if joint.mimic is None]
+    matrix = np.zeros((len(description.joint_names), len(actuated)))
+    for row, joint in enumerate(description.movable_joints):
+        if joint.mimic is None:
+            matrix[row, actuated.index(joint.name)] = 1.0
+        else:
+            matrix[row, actuated.index(joint.mimic.joint)] = joint.mimic.multiplier
+    return matrix
+
+
+def _add_joint(body: mujoco.MjsBody, joint: Joint, limits: tuple[float, float]) -> None:
+    prismatic = joint.kind == "prismatic"
+    kind = mujoco.mjtJoint.mjJNT_SLIDE if prismatic else mujoco.mjtJoint.mjJNT_HINGE
+    added = body.add_joint(name=joint.name, type=kind, axis=joint.axis)
+    added.damping[0] = joint.damping
+    added.frictionloss = joint.friction
+    is_limited = joint.mimic is None and bool(np.all(np.isfinite(limits)))
+    added.limited = is_limited
+    if is_limited:
+        added.range = limits
+
+
+def _couple(spec: mujoco.MjSpec, joint: Joint) -> None:
+    assert joint.mimic is not None
+    equality = spec.add_equality(
+        type=mujoco.mjtEq.mjEQ_JOINT,
+        name1=joint.name,
+        name2=joint.mimic.joint,
+        objtype=mujoco.mjtObj.mjOBJ_JOINT,
+        data=[joint.mimic.offset, joint.mimic.multiplier] + 10 * [0.0],
+    )
+    equality.solref = MIMIC_SOLREF
+    equality.solimp = MIMIC_SOLIMP
+
+
+def _exclude_allowed_pairs(spec: mujoco.MjSpec, description: RobotDescription) -> None:
+    """No contacts between pairs that the SRDF allows, nor across a joint.
+
+    MuJoCo skips parent and child by itself, but not where the parent stands still.
+    """
+    static = description.static_links
+    shaped = [link.name for link in description.links if link.collisions]
+    carrier = _carriers(description)
+    across = {
+        frozenset((carrier[joint.parent], carrier[joint.child]))
+        for joint in description.movable_joints
+    }
+    for index, first in enumerate(shaped):
+        for second in shaped[index + 1 :]:
+            if first in static and second in static:
+                continue
+            allowed = tuple(sorted((first, second))) in description.allowed_collisions
+            if allowed or frozenset((carrier[first], carrier[second])) in across:
+                spec.add_exclude(bodyname1=first, bodyname2=second)
+
+
+def _carriers(description: RobotDescription) -> dict[str, str]:
+    """For each link the first link of the rigid piece it belongs to."""
+    carrier = {"world": "world"}
+    for joint in description.joints:
+        carrier[joint.child] = joint.child if joint.is_movable else carrier[joint.parent]
+    return carrier

@@ -1,0 +1,179 @@
+"""Servos of the actuated joints: gains, rotor inertia and inverse-dynamics feed-forward."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.robot.description import RobotDescription
+from harness.simulation.geoms import Surfaces
+from harness.simulation.robot_mjcf import add_robot, coupling, link_friction
+
+BANDWIDTH_PER_STEP = 0.3
+"""Natural frequency of an arm servo times the physics step; 150 rad/s at 2 ms. Explicit stiffness is
+stable below 2, and a folded arm has several times less inertia than the stretched one it is made for."""
+
+ROTOR_INERTIA_PER_EFFORT = 1e-3
+"""Rotor inertia seen through the gear [kg m^2 per N m, kg per N]: at its full effort a joint cannot
+accelerate its own rotor faster than 1000 rad/s^2. Data sheets give neither rotor nor gear inertia."""
+
+GRIPPER_SATURATION = 0.005
+"""Part of its range by which a gripper's joint may lag when it already presses with full effort."""
+
+GRIPPER_BANDWIDTH_PER_STEP = 0.5
+"""As BANDWIDTH_PER_STEP; a gripper's stiffness is given by its saturation, so its rotor follows."""
+
+
+@dataclass(frozen=True, eq=False)
+class Servos:
+    """Parameters of each actuated joint, in description order without mimic joints.
+
+    Force of a servo: `stiffness * (control - position) - damping * velocity`, cut at the effort limit.
+
+    Attributes:
+        stiffness: [N m/rad or N/m], shape (m,).
+        damping: [N m s/rad or N s/m], shape (m,).
+        rotor_inertia: MuJoCo's armature, shape (m,).
+        effort: Limits; inf where there is none, shape (m,).
+    """
+
+    stiffness: FloatArray
+    damping: FloatArray
+    rotor_inertia: FloatArray
+    effort: FloatArray
+
+
+def bare_robot(description: RobotDescription) -> mujoco.MjSpec:
+    """The robot alone, without servos."""
+    spec = mujoco.MjSpec()
+    spec.compiler.degree = False
+    surfaces = Surfaces.of(link_friction(description, link.name) for link in description.links)
+    add_robot(spec, description, surfaces)
+    return spec
+
+
+def design_servos(description: RobotDescription, timestep: float) -> Servos:
+    """Choose critically damped servos from what each joint must accelerate.
+
+    The inertia is the larger of that at all joints zero (UR and OpenMANIPULATOR-X arms are
+    stretched there) and that at the start state, other joints at rest, plus the rotor's.
+    """
+    model = bare_robot(description).compile()
+    actuated = [joint for joint in description.movable_joints if joint.mimic is None]
+    zero = description.with_mimics(np.zeros(len(description.joint_names)))
+    inertia = np.maximum(
+        _reflected_inertia(model, description, zero),
+        _reflected_inertia(model, description, description.start_positions()),
+    )
+    effort = np.array([joint.effort for joint in actuated])
+    rotor = ROTOR_INERTIA_PER_EFFORT * np.where(np.isfinite(effort), effort, 0.0)
+    frequency = np.full(len(actuated), BANDWIDTH_PER_STEP / timestep)
+    gripper = description.gripper
+    if gripper is not None:
+        index = [joint.name for joint in actuated].index(gripper.joint)
+        play = GRIPPER_SATURATION * abs(gripper.closed_position - gripper.open_position)
+        frequency[index] = GRIPPER_BANDWIDTH_PER_STEP / timestep
+        needed = gripper.max_effort / play / frequency[index] ** 2
+        rotor[index] = max(rotor[index], needed - inertia[index])
+        effort[index] = gripper.max_effort
+    total = inertia + rotor
+    return Servos(total * frequency**2, 2.0 * total * frequency, rotor, effort)
+
+
+def _reflected_inertia(
+    model: mujoco.MjModel, description: RobotDescription, positions: FloatArray
+) -> FloatArray:
+    """Diagonal of the mass matrix in the actuated joints, shape (m,)."""
+    data = mujoco.MjData(model)
+    joints = [model.joint(name) for name in description.joint_names]
+    data.qpos[[joint.qposadr[0] for joint in joints]] = positions
+    mujoco.mj_forward(model, data)
+    dense = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, dense)
+    order = [joint.dofadr[0] for joint in joints]
+    matrix = coupling(description)
+    return np.diag(matrix.T @ dense[np.ix_(order, order)] @ matrix).copy()
+
+
+class FeedForward:
+    """Efforts that a motion of the robot alone takes: gravity, inertia, Coriolis, friction."""
+
+    def __init__(
+        self, description: RobotDescription, servos: Servos, gravity: tuple[float, float, float]
+    ) -> None:
+        spec = bare_robot(description)
+        spec.option.gravity = gravity
+        spec.option.disableflags = (
+            mujoco.mjtDisableBit.mjDSBL_CONTACT
+            | mujoco.mjtDisableBit.mjDSBL_EQUALITY
+            | mujoco.mjtDisableBit.mjDSBL_LIMIT
+        )
+        set_rotor_inertia(spec, description, servos)
+        self._model = spec.compile()
+        self._data = mujoco.MjData(self._model)
+        joints = [self._model.joint(name) for name in description.joint_names]
+        self._positions = np.array([joint.qposadr[0] for joint in joints], dtype=np.intp)
+        self._velocities = np.array([joint.dofadr[0] for joint in joints], dtype=np.intp)
+        self._coupling = coupling(description)
+
+    def __call__(
+        self, positions: FloatArray, velocities: FloatArray, accelerations: FloatArray
+    ) -> FloatArray:
+        """Efforts of the actuated joints, shape (N, m).
+
+        Args:
+            positions: Every movable joint, mimic joints consistent, shape (N, n).
+            velocities: Shape (N, n).
+            accelerations: Shape (N, n).
+        """
+        model, data = self._model, self._data
+        efforts = np.empty((len(positions), model.nv))
+        qpos, qvel, qacc = (np.empty((len(positions), model.nv)) for _ in range(3))
+        qpos[:, self._positions] = positions
+        qvel[:, self._velocities] = velocities
+        qacc[:, self._velocities] = accelerations
+        inverse, at, speed, rate, effort = (
+            mujoco.mj_inverse,
+            data.qpos,
+            data.qvel,
+            data.qacc,
+            data.qfrc_inverse,
+        )
+        for row in range(len(positions)):
+            at[:] = qpos[row]
+            speed[:] = qvel[row]
+            rate[:] = qacc[row]
+            inverse(model, data)
+            efforts[row] = effort
+        return efforts[:, self._velocities] @ self._coupling
+
+
+def set_rotor_inertia(
+    spec: mujoco.MjSpec, description: RobotDescription, servos: Servos
+) -> None:
+    """Give each actuated joint its rotor's inertia."""
+    actuated = (joint for joint in description.movable_joints if joint.mimic is None)
+    for joint, inertia in zip(actuated, servos.rotor_inertia, strict=True):
+        spec.joint(joint.name).armature = inertia
+
+
+def add_servos(spec: mujoco.MjSpec, description: RobotDescription, servos: Servos) -> None:
+    """Add one force-limited actuator a joint, named as the joint."""
+    set_rotor_inertia(spec, description, servos)
+    actuated = (joint for joint in description.movable_joints if joint.mimic is None)
+    for index, joint in enumerate(actuated):
+        stiffness, damping = servos.stiffness[index], servos.damping[index]
+        limit = servos.effort[index]
+        actuator = spec.add_actuator(
+            name=joint.name, target=joint.name, trntype=mujoco.mjtTrn.mjTRN_JOINT
+        )
+        actuator.gaintype = mujoco.mjtGain.mjGAIN_FIXED
+        actuator.biastype = mujoco.mjtBias.mjBIAS_AFFINE
+        actuator.gainprm[0] = stiffness
+        actuator.biasprm[:3] = 0.0, -stiffness, -damping
+        actuator.forcelimited = bool(np.isfinite(limit))
+        if actuator.forcelimited:
+            actuator.forcerange = -limit, limit

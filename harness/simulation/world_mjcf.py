@@ -1,0 +1,54 @@
+"""Objects of the world as MuJoCo bodies; those that appear later are there from the start, parked."""
+
+from __future__ import annotations
+
+import mujoco
+
+from harness.core.spatial import SE3
+from harness.core.world import WorldObject
+from harness.robot.description import Inertial
+from harness.simulation.geoms import Surfaces, add_collision_geom
+from harness.simulation.robot_mjcf import set_inertia
+
+WELD_SOLIMP = (0.999, 0.9999, 0.001, 0.5, 2.0)
+"""Impedance of a weld: nearly rigid."""
+
+
+def parking_pose(index: int) -> SE3:
+    """Where the object of that index waits: far below, apart from the others."""
+    return SE3.from_xyz_rpy((10.0 * index, 0.0, -100.0))
+
+
+def weld_name(name: str) -> str:
+    """Name of the inactive weld that is kept for a dynamic object."""
+    return f"weld {name}"
+
+
+def add_object(
+    spec: mujoco.MjSpec, obj: WorldObject, pose: SE3, surfaces: Surfaces, *, is_present: bool
+) -> None:
+    """Add an object as a body of its name, fixed if static, else free.
+
+    Free bodies carry a gravity compensation that is switched on while they are parked, and a weld
+    that is switched on while they are held by one.
+    """
+    body = spec.worldbody.add_body(name=obj.name)
+    body.pos = pose.translation
+    body.quat = pose.quat_wxyz
+    for shape in obj.shapes:
+        add_collision_geom(spec, body, shape, obj.friction, surfaces, collides=is_present)
+    if obj.is_static:
+        return
+    body.add_freejoint(name=obj.name)
+    body.gravcomp = 1.0
+    set_inertia(body, Inertial(obj.mass, obj.center_of_mass, obj.inertia))
+    weld = spec.add_equality(
+        name=weld_name(obj.name),
+        type=mujoco.mjtEq.mjEQ_WELD,
+        objtype=mujoco.mjtObj.mjOBJ_BODY,
+        name1="world",
+        name2=obj.name,
+        active=False,
+    )
+    weld.solref = (0.004, 1.0)
+    weld.solimp = WELD_SOLIMP
