@@ -1,0 +1,264 @@
+"""Forward and inverse kinematics of a composed robot: analytic where the arm has it, else numeric."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from harness.core.errors import PlanningFailed
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.planning.forward_kinematics import LinkPoses, quats_wxyz
+from harness.planning.ik_numeric import LinkGoal, LinkTask, solve_numeric
+from harness.planning.ik_open_manipulator import (
+    PlanarArm,
+    headings,
+    is_planar_arm,
+    pitch_in_plane,
+    solve_planar,
+)
+from harness.planning.ik_ur import UrGeometry, is_ur_like, solve_ur
+from harness.planning.robot_model import GroupSpace, RobotModel
+from harness.ports import PoseGoal, PositionGoal
+from harness.robot.description import Joint, RobotDescription
+
+PITCH_SAMPLES = 73
+"""Pitches tried for a position goal that leaves the pitch free: every 5 degrees of a whole turn."""
+
+_POLISHED = 1e-7  # [m, rad] closed forms that Newton's method cannot bring below are no solutions
+_LIMIT_SLACK = 1e-9  # [rad] a solution this far outside a limit is put on it
+
+
+@dataclass(frozen=True, eq=False)
+class LimitedSolution:
+    """A solution of the geometry that the position limits forbid.
+
+    Attributes:
+        positions: Group positions, as near to the limits as whole turns bring them.
+        joint: The joint that is farthest outside.
+        value: Its position [rad or m].
+        limit: The limit it breaks.
+    """
+
+    positions: FloatArray
+    joint: str
+    value: float
+    limit: float
+
+    def facts(self) -> dict[str, Any]:
+        """As plain data."""
+        return {
+            "joint_positions": [float(value) for value in self.positions],
+            "joint": self.joint,
+            "value": self.value,
+            "limit": self.limit,
+            "excess": abs(self.value - self.limit),
+        }
+
+
+@dataclass(frozen=True)
+class IkAnswer:
+    """Everything inverse kinematics found.
+
+    Attributes:
+        solutions: Inside the limits and the tolerance, nearest to the seed first.
+        outside_limits: Solutions of the geometry that limits forbid.
+        excess: How much too far away the goal is for the chain [m]; 0 when unknown or within.
+        method: `ur`, `open_manipulator_x` or `numeric`.
+    """
+
+    solutions: tuple[FloatArray, ...]
+    outside_limits: tuple[LimitedSolution, ...]
+    excess: float
+    method: str
+
+
+class PinocchioKinematics:
+    """The port `Kinematics` for a composed robot."""
+
+    def __init__(self, description: RobotDescription) -> None:
+        self.description = description
+        self.robot = RobotModel(description)
+
+    def link_pose(self, joint_positions: FloatArray, link: str) -> SE3:
+        """T_world_link at joint positions in description order."""
+        return self.robot.link_pose(np.asarray(joint_positions, dtype=float), link)
+
+    def link_poses(self, joint_positions: FloatArray, links: Sequence[str]) -> FloatArray:
+        """T_world_link of many samples and links: (N, n) -> (N, len(links), 7) as xyz, quat wxyz."""
+        poses = LinkPoses(self.description, joint_positions, links)
+        return np.stack(
+            [
+                np.hstack([poses.translations[link], quats_wxyz(poses.rotations[link])])
+                for link in links
+            ],
+            axis=1,
+        )
+
+    def solve(
+        self, group: str, goal: PoseGoal | PositionGoal, seed_positions: FloatArray, seed: int
+    ) -> Sequence[FloatArray]:
+        """Every known solution within position limits, nearest to `seed_positions` first."""
+        space = GroupSpace(self.robot, group, seed_positions)
+        return self.analyse(space, goal, seed_positions, seed).solutions
+
+    def analyse(
+        self, space: GroupSpace, goal: LinkGoal, seed_positions: FloatArray, seed: int
+    ) -> IkAnswer:
+        """Solutions, and what became of those that are none.
+
+        Raises:
+            PlanningFailed: INVALID_LINK_NAME, when the link is not moved by the group alone.
+        """
+        self._check_link(space, goal.link)
+        reference = space.part(seed_positions)
+        joints = tuple(self.description.joint_by_name[name] for name in space.joint_names)
+        T_last_link = self._behind(joints[-1], goal.link)
+        solver = self.description.ik_solver
+        whole_pose = isinstance(goal, PoseGoal)
+        excess = 0.0
+        if solver == "ur" and whole_pose and is_ur_like(joints):
+            method = "ur"
+            raw, excess = self._ur(joints, T_last_link, goal, reference)
+        elif solver == "open_manipulator_x" and is_planar_arm(joints, T_last_link):
+            method = "open_manipulator_x"
+            raw, excess = self._planar(joints, T_last_link, goal, space, seed_positions)
+        else:
+            method = "numeric"
+            raw = solve_numeric(space, goal, reference, seed)
+        solutions, outside = self._sort(space, goal, raw, reference, polish=method == "ur")
+        return IkAnswer(tuple(solutions), tuple(outside), excess, method)
+
+    def _sort(
+        self,
+        space: GroupSpace,
+        goal: LinkGoal,
+        raw: Iterable[FloatArray],
+        reference: FloatArray,
+        *,
+        polish: bool,
+    ) -> tuple[list[FloatArray], list[LimitedSolution]]:
+        """Polish, turn into the limits, drop what misses the tolerance, put the nearest first."""
+        task = LinkTask(space, goal)
+        inside: list[FloatArray] = []
+        outside: list[LimitedSolution] = []
+        for positions in raw:
+            if polish:
+                exact, error = task.polish(positions)
+                if error > _POLISHED:
+                    continue
+            else:
+                exact = positions
+                if not meets_tolerance(goal, task.link_pose(exact)):
+                    continue
+            turned = into_limits(space, exact, reference)
+            if isinstance(turned, LimitedSolution):
+                outside.append(turned)
+            elif all(space.distance(turned, other) > 1e-6 for other in inside):
+                inside.append(turned)
+        inside.sort(key=lambda q: (round(space.distance(reference, q), 9), tuple(q)))
+        return inside, outside
+
+    def _ur(
+        self, joints: tuple[Joint, ...], T_last_link: SE3, goal: PoseGoal, reference: FloatArray
+    ) -> tuple[list[FloatArray], float]:
+        T_world_base = self._in_front(joints[0])
+        T_base_wrist3 = T_world_base.inverse() @ goal.pose @ T_last_link.inverse()
+        answer = solve_ur(UrGeometry.of_joints(joints), T_base_wrist3, float(reference[-1]))
+        return [branch.positions for branch in answer.branches], max(answer.excess, 0.0)
+
+    def _planar(
+        self,
+        joints: tuple[Joint, ...],
+        T_last_link: SE3,
+        goal: LinkGoal,
+        space: GroupSpace,
+        seed_positions: FloatArray,
+    ) -> tuple[list[FloatArray], float]:
+        arm = PlanarArm.of_joints(joints, T_last_link)
+        T_base_world = self._in_front(joints[0]).inverse()
+        target = goal.pose.translation if isinstance(goal, PoseGoal) else goal.position
+        position = T_base_world.apply(np.asarray(target, dtype=float))
+        found: list[FloatArray] = []
+        excesses: list[float] = []
+        for heading in headings(arm, position):
+            if isinstance(goal, PoseGoal):
+                x_axis = T_base_world.rotation @ goal.pose.rotation[:, 0]
+                pitches = [pitch_in_plane(heading, x_axis)]
+            elif goal.pitch is not None:
+                pitches = [goal.pitch, np.pi - goal.pitch]  # pointing away from the base, or to it
+            else:
+                now = float(space.part(seed_positions)[1:].sum())
+                pitches = [now, *np.linspace(-np.pi, np.pi, PITCH_SAMPLES)]
+            for pitch in pitches:
+                answer = solve_planar(arm, position, heading, pitch)
+                found.extend(answer.solutions)
+                excesses.append(answer.excess)
+        return found, min(excesses, default=0.0)
+
+    def _check_link(self, space: GroupSpace, link: str) -> None:
+        if link not in self.description.link_names:
+            raise PlanningFailed("INVALID_LINK_NAME", f"the robot has no link '{link}'")
+        moves_with = {self.robot.model.names[self.robot.parent_joint(link)]}
+        if not moves_with & set(space.joint_names):
+            raise PlanningFailed(
+                "INVALID_LINK_NAME",
+                f"link '{link}' is not moved by the joints of group '{space.group}'",
+                {"link": link, "group": space.group},
+            )
+
+    def _behind(self, joint: Joint, link: str) -> SE3:
+        """T_child_link from the joint's child to a link rigidly behind it."""
+        robot = self.robot
+        return robot.placement(joint.child).inverse() @ robot.placement(link)
+
+    def _in_front(self, joint: Joint) -> SE3:
+        """T_world_parent of a first joint's parent, which stands still."""
+        return self.link_pose(np.zeros(len(self.description.joint_names)), joint.parent)
+
+
+def into_limits(
+    space: GroupSpace, positions: FloatArray, reference: FloatArray
+) -> FloatArray | LimitedSolution:
+    """The copy, by whole turns, of a solution that is inside the limits and nearest to a reference."""
+    turned = np.array(positions, dtype=float)
+    worst: tuple[float, int, float] | None = None  # excess, joint, limit
+    turn = 2 * np.pi
+    for index in range(space.dof):
+        lower, upper = space.lower[index] - _LIMIT_SLACK, space.upper[index] + _LIMIT_SLACK
+        value = turned[index]
+        if space.wraps[index]:
+            wanted = np.round((reference[index] - value) / turn)
+            fewest, most = np.ceil((lower - value) / turn), np.floor((upper - value) / turn)
+            if fewest <= most:
+                value = value + turn * np.clip(wanted, fewest, most)
+            else:
+                middle = 0.5 * (lower + upper)
+                value = value + turn * np.round((middle - value) / turn)
+        excess = max(lower - value, value - upper)
+        if excess > 0 and (worst is None or excess > worst[0]):
+            limit = space.lower[index] if value < lower else space.upper[index]
+            worst = (float(excess), index, float(limit))
+        turned[index] = value
+    if worst is not None:
+        _, index, limit = worst
+        return LimitedSolution(turned, space.joint_names[index], float(turned[index]), limit)
+    return np.clip(turned, space.lower, space.upper)
+
+
+def meets_tolerance(goal: LinkGoal, pose: SE3) -> bool:
+    """Whether a link pose is within the goal's tolerances."""
+    if isinstance(goal, PoseGoal):
+        shift, angle = goal.pose.distance_to(pose)
+        return shift <= goal.position_tolerance and angle <= goal.orientation_tolerance
+    shift = float(np.linalg.norm(goal.position - pose.translation))
+    if shift > goal.position_tolerance:
+        return False
+    if goal.pitch is None:
+        return True
+    down = -pose.rotation[2, 0]
+    off = abs(np.arcsin(np.clip(down, -1, 1)) - np.arcsin(np.sin(goal.pitch)))
+    return bool(off <= goal.pitch_tolerance)

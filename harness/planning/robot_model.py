@@ -1,0 +1,145 @@
+"""The robot in Pinocchio's terms, and a planning group's joints inside the whole robot's."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+import pinocchio as pin
+
+from harness.core.spatial import SE3
+from harness.core.types import BoolArray, FloatArray, IntArray
+from harness.robot.description import RobotDescription
+
+METRES_TO_RADIANS = 10.0
+"""How much a prismatic joint's metre counts in joint-space distances (0.1 m is like 1 rad)."""
+
+
+def pin_from_se3(pose: SE3) -> pin.SE3:
+    """Our pose as Pinocchio's."""
+    return pin.SE3(np.asarray(pose.rotation, float), np.asarray(pose.translation, float))
+
+
+def se3_from_pin(pose: pin.SE3) -> SE3:
+    """Pinocchio's pose as ours, copied."""
+    return SE3(np.array(pose.rotation), np.array(pose.translation))
+
+
+class RobotModel:
+    """Pinocchio's model of a description, and the way between both joint orders.
+
+    Pinocchio orders joints in its own way and gives a continuous joint two configuration numbers
+    (cosine, sine); everything outside this module speaks description order.
+    """
+
+    def __init__(self, description: RobotDescription) -> None:
+        self.description = description
+        self.model = pin.buildModelFromXML(description.urdf)
+        self.data = self.model.createData()
+        joints = [
+            self.model.joints[self.model.getJointId(name)] for name in description.joint_names
+        ]
+        self._row: IntArray = np.array([joint.idx_q for joint in joints], dtype=np.int64)
+        self.velocity_columns: IntArray = np.array([joint.idx_v for joint in joints], np.int64)
+        self._wraps: BoolArray = np.array([joint.nq == 2 for joint in joints], dtype=bool)
+        self._any_wraps = bool(self._wraps.any())
+
+    def configuration(self, joint_positions: FloatArray) -> FloatArray:
+        """Pinocchio's configuration of joint positions in description order."""
+        configuration = np.empty(self.model.nq)
+        if not self._any_wraps:
+            configuration[self._row] = joint_positions
+            return configuration
+        wraps = self._wraps
+        configuration[self._row[~wraps]] = joint_positions[~wraps]
+        configuration[self._row[wraps]] = np.cos(joint_positions[wraps])
+        configuration[self._row[wraps] + 1] = np.sin(joint_positions[wraps])
+        return configuration
+
+    def frame_id(self, link: str) -> int:
+        """Pinocchio's frame of a link."""
+        return int(self._frame_ids[link])
+
+    @cached_property
+    def _frame_ids(self) -> dict[str, int]:
+        return {
+            link: int(self.model.getFrameId(link, pin.FrameType.BODY))
+            for link in self.description.link_names
+        }
+
+    def parent_joint(self, link: str) -> int:
+        """Index of the Pinocchio joint a link moves with; 0 for links that stand still."""
+        return int(self.model.frames[self.frame_id(link)].parentJoint)
+
+    def placement(self, link: str) -> SE3:
+        """T_joint_link: where a link is fixed on the joint it moves with."""
+        return se3_from_pin(self.model.frames[self.frame_id(link)].placement)
+
+    def link_pose(self, joint_positions: FloatArray, link: str) -> SE3:
+        """T_world_link at joint positions in description order."""
+        pin.forwardKinematics(self.model, self.data, self.configuration(joint_positions))
+        return se3_from_pin(pin.updateFramePlacement(self.model, self.data, self.frame_id(link)))
+
+
+class GroupSpace:
+    """A planning group's joints, the rest of the robot held where it is.
+
+    Whole-robot positions are `offset + matrix @ group positions`: mimic joints of the group's
+    joints follow, all others stay at `reference`.
+
+    Attributes:
+        joint_names: Of the group, in its order.
+        lower: Position limits, shape (dof,); -inf for continuous joints.
+        upper: Shape (dof,).
+        velocity: Limits, shape (dof,).
+        acceleration: Limits, shape (dof,).
+        metric: Weights of joint-space distances, shape (dof,).
+        wraps: Which joints turn, so that a whole turn more is the same place, shape (dof,).
+    """
+
+    def __init__(self, robot: RobotModel, group: str, reference: FloatArray) -> None:
+        description = robot.description
+        self.robot = robot
+        self.group = group
+        self.joint_names = description.groups[group].joint_names
+        joints = [description.joint_by_name[name] for name in self.joint_names]
+        self.lower: FloatArray = np.array([joint.lower for joint in joints], dtype=float)
+        self.upper: FloatArray = np.array([joint.upper for joint in joints], dtype=float)
+        self.velocity: FloatArray = np.array([joint.velocity for joint in joints], dtype=float)
+        self.acceleration: FloatArray = np.array([joint.acceleration for joint in joints], float)
+        self.wraps: BoolArray = np.array([joint.kind != "prismatic" for joint in joints], bool)
+        self.metric: FloatArray = np.where(self.wraps, 1.0, METRES_TO_RADIANS)
+        self.indices = list(description.group_indices(group))
+        self.offset, self.matrix = self._embedding(np.asarray(reference, dtype=float))
+
+    def _embedding(self, reference: FloatArray) -> tuple[FloatArray, FloatArray]:
+        description = self.robot.description
+        offset = np.array(reference, dtype=float)
+        matrix = np.zeros((len(offset), len(self.indices)))
+        offset[self.indices] = 0.0
+        matrix[self.indices, np.arange(len(self.indices))] = 1.0
+        for index, joint in enumerate(description.movable_joints):
+            if joint.mimic is not None and joint.mimic.joint in self.joint_names:
+                column = self.joint_names.index(joint.mimic.joint)
+                offset[index] = joint.mimic.offset
+                matrix[index, column] = joint.mimic.multiplier
+        return offset, matrix
+
+    @property
+    def dof(self) -> int:
+        """Number of joints."""
+        return len(self.indices)
+
+    def whole(self, positions: FloatArray) -> FloatArray:
+        """Description-order positions of group positions, shape (n,), or (N, n) for (N, dof)."""
+        return self.offset + np.asarray(positions) @ self.matrix.T
+
+    def part(self, joint_positions: FloatArray) -> FloatArray:
+        """Group positions of description-order positions, shape (dof,)."""
+        return np.asarray(joint_positions, dtype=float)[self.indices]
+
+    def distance(self, first: FloatArray, second: FloatArray) -> float:
+        """Joint-space distance, metres weighted [rad]."""
+        return float(np.linalg.norm((second - first) * self.metric))
