@@ -1,1 +1,1 @@
-"""Verdicts from a recorded run."""
+"""Verdicts from a recorded run alone."""

@@ -1,4 +1,4 @@
-"""What happened in a run: plain data, enough to judge it and to draw it without planner or physics."""
+"""What happened in a run: plain data, enough to judge and draw it without planner or physics."""
 
 from __future__ import annotations
 
@@ -9,11 +9,14 @@ from typing import Any, Literal
 import numpy as np
 
 from harness.core.geometry import Shape
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, IntArray
 
 StepStatus = Literal["passed", "failed", "expected_error", "not_reached"]
 VerdictStatus = Literal["passed", "failed", "not reached", "not observable"]
 Outcome = Literal["passed", "failed", "invalid", "error"]
+Pair = tuple[str, str]
+Shapes = tuple[Shape, ...]
+Floats = tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -74,10 +77,14 @@ class RobotRecord:
     link_names: tuple[str, ...]
     static_links: tuple[str, ...]
     gripper: GripperRecord | None = None
-    link_visuals: Mapping[str, tuple[Shape, ...]] = field(default_factory=dict)
+    link_visuals: Mapping[str, tuple[Shape, ...]] = field(
+        default_factory=dict[str, tuple[Shape, ...]]
+    )
     urdf: str = ""
     srdf: str = ""
-    static_link_poses: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    static_link_poses: Mapping[str, tuple[float, ...]] = field(
+        default_factory=dict[str, tuple[float, ...]]
+    )
 
 
 @dataclass(frozen=True)
@@ -156,9 +163,9 @@ class StepRecord:
     expected_error: str = ""
     message: str = ""
     trajectory: Mapping[str, Any] | None = None
-    planner: Mapping[str, Any] = field(default_factory=dict)
-    explanation: Mapping[str, Any] = field(default_factory=dict)
-    result: Mapping[str, Any] = field(default_factory=dict)
+    planner: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    explanation: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    result: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
 
 @dataclass(frozen=True)
@@ -186,7 +193,8 @@ class Measure:
     def __str__(self) -> str:
         where = f" ({self.detail})" if self.detail else ""
         sign = self.comparison
-        return f"{self.name}: {self.value:.6g} {self.unit} (must be {sign} {self.limit:.6g}) at t={self.time:.3f} s{where}"
+        said = f"{self.name}: {self.value:.6g} {self.unit} (must be {sign} {self.limit:.6g})"
+        return f"{said} at t={self.time:.3f} s{where}"
 
 
 @dataclass(frozen=True)
@@ -226,7 +234,7 @@ class Finding:
     message: str
     time: float = float("nan")
     step: str = ""
-    values: Mapping[str, Any] = field(default_factory=dict)
+    values: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
 
 @dataclass(frozen=True, eq=False)
@@ -259,11 +267,15 @@ class Signals:
     joint_commands: FloatArray
     joint_command_velocities: FloatArray
     tcp_pose: FloatArray
-    frames: Mapping[str, FloatArray] = field(default_factory=dict)
-    object_poses: Mapping[str, FloatArray] = field(default_factory=dict)
-    contact_forces: Mapping[tuple[str, str], FloatArray] = field(default_factory=dict)
-    clearances: Mapping[tuple[str, str], FloatArray] = field(default_factory=dict)
-    clearance_links: Mapping[tuple[str, str], np.ndarray] = field(default_factory=dict)
+    frames: Mapping[str, FloatArray] = field(default_factory=dict[str, FloatArray])
+    object_poses: Mapping[str, FloatArray] = field(default_factory=dict[str, FloatArray])
+    contact_forces: Mapping[Pair, FloatArray] = field(
+        default_factory=dict[tuple[str, str], FloatArray]
+    )
+    clearances: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
+    clearance_links: Mapping[Pair, IntArray] = field(
+        default_factory=dict[tuple[str, str], np.ndarray]
+    )
     clearance_cutoff: float = 0.15
 
 
@@ -283,7 +295,7 @@ class Run:
         signals: What was recorded.
         gravity: [m/s^2].
         timestep: Of the physics [s].
-        allowed_contacts: Link or object pairs whose contact is no collision (the SRDF's, and grasps).
+        allowed_contacts: Link or object pairs whose contact is no collision (the SRDF's).
         findings: Notes and disagreements.
         source: Text of the scenario file.
         resolved: Text of the resolved scenario; runs again to the same digest.
@@ -306,5 +318,5 @@ class Run:
     findings: tuple[Finding, ...] = ()
     source: str = ""
     resolved: str = ""
-    versions: Mapping[str, str] = field(default_factory=dict)
+    versions: Mapping[str, str] = field(default_factory=dict[str, str])
     ended_early: str = ""

@@ -1,0 +1,191 @@
+"""From a recorded run and what was expected to verdicts, and nothing else is needed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.assertions import (
+    clearance,
+    collision,
+    contact,
+    grasp,
+    joints,
+    lifted,
+    limits,
+    objects,
+    tcp,
+    timing,
+)
+from harness.assertions import temporal as temporal
+from harness.assertions.placed import PlacedExpectation
+from harness.assertions.registry import MarginSignal, signal
+from harness.assertions.temporal import Decision, TooShort, longest_hold
+from harness.assertions.text import amount
+from harness.assertions.window import NotObservable, NotReached, Window, window_of
+from harness.assertions.wording import describe
+from harness.core.types import FloatArray
+from harness.recording.run import Run, Verdict, VerdictStatus
+from harness.spec.checks import (
+    Always,
+    AnyExpectation,
+    AnyPredicate,
+    Eventually,
+    Formula,
+    Never,
+    Until,
+)
+
+HANDLERS = (clearance, collision, contact, grasp, joints, lifted, limits, objects, tcp, timing)
+TEMPORAL = (Always, Never, Eventually)
+EXECUTED: frozenset[type] = frozenset(signal) | frozenset(TEMPORAL)
+"""Models that can be judged; compile refuses the others with "not yet available"."""
+
+
+@dataclass(frozen=True)
+class _Terms:
+    """An expectation taken apart: the predicate, its temporal word and the words beside both."""
+
+    predicate: AnyPredicate
+    word: str
+    hold: float | None
+    within: float | None
+    step: str
+    points: float | None
+
+
+def judge(run: Run, expectations: Sequence[PlacedExpectation]) -> tuple[Verdict, ...]:
+    """A verdict for each expectation, in their order."""
+    return tuple(_judge(run, expectation) for expectation in expectations)
+
+
+def _judge(run: Run, placed: PlacedExpectation) -> Verdict:
+    text = placed.text or describe(placed.spec)
+    points = getattr(placed.spec, "points", None)
+    try:
+        terms = _terms(placed.spec, placed.step)
+        points = terms.points
+        window = window_of(run, terms.step)
+        with np.errstate(invalid="ignore"):
+            margins = signal(terms.predicate, window)
+            verdict = _decide(terms, window, margins)
+    except NotReached as answer:
+        verdict = Verdict(text, "not reached", reason=str(answer))
+    except NotObservable as answer:
+        verdict = Verdict(text, "not observable", reason=str(answer))
+    return Verdict(
+        text,
+        verdict.status,
+        verdict.margin,
+        verdict.unit,
+        verdict.time,
+        placed.line,
+        placed.step,
+        verdict.reason,
+        verdict.measures,
+        points,
+    )
+
+
+def _terms(spec: AnyExpectation, step: str) -> _Terms:
+    """Words inside and outside a temporal word both count; of two numbers the stricter one.
+
+    Raises:
+        NotObservable: The model cannot be judged yet, or names two steps.
+    """
+    if isinstance(spec, Until | Formula):
+        raise NotObservable(f"`{spec.check}` is not yet available")
+    predicate = spec.predicate if isinstance(spec, TEMPORAL) else spec
+    if type(predicate) not in EXECUTED:
+        raise NotObservable(f"`{predicate.check}` is not yet available")
+    word = spec.check if isinstance(spec, TEMPORAL) else predicate.judged
+    during = {name for name in (spec.during, predicate.during) if name is not None}
+    if len(during) > 1:
+        raise NotObservable(f"`during` names two steps: {' and '.join(sorted(during))}")
+    holds = [value for value in (spec.for_, predicate.for_) if value is not None]
+    withins = [value for value in (spec.within, predicate.within) if value is not None]
+    return _Terms(
+        predicate,
+        word,
+        max(holds, default=None),
+        min(withins, default=None),
+        next(iter(during), step),
+        predicate.points if spec.points is None else spec.points,
+    )
+
+
+def _decide(terms: _Terms, window: Window, margins: MarginSignal) -> Verdict:
+    values, times = margins.values, window.times
+    applies = np.ones(len(values), dtype=bool) if margins.applies is None else margins.applies
+    if not (applies & ~np.isnan(values)).any():
+        raise NotReached("what it is about was not there in the time it is judged over")
+    chosen = np.arange(len(values))
+    if terms.word == "always":
+        chosen = np.flatnonzero(applies)
+    try:
+        decision = _reduce(terms, values[chosen], times[chosen], applies[chosen], margins.progress)
+    except TooShort:
+        return _too_short(terms, times[chosen])
+    index = int(chosen[decision.index])
+    evidence = margins.evidence(index)
+    margin = decision.value + 0.0
+    unit = margins.unit
+    if not math.isfinite(margin):
+        if decision.holds:
+            raise NotReached("what it is about was not there for that long")
+        margin = float("nan")
+        reason = f"not known, or not there, at t={window.time(index):.3f} s"
+    else:
+        if evidence.margin is not None:
+            margin = (-evidence.margin if terms.word == "never" else evidence.margin) + 0.0
+            unit = evidence.unit
+        reason = f"{evidence.text} at t={window.time(index):.3f} s"
+    status: VerdictStatus = "passed" if decision.holds else "failed"
+    reason += _held(terms, values, times, decision)
+    return Verdict(
+        "", status, margin, unit, window.time(index), reason=reason, measures=evidence.measures
+    )
+
+
+def _reduce(
+    terms: _Terms,
+    values: FloatArray,
+    times: FloatArray,
+    applies: np.ndarray,
+    progress: FloatArray | None,
+) -> Decision:
+    """What nobody knows speaks against the expectation; where it does not apply, nothing holds."""
+    hold, within = terms.hold, terms.within
+    unknown = np.isnan(values)
+    low = np.where(unknown | ~applies, -np.inf, values)
+    match terms.word:
+        case "always":
+            return temporal.always(low, times, hold, within)
+        case "never":
+            against = np.where(unknown & applies, np.inf, low)
+            return temporal.never(against, times, hold, within, progress)
+        case "eventually":
+            return temporal.eventually(low, times, hold, within, progress)
+        case _:
+            return temporal.at_end(low, times, hold, within, progress)
+
+
+def _too_short(terms: _Terms, times: FloatArray) -> Verdict:
+    hold, span = terms.hold or 0.0, float(times[-1] - times[0])
+    reason = f"judged over {span:.3f} s, which leaves no room for {hold:.3f} s"
+    if terms.within is not None:
+        reason += f" begun within {terms.within:.3f} s"
+    if terms.word == "never":
+        raise NotReached(reason)
+    return Verdict("", "failed", span - hold, "s", float(times[-1]), reason=reason)
+
+
+def _held(terms: _Terms, values: FloatArray, times: FloatArray, decision: Decision) -> str:
+    """How long it held at most, where a time was asked for and was not reached."""
+    if terms.hold is None or terms.word == "never" or decision.holds:
+        return ""
+    longest = longest_hold(np.nan_to_num(values, nan=-1.0), times)
+    return f"; held for {amount(longest, 's')} at most, {amount(terms.hold, 's')} asked for"

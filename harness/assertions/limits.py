@@ -1,0 +1,146 @@
+"""within_limits, tracking_error, effort: joints against their limits and their commands."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from harness.assertions.joints import unit_of
+from harness.assertions.registry import MarginSignal, Part, all_of, signal
+from harness.assertions.text import amount
+from harness.assertions.window import NotObservable, Window
+from harness.recording.run import JointRecord, Measure, Run
+from harness.spec.checks import Effort, TrackingError, WithinLimits
+
+STOP_SOFTNESS = 0.02
+"""Share of its range by which a gripper's joint may sink into its stop: it rests there."""
+ROUNDING = 1e-9
+"""Share of a limit that is rounding: an effort that saturates is at its limit, not beyond."""
+
+
+def gripper_joints(run: Run) -> frozenset[str]:
+    """Joints of the gripper's group, and those that follow them."""
+    hand = run.robot.gripper
+    if hand is None:
+        return frozenset()
+    mimics = {joint.name for joint in run.robot.joints if joint.is_mimic}
+    return frozenset(run.robot.groups.get(hand.group, ())) | {hand.joint} | mimics
+
+
+@signal.handles(WithinLimits)
+def within_limits(check: WithinLimits, window: Window) -> MarginSignal:
+    """Measured positions, velocities, efforts and commanded accelerations, as shares of limits."""
+    parts: list[Part] = []
+    hand = gripper_joints(window.run)
+    for column, joint in enumerate(window.run.robot.joints):
+        if check.position:
+            parts += _position_parts(window, column, joint, joint.name in hand)
+        if check.velocity:
+            parts += _rate_part(window, column, joint, "velocity")
+        if check.effort:
+            parts += _rate_part(window, column, joint, "effort")
+        if check.acceleration and joint.name not in hand:
+            parts += _rate_part(window, column, joint, "acceleration")
+    if not parts:
+        raise NotObservable("no limits of these kinds are known")
+
+    def text(_: int, measure: Measure) -> str:
+        value, limit = amount(measure.value, measure.unit), amount(measure.limit, measure.unit)
+        return f"{measure.name} of {measure.detail} is {value}, limit {limit}"
+
+    return all_of(window, parts, text, shown=3)
+
+
+def _position_parts(
+    window: Window, column: int, joint: JointRecord, is_gripper: bool
+) -> list[Part]:
+    if not (math.isfinite(joint.lower) and math.isfinite(joint.upper)):
+        return []
+    values = window.cut(window.run.signals.joint_positions)[:, column]
+    softness = STOP_SOFTNESS * (joint.upper - joint.lower) if is_gripper else 0.0
+    scale = 0.5 * (joint.upper - joint.lower) or 1.0
+    unit = unit_of(joint)
+    lower, upper = joint.lower - softness, joint.upper + softness
+    return [
+        Part("position", values, lower, ">=", unit, scale, detail=joint.name),
+        Part("position", values, upper, "<=", unit, scale, detail=joint.name),
+    ]
+
+
+def _rate_part(window: Window, column: int, joint: JointRecord, kind: str) -> list[Part]:
+    signals, unit = window.run.signals, unit_of(joint)
+    match kind:
+        case "velocity":
+            values, limit, unit = signals.joint_velocities, joint.velocity, f"{unit}/s"
+        case "effort":
+            values, limit = signals.joint_efforts, joint.effort
+            unit = "N" if unit == "m" else "N m"
+        case _:
+            commands = signals.joint_command_velocities
+            values = np.zeros_like(commands)
+            values[1:] = np.diff(commands, axis=0) / np.diff(signals.times)[:, None]
+            limit, unit = joint.acceleration, f"{unit}/s^2"
+    if not math.isfinite(limit):
+        return []
+    size = np.abs(window.cut(values)[:, column])
+    if kind == "acceleration" and np.isnan(size).any():
+        size = np.nan_to_num(size, nan=0.0)  # no command, no commanded acceleration
+    return [Part(kind, size, limit * (1 + ROUNDING), "<=", unit, limit, detail=joint.name)]
+
+
+@signal.handles(TrackingError)
+def tracking_error(check: TrackingError, window: Window) -> MarginSignal:
+    """Largest distance of a joint from its command [rad or m].
+
+    The gripper's joints are left out: what stalls on an object is meant to stay behind. For joints
+    that slide the default is a tenth of the given number, in metres.
+    """
+    run = window.run
+    hand = gripper_joints(run)
+    parts: list[Part] = []
+    for column, joint in enumerate(run.robot.joints):
+        error = np.abs(
+            run.signals.joint_positions[:, column] - run.signals.joint_commands[:, column]
+        )
+        error = window.cut(error)
+        known = ~np.isnan(error)
+        if joint.name in hand or not known.any():
+            continue
+        slides = joint.kind == "prismatic" and "max" not in check.model_fields_set
+        limit = 0.1 * check.max if slides else check.max
+        parts.append(
+            Part("tracking error", error, limit, "<=", unit_of(joint), None, known, joint.name)
+        )
+    if not parts:
+        raise NotObservable("no commands of joints other than the gripper's were recorded")
+    some = np.any([part.relevant for part in parts if part.relevant is not None], axis=0)
+
+    def text(_: int, measure: Measure) -> str:
+        return f"{measure.detail} is {amount(measure.value, measure.unit)} from its command"
+
+    return all_of(window, parts, text, present=some, shown=3)
+
+
+@signal.handles(Effort)
+def effort(check: Effort, window: Window) -> MarginSignal:
+    """Largest share of its effort limit that a joint uses."""
+    parts = [
+        Part(
+            "effort",
+            np.abs(window.cut(window.run.signals.joint_efforts)[:, column]) / joint.effort,
+            check.max_fraction * (1 + ROUNDING),
+            "<=",
+            "1",
+            detail=joint.name,
+        )
+        for column, joint in enumerate(window.run.robot.joints)
+        if math.isfinite(joint.effort) and joint.effort > 0
+    ]
+    if not parts:
+        raise NotObservable("no effort limits are known")
+
+    def text(_: int, measure: Measure) -> str:
+        return f"{measure.detail} uses {100 * measure.value:.1f} % of its effort limit"
+
+    return all_of(window, parts, text, shown=3)

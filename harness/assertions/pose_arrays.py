@@ -1,0 +1,67 @@
+"""Algebra of recorded poses: rows xyz, quaternion wxyz; a single pose broadcasts over samples."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.core.types import FloatArray
+
+IDENTITY = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+
+
+def quat_product(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Hamilton product, wxyz, shapes (..., 4)."""
+    aw, ax, ay, az = np.moveaxis(a, -1, 0)
+    bw, bx, by, bz = np.moveaxis(b, -1, 0)
+    return np.stack(
+        [
+            aw * bw - ax * bx - ay * by - az * bz,
+            aw * bx + ax * bw + ay * bz - az * by,
+            aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw,
+        ],
+        axis=-1,
+    )
+
+
+def conjugate(quat: FloatArray) -> FloatArray:
+    """The inverse of unit quaternions, shape (..., 4)."""
+    return quat * np.array([1.0, -1.0, -1.0, -1.0])
+
+
+def rotate(quat: FloatArray, vector: FloatArray) -> FloatArray:
+    """Vectors turned by unit quaternions, shape (..., 3)."""
+    scalar, imaginary = quat[..., :1], quat[..., 1:]
+    twice = 2 * np.cross(imaginary, vector)
+    return vector + scalar * twice + np.cross(imaginary, twice)
+
+
+def compose(T_a_b: FloatArray, T_b_c: FloatArray) -> FloatArray:
+    """T_a_c, shape (..., 7)."""
+    position = T_a_b[..., :3] + rotate(T_a_b[..., 3:], T_b_c[..., :3])
+    return np.concatenate([position, quat_product(T_a_b[..., 3:], T_b_c[..., 3:])], axis=-1)
+
+
+def relative(T_w_a: FloatArray, T_w_b: FloatArray) -> FloatArray:
+    """T_a_b, shape (..., 7)."""
+    inverse = conjugate(T_w_a[..., 3:])
+    position = rotate(inverse, T_w_b[..., :3] - T_w_a[..., :3])
+    return np.concatenate([position, quat_product(inverse, T_w_b[..., 3:])], axis=-1)
+
+
+def rotation_vector(quat: FloatArray) -> FloatArray:
+    """Axis times angle [rad] of unit quaternions, angle in [0, pi], shape (..., 3)."""
+    quat = np.where(quat[..., :1] < 0, -quat, quat)
+    sine = np.linalg.norm(quat[..., 1:], axis=-1, keepdims=True)
+    angle = 2 * np.arctan2(sine, quat[..., :1])
+    return quat[..., 1:] * np.where(sine > 1e-12, angle / np.maximum(sine, 1e-12), 2.0)
+
+
+def rotation_angle(quat: FloatArray) -> FloatArray:
+    """Angle of unit quaternions [rad], in [0, pi], shape (...,)."""
+    return 2 * np.arctan2(np.linalg.norm(quat[..., 1:], axis=-1), np.abs(quat[..., 0]))
+
+
+def angle_between(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Angle between vectors [rad], accurate for small ones too, shape (...,)."""
+    return np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.sum(a * b, axis=-1))

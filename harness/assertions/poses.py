@@ -1,0 +1,113 @@
+"""Where links, objects and frames stood at each sample."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.assertions.pose_arrays import IDENTITY
+from harness.assertions.window import NotObservable, object_record
+from harness.core.geometry import Capsule, Cylinder, Sphere
+from harness.core.types import BoolArray, FloatArray
+from harness.recording.run import ObjectRecord, Run
+
+JUMP = 0.005
+"""An object that a scene step moves further than this between two samples was put there [m]."""
+SCENE_VERBS = ("add_object", "remove_object", "move_object", "clear_objects")
+
+
+def link_poses(run: Run, link: str) -> FloatArray:
+    """T_world_link, shape (N, 7).
+
+    Raises:
+        NotObservable: The link moves and was not recorded.
+    """
+    robot, count = run.robot, len(run.signals.times)
+    if link == "world":
+        return np.broadcast_to(IDENTITY, (count, 7))
+    if link == robot.tcp_link:
+        return run.signals.tcp_pose
+    if link in run.signals.frames:
+        return run.signals.frames[link]
+    if link in robot.static_link_poses:
+        return np.broadcast_to(np.array(robot.static_link_poses[link]), (count, 7))
+    raise NotObservable(f"the pose of link '{link}' was not recorded")
+
+
+def object_poses(run: Run, name: str) -> FloatArray:
+    """T_world_object, NaN while it is absent, shape (N, 7).
+
+    Raises:
+        NotObservable: The run does not know the object, or not where it stood.
+    """
+    if name in run.signals.object_poses:
+        return run.signals.object_poses[name]
+    record = object_record(run, name)
+    if not record.pose:
+        raise NotObservable(f"where '{name}' stood was not recorded")
+    return np.where(present(run, name)[:, None], np.array(record.pose), np.nan)
+
+
+def frame_poses(run: Run, frame: str) -> FloatArray:
+    """T_world_frame of `world`, a link or an object, shape (N, 7)."""
+    if frame == "world" or frame in run.robot.link_names:
+        return link_poses(run, frame)
+    return object_poses(run, frame)
+
+
+def present(run: Run, name: str) -> BoolArray:
+    """Samples at which an object is in the scene, shape (N,)."""
+    if name in run.signals.object_poses:
+        return ~np.isnan(run.signals.object_poses[name][:, 0])
+    times = run.signals.times
+    mask = np.zeros(len(times), dtype=bool)
+    for begin, end in object_record(run, name).present:
+        mask |= (times >= begin) & (times <= end)
+    return mask
+
+
+def start_poses(run: Run, name: str) -> FloatArray:
+    """Where the object started: its pose when it last appeared or was put somewhere, shape (N, 7).
+
+    A start is the first sample at which it is present, and the first one after `move_object`,
+    `add_object` and the like made it jump; without the latter, teleporting would be lifting.
+    """
+    poses = object_poses(run, name)
+    here = present(run, name)
+    starts = here & ~np.concatenate([[False], here[:-1]])
+    jumps = np.zeros(len(poses), dtype=bool)
+    jumps[1:] = np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1) > JUMP
+    for step in run.steps:
+        if step.verb in SCENE_VERBS and step.status != "not_reached":
+            moved = slice(step.start_index, step.end_index + 1)
+            starts[moved] |= jumps[moved]
+    latest = np.maximum.accumulate(np.where(starts, np.arange(len(poses)), -1))
+    return np.where((latest >= 0)[:, None], poses[np.maximum(latest, 0)], np.nan)
+
+
+def speeds(run: Run, poses: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Linear [m/s] and angular [rad/s] speed since the sample before, shape (N,) each.
+
+    The first sample is at rest by definition; where a pose is missing the speed is NaN.
+    """
+    linear, angular = np.zeros(len(poses)), np.zeros(len(poses))
+    if len(poses) > 1:
+        step = np.diff(run.signals.times)
+        linear[1:] = np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1) / step
+        # chord between quaternions: exact for small turns, and free of the sign
+        a, b = poses[:-1, 3:], poses[1:, 3:]
+        chord = np.minimum(np.linalg.norm(b - a, axis=1), np.linalg.norm(b + a, axis=1))
+        angular[1:] = 4 * np.arcsin(np.minimum(chord / 2, 1.0)) / step
+        appeared = np.isnan(linear[1:]) & ~np.isnan(poses[1:, 0])
+        linear[1:][appeared] = angular[1:][appeared] = 0.0
+    linear[np.isnan(poses[:, 0])] = angular[np.isnan(poses[:, 0])] = np.nan
+    return linear, angular
+
+
+def is_round(record: ObjectRecord) -> bool:
+    """Whether turning about the object's own z axis leaves it as it is."""
+    return bool(record.shapes) and all(
+        isinstance(shape.geometry, Cylinder | Capsule | Sphere)
+        and float(np.abs(shape.pose.translation[:2]).max()) < 1e-9
+        and (isinstance(shape.geometry, Sphere) or abs(shape.pose.rotation[2, 2]) > 1 - 1e-12)
+        for shape in record.shapes
+    )

@@ -1,0 +1,148 @@
+"""From a predicate and a window to a margin at every sample: one handler a predicate."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from harness.assertions.window import Window
+from harness.core.registry import Registry
+from harness.core.types import BoolArray, FloatArray
+from harness.recording.run import Measure
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What a sample shows.
+
+    Attributes:
+        text: In words, with numbers, without the time.
+        measures: The tightest first.
+        margin: In `unit`, where it says more than the signal's value; else None.
+        unit: Of `margin`.
+    """
+
+    text: str
+    measures: tuple[Measure, ...] = ()
+    margin: float | None = None
+    unit: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class MarginSignal:
+    """How far a predicate is from flipping at each sample of a window.
+
+    Attributes:
+        values: Not negative where the predicate holds; NaN where nobody can say, shape (n,).
+        unit: Of the values.
+        evidence: What the sample at an index of the window shows.
+        applies: Samples of which the predicate speaks (default all): a distance to an object says
+            nothing before the object is there. `always` skips the others, nothing holds at them.
+        progress: Chooses the sample to show among equal margins.
+    """
+
+    values: FloatArray
+    unit: str
+    evidence: Callable[[int], Evidence]
+    applies: BoolArray | None = None
+    progress: FloatArray | None = None
+
+
+signal: Registry[Window, MarginSignal] = Registry()
+"""Handlers of the predicates; `harness.assertions.judge` imports all of them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """One quantity of a predicate, against its limit.
+
+    Attributes:
+        name: As its measure is called.
+        values: Shape (n,), in `unit`.
+        limit: In `unit`.
+        comparison: How values must stand to the limit.
+        scale: What a margin is divided by before it is compared with other parts'; default |limit|.
+        relevant: Samples at which the part counts; default all.
+        detail: Which joint, link or pair.
+    """
+
+    name: str
+    values: FloatArray
+    limit: float
+    comparison: Literal["<=", ">=", "=="]
+    unit: str
+    scale: float | None = None
+    relevant: BoolArray | None = None
+    detail: str = ""
+
+    def margins(self) -> FloatArray:
+        """Not negative where the part holds, in `unit` (1 or -1 for equality), shape (n,)."""
+        match self.comparison:
+            case "<=":
+                return self.limit - self.values
+            case ">=":
+                return self.values - self.limit
+            case "==":
+                return np.where(self.values == self.limit, 1.0, -1.0)
+
+    def shares(self) -> FloatArray:
+        """Margins as shares of the scale; inf where the part does not count, shape (n,)."""
+        scale = abs(self.limit) if self.scale is None else self.scale
+        shares = self.margins() / (scale if scale > 0 and self.comparison != "==" else 1.0)
+        return shares if self.relevant is None else np.where(self.relevant, shares, np.inf)
+
+
+def all_of(
+    window: Window,
+    parts: Sequence[Part],
+    text: Callable[[int, Measure], str],
+    *,
+    present: BoolArray | None = None,
+    shown: int = 4,
+) -> MarginSignal:
+    """The signal of a predicate that holds where all of its parts do.
+
+    One part keeps its unit. Several are compared as shares of their limits; the margin that a
+    verdict reports is the tightest part's, in that part's unit.
+
+    Args:
+        window: Where it is judged.
+        parts: At least one.
+        text: What to say of a sample, given its index and its tightest measure.
+        present: Samples at which there is something to judge; NaN elsewhere.
+        shown: How many measures a verdict shows.
+    """
+    rows: FloatArray = np.stack([part.shares() for part in parts])
+    values: FloatArray = rows.min(axis=0)  # NaN in any part is NaN
+    if len(parts) == 1 and parts[0].relevant is None:
+        values = parts[0].margins()
+    if present is not None:
+        values = np.where(present, values, np.nan)
+
+    def evidence(index: int) -> Evidence:
+        shares = [
+            float(share) for share in np.nan_to_num(rows[:, index], nan=-np.inf, posinf=np.inf)
+        ]
+        order = sorted(range(len(parts)), key=shares.__getitem__)
+        chosen = [parts[place] for place in order if shares[place] != math.inf][:shown]
+        measures = tuple(
+            Measure(
+                part.name,
+                float(part.values[index]),
+                part.limit,
+                part.comparison,
+                part.unit,
+                window.time(index),
+                part.detail,
+            )
+            for part in chosen
+        )
+        unit = "1" if chosen[0].comparison == "==" else chosen[0].unit
+        margin = float(chosen[0].margins()[index])
+        return Evidence(text(index, measures[0]), measures, margin, unit)
+
+    return MarginSignal(values, parts[0].unit if len(parts) == 1 else "1", evidence)

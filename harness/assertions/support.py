@@ -1,0 +1,77 @@
+"""Which body carries an object from below, from shapes and poses."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.assertions.contacts import TOUCH_FORCE, bodies_touching
+from harness.assertions.pose_arrays import rotate
+from harness.assertions.poses import object_poses
+from harness.assertions.window import NotObservable, object_record
+from harness.core.geometry import Box, Capsule, Cylinder, Sphere
+from harness.core.types import BoolArray, FloatArray
+from harness.recording.run import ObjectRecord, Run
+
+SINKING = 0.005
+"""How far a soft contact may let an object sink, and still be above [m]."""
+
+
+def lowest_points(record: ObjectRecord, poses: FloatArray) -> FloatArray:
+    """Height of an object's lowest point [m], shape (N,); of its origin where a shape is a mesh."""
+    lowest = [poses[:, 2]] if not record.shapes else []
+    for shape in record.shapes:
+        centre = poses[:, 2] + rotate(poses[:, 3:], shape.pose.translation)[:, 2]
+        vertical = np.stack(  # height of the shape's axes
+            [rotate(poses[:, 3:], shape.pose.rotation[:, axis])[:, 2] for axis in range(3)], axis=1
+        )
+        match shape.geometry:
+            case Box(size=size):
+                below = np.abs(vertical) @ (0.5 * np.array(size))
+            case Sphere(radius=radius):
+                below = np.full(len(poses), radius)
+            case Capsule(radius=radius, length=length):
+                below = 0.5 * length * np.abs(vertical[:, 2]) + radius
+            case Cylinder(radius=radius, length=length):
+                flat = np.sqrt(np.maximum(0.0, 1 - vertical[:, 2] ** 2))
+                below = 0.5 * length * np.abs(vertical[:, 2]) + radius * flat
+            case _:
+                below = np.zeros(len(poses))
+        lowest.append(centre - below)
+    return np.min(lowest, axis=0)
+
+
+def is_below(run: Run, support: str, name: str) -> BoolArray:
+    """Samples at which a shape of `support` has its centre under the object's lowest point.
+
+    A wall that the object leans on is taller than that; a slab, a plane, a lower box are not.
+    """
+    lowest = lowest_points(object_record(run, name), object_poses(run, name))
+    try:
+        record, poses = object_record(run, support), object_poses(run, support)
+    except NotObservable:
+        return np.zeros(len(lowest), dtype=bool)
+    centres = [
+        poses[:, 2] + rotate(poses[:, 3:], shape.pose.translation)[:, 2] for shape in record.shapes
+    ] or [poses[:, 2]]
+    return np.min(centres, axis=0) <= lowest + SINKING
+
+
+def supports(run: Run, name: str) -> dict[str, FloatArray]:
+    """Debounced force [N] of each body but the robot that carries the object from below."""
+    links = set(run.robot.link_names)
+    return {
+        body: np.where(is_below(run, body, name), force, 0.0)
+        for body, force in bodies_touching(run, name).items()
+        if body not in links
+    }
+
+
+def carriers_at(run: Run, name: str, sample: int) -> list[str]:
+    """Bodies that are not the robot and touch an object at a sample, the strongest first."""
+    links = set(run.robot.link_names)
+    forces = {
+        body: float(force[sample])
+        for body, force in bodies_touching(run, name).items()
+        if body not in links and force[sample] > TOUCH_FORCE
+    }
+    return sorted(forces, key=lambda body: (-forces[body], body))

@@ -1,0 +1,180 @@
+"""Temporal words as reductions of a margin over samples: always, never, eventually, at the end.
+
+A margin is not negative where its predicate holds. Spans of time are exact to the sample: a
+predicate is held for T from sample i when it holds at every sample up to the first one that is T
+later or more.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.core.types import BoolArray, FloatArray, IntArray
+
+TIME_RESOLUTION = 1e-9
+"""Times nearer than this are the same [s]."""
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What a reduction came to.
+
+    Attributes:
+        value: Signed so that the expectation holds where it is not negative (never: positive).
+        index: The sample that decided it.
+        holds: Whether the expectation holds.
+    """
+
+    value: float
+    index: int
+    holds: bool
+
+
+class TooShort(Exception):  # noqa: N818 - it is an answer, handled by the judge
+    """No sample of the window leaves room for the time that is asked for."""
+
+
+def range_min(values: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
+    """Minimum of values[first[k]:last[k] + 1] for each k, by doubling; ranges must not be empty."""
+    lengths = last - first + 1
+    levels = np.frexp(lengths)[1] - 1  # floor(log2(length))
+    result = np.empty(len(first))
+    table = values
+    for level in range(int(levels.max(initial=-1)) + 1):
+        if level:
+            half = 1 << (level - 1)
+            table = np.minimum(table[:-half], table[half:])
+        chosen = levels == level
+        ends = last[chosen] - (1 << level) + 1
+        result[chosen] = np.minimum(table[first[chosen]], table[ends])
+    return result
+
+
+def trailing_max(values: FloatArray, times: FloatArray, span: float) -> FloatArray:
+    """Largest value of the last `span` seconds at each sample, itself included."""
+    first = np.searchsorted(times, times - span - TIME_RESOLUTION)
+    return -range_min(-values, first, np.arange(len(times)))
+
+
+def episodes(mask: BoolArray) -> list[tuple[int, int]]:
+    """Runs of true samples as (start, stop), in order."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
+    return [(int(start), int(stop)) for start, stop in edges.reshape(-1, 2)]
+
+
+def longest_hold(values: FloatArray, times: FloatArray) -> float:
+    """Longest time without a break for which a margin is not negative [s]."""
+    spans = [times[stop - 1] - times[start] for start, stop in episodes(values >= 0)]
+    return float(max(spans, default=0.0))
+
+
+def _best(values: FloatArray, progress: FloatArray | None) -> int:
+    """First place of the maximum; among equals the one that came furthest."""
+    largest = np.flatnonzero(values == values.max())
+    if progress is None or len(largest) == 1:
+        return int(largest[0])
+    return int(largest[np.argmax(np.nan_to_num(progress[largest], nan=-np.inf))])
+
+
+def eventually(
+    values: FloatArray,
+    times: FloatArray,
+    hold: float | None = None,
+    within: float | None = None,
+    progress: FloatArray | None = None,
+) -> Decision:
+    """The best moment: held for `hold` seconds from it on, begun within `within` of the start.
+
+    Args:
+        values: Margins, shape (n,), n > 0, without NaN.
+        times: Of the samples [s], shape (n,).
+        hold: Must be held so long without a break [s].
+        within: Latest beginning after the first sample [s].
+        progress: Chooses the deciding sample among equal margins, shape (n,).
+
+    Raises:
+        TooShort: No sample that may begin it has `hold` seconds behind it.
+    """
+    starts = np.arange(len(times))
+    if within is not None:
+        starts = starts[times <= times[0] + within + TIME_RESOLUTION]
+    if hold is None:
+        index = _best(values[starts], None if progress is None else progress[starts])
+        return Decision(float(values[index]), index, bool(values[index] >= 0))
+    ends = np.searchsorted(times, times[starts] + hold - TIME_RESOLUTION)
+    fits = ends < len(times)
+    starts, ends = starts[fits], ends[fits]
+    if len(starts) == 0:
+        raise TooShort
+    minima = range_min(values, starts, ends)
+    best = _best(minima, None if progress is None else progress[starts])
+    index = int(starts[best] + np.argmin(values[starts[best] : ends[best] + 1]))
+    return Decision(float(minima[best]), index, bool(minima[best] >= 0))
+
+
+def always(
+    values: FloatArray, times: FloatArray, hold: float | None = None, within: float | None = None
+) -> Decision:
+    """The worst sample; with `within`, only from that time after the start on.
+
+    Raises:
+        TooShort: Less than `hold` seconds are left to judge.
+    """
+    begin = 0
+    if within is not None:
+        begin = _last_before(times, float(times[0]) + within)
+    if hold is not None:
+        if times[-1] - times[0] < hold - TIME_RESOLUTION:
+            raise TooShort
+        begin = min(begin, _first_of_last(times, hold))
+    index = begin + int(np.argmin(values[begin:]))
+    return Decision(float(values[index]), index, bool(values[index] >= 0))
+
+
+def never(
+    values: FloatArray,
+    times: FloatArray,
+    hold: float | None = None,
+    within: float | None = None,
+    progress: FloatArray | None = None,
+) -> Decision:
+    """The opposite of `eventually`: where that holds, even with a margin of zero, this does not."""
+    best = eventually(values, times, hold, within, progress)
+    return Decision(-best.value, best.index, not best.holds)
+
+
+def at_end(
+    values: FloatArray,
+    times: FloatArray,
+    hold: float | None = None,
+    within: float | None = None,
+    progress: FloatArray | None = None,
+) -> Decision:
+    """The last sample, or the last `hold` seconds; with `within` it must come true by then too.
+
+    Raises:
+        TooShort: The window is shorter than `hold`.
+    """
+    begin = len(times) - 1
+    if hold is not None:
+        if times[-1] - times[0] < hold - TIME_RESOLUTION:
+            raise TooShort
+        begin = _first_of_last(times, hold)
+    index = begin + int(np.argmin(values[begin:]))
+    decision = Decision(float(values[index]), index, bool(values[index] >= 0))
+    if within is None:
+        return decision
+    came_true = eventually(values, times, hold, within, progress)
+    return came_true if came_true.value < decision.value else decision
+
+
+def _first_of_last(times: FloatArray, span: float) -> int:
+    """The last sample that is `span` seconds or more before the end."""
+    return _last_before(times, float(times[-1]) - span)
+
+
+def _last_before(times: FloatArray, time: float) -> int:
+    """The last sample that is not after a time."""
+    return int(np.count_nonzero(times <= time + TIME_RESOLUTION)) - 1

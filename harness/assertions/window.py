@@ -1,0 +1,80 @@
+"""The part of a run that an expectation is judged over, and the answers that are no verdict."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.recording.run import ObjectRecord, Run, StepRecord
+
+D = TypeVar("D", bound=np.dtype[Any])
+
+
+class NotReached(Exception):  # noqa: N818 - an answer, turned into a verdict by the judge
+    """There was nothing to judge; says why."""
+
+
+class NotObservable(Exception):  # noqa: N818 - an answer, turned into a verdict by the judge
+    """The record lacks what the expectation is about; says what."""
+
+
+@dataclass(frozen=True, eq=False)
+class Window:
+    """Samples [start, stop) of a run.
+
+    Attributes:
+        step: The step it belongs to; None for the whole run.
+    """
+
+    run: Run
+    start: int
+    stop: int
+    step: StepRecord | None = None
+
+    @property
+    def times(self) -> FloatArray:
+        """Of the window's samples [s], shape (n,)."""
+        return self.run.signals.times[self.start : self.stop]
+
+    def cut(self, values: np.ndarray[Any, D]) -> np.ndarray[Any, D]:
+        """The window's part of an array over the run's samples."""
+        return values[self.start : self.stop]
+
+    def time(self, index: int) -> float:
+        """Of a sample of the window [s]."""
+        return float(self.run.signals.times[self.start + index])
+
+
+def window_of(run: Run, step_id: str) -> Window:
+    """The samples of a step (by id, or by path), or of the whole run for an empty id.
+
+    Raises:
+        NotReached: There is no such step, it was not reached, or nothing was recorded in it.
+    """
+    if not step_id:
+        window = Window(run, 0, len(run.signals.times))
+    else:
+        step = next((step for step in run.steps if step_id in (step.id, step.path)), None)
+        if step is None:
+            raise NotReached(f"there is no step '{step_id}' in this run")
+        if step.status == "not_reached":
+            raise NotReached(f"the run ended before step '{step_id}'")
+        window = Window(run, step.start_index, step.end_index, step)
+    if window.stop <= window.start:
+        raise NotReached("nothing was recorded in the time it is judged over")
+    return window
+
+
+def object_record(run: Run, name: str) -> ObjectRecord:
+    """The record of an object.
+
+    Raises:
+        NotObservable: The run knows no such object.
+    """
+    for record in run.objects:
+        if record.name == name:
+            return record
+    raise NotObservable(f"there is no object '{name}' in this run")
