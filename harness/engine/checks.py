@@ -1,0 +1,89 @@
+"""What an expectation says, checked against robot, objects and steps."""
+
+from __future__ import annotations
+
+from pydantic import BaseModel
+
+from harness.engine.program import Loc
+from harness.engine.scope import Scope
+from harness.spec.checks import (
+    AnyExpectation,
+    Between,
+    Clearance,
+    Collision,
+    GripperState,
+    In,
+    Joints,
+    NamedTarget,
+    ObjectCheck,
+    On,
+    Placed,
+    Static,
+    TcpPose,
+)
+from harness.spec.poses import Pose
+
+SPECIAL = ("robot", "gripper", "any")
+GRIPPER_CHECKS = ("grasped", "released", "lifted", "gripper")
+
+
+def check_expectation(
+    spec: AnyExpectation, loc: Loc, scope: Scope, judged: frozenset[type]
+) -> None:
+    """Report what is wrong with an expectation; names may be of steps and objects further down."""
+    if type(spec) not in judged:
+        known = sorted(model.model_fields["check"].default for model in judged)
+        scope.problems.add(
+            loc,
+            f"the expectation `{spec.check}` is not yet available",
+            "available: " + ", ".join(known),
+        )
+        return
+    during = getattr(spec, "during", None)
+    if during is not None and during not in scope.step_ids:
+        scope.problems.unknown((*loc, "during"), "step with the id", during, scope.step_ids)
+    for key in ("predicate", "until"):
+        inner = getattr(spec, key, None)
+        if isinstance(inner, BaseModel):
+            check_expectation(inner, (*loc, key), scope, judged)  # pyright: ignore[reportArgumentType]
+    _check_names(spec, loc, scope)
+
+
+def _check_names(spec: AnyExpectation, loc: Loc, scope: Scope) -> None:
+    if spec.check in GRIPPER_CHECKS:
+        scope.check_gripper(loc, f"`{spec.check}`")
+    match spec:
+        case Placed():
+            scope.check_object(spec.object, (*loc, "object"), simulated=True)
+            if spec.on is not None:
+                scope.check_body(spec.on, (*loc, "on"), special=())
+        case On():
+            scope.check_object(spec.object, (*loc, "object"), simulated=True)
+            scope.check_body(spec.support, (*loc, "support"), special=())
+        case In():
+            scope.check_object(spec.object, (*loc, "object"), simulated=True)
+            scope.check_object(spec.container, (*loc, "container"))
+        case ObjectCheck():
+            scope.check_object(spec.object, (*loc, "object"), simulated=spec.check != "slip")
+        case Static(object=str(name)):
+            scope.check_object(name, (*loc, "object"), simulated=True)
+        case Between() | Clearance() | Collision():
+            for index, name in enumerate(spec.between or ()):
+                scope.check_body(name, (*loc, "between", index), special=SPECIAL)
+        case TcpPose():
+            scope.check_link(spec.link, (*loc, "link"))
+        case Joints():
+            for name in spec.positions:
+                scope.check_joint(name, (*loc, "positions", name))
+        case NamedTarget():
+            group = scope.check_group(spec.group, (*loc, "group"))
+            scope.check_state(group, spec.state, (*loc, "state"))
+        case GripperState(named_target=str(state)):
+            hand = scope.description.gripper
+            if hand is not None:
+                scope.check_state(hand.group, state, (*loc, "named_target"))
+        case _:
+            pass
+    pose = getattr(spec, "pose", None)
+    if isinstance(pose, Pose):
+        scope.check_frame(pose.frame, (*loc, "pose", "frame"))

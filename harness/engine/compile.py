@@ -1,0 +1,253 @@
+"""From a scenario to a program: every name looked up, every problem of the file found at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from harness.core.errors import Problem
+from harness.core.spatial import SE3
+from harness.core.world import WorldObject
+from harness.engine import executors as executors
+from harness.engine.checks import check_expectation
+from harness.engine.objects import ObjectUnusableError, resolve_object, resolve_world
+from harness.engine.options import check_planning, merged_options
+from harness.engine.program import Loc, Program, ProgramExpectation, ProgramStep, step_seed
+from harness.engine.registry import execute
+from harness.engine.scope import Problems, Scope
+from harness.engine.steps import check_step
+from harness.engine.summary import summarize
+from harness.ports import Kinematics, PlanningOptions
+from harness.robot.description import RobotDescription
+from harness.spec.checks import AnyExpectation
+from harness.spec.planning import Planning
+from harness.spec.scenario import Scenario
+from harness.spec.steps import AddObject, AllowCollisions, AnyStep, AttachObject
+from harness.spec.world import ObjectSpec, WorldSpec
+
+NOT_YET = "not yet available"
+
+
+class SourceMap(Protocol):
+    """Where things stand in the scenario file."""
+
+    def line_of(self, loc: Loc) -> tuple[int, int]:
+        """Line and column, from 1."""
+        ...
+
+    def problem(self, loc: Loc, message: str, hint: str = "") -> Problem:
+        """A located problem."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Sources:
+    """What compile works on, all of it loaded.
+
+    Attributes:
+        scenario: What the file says.
+        lines: Where it says it.
+        base_dir: Folder of the scenario file.
+        world: The world it names.
+        world_dir: Folder of the world file.
+        description: The robot it names.
+        kinematics: Of that robot.
+        judged: Expectation models that can be judged.
+        check_planner: Normalises a planner's name, or raises ValueError with what there is.
+        checks_per_second: What a second of `planning_time` buys, in state checks.
+    """
+
+    scenario: Scenario
+    lines: SourceMap
+    base_dir: Path
+    world: WorldSpec
+    world_dir: Path
+    description: RobotDescription
+    kinematics: Kinematics
+    judged: frozenset[type]
+    check_planner: Callable[[str], str]
+    checks_per_second: int
+
+
+def compile_scenario(sources: Sources) -> Program:
+    """Resolve everything a scenario names.
+
+    Raises:
+        SpecError: With every problem found, each at its place in the file.
+    """
+    return _Compiler(sources).compile()
+
+
+class _Compiler:
+    def __init__(self, sources: Sources) -> None:
+        self.sources = sources
+        self.problems = Problems(sources.lines.problem)
+        self.scope = Scope(sources.description, self.problems)
+        self.later: dict[str, WorldObject] = {}
+        self.later_specs: dict[str, ObjectSpec] = {}  # without poses
+        self.step_locs: dict[str, Loc] = {}
+        self.expectations: list[ProgramExpectation] = []
+        self.pending: list[tuple[AnyExpectation, Loc]] = []
+
+    def compile(self) -> Program:
+        sources, scenario = self.sources, self.sources.scenario
+        self._refuse_later_features(scenario)
+        objects = self._objects_at_start()
+        for obj in objects:
+            self.scope.add_object(obj, present=True)
+        check_planning(scenario.planning, ("planning",), self.problems, sources.check_planner)
+        steps = self._steps(scenario.steps, ("steps",), "steps")
+        for index, expectation in enumerate(scenario.expect):
+            self._expectation(expectation, ("expect", index), "")
+        for expectation, loc in self.pending:
+            check_expectation(expectation, loc, self.scope, sources.judged)
+        self.problems.raise_if_any()
+        return Program(
+            title=scenario.scenario,
+            description=sources.description,
+            world=resolve_world(sources.world, objects),
+            later_objects=self.later,
+            steps=steps,
+            expectations=tuple(self.expectations),
+            seed=scenario.seed,
+            step_locs=self.step_locs,
+        )
+
+    def _refuse_later_features(self, scenario: Scenario) -> None:
+        for key in ("parametrize", "randomize", "samples", "expect_rate"):
+            if getattr(scenario, key) is not None:
+                self.problems.add((key,), f"`{key}` is {NOT_YET}")
+
+    # -- objects ------------------------------------------------------------------------------
+
+    def _objects_at_start(self) -> tuple[WorldObject, ...]:
+        world, scenario = self.sources.world, self.sources.scenario
+        resolved = {
+            spec.name: resolve_object(spec, spec.pose.se3(), self.sources.world_dir)
+            for spec in world.objects
+        }
+        for index, spec in enumerate(scenario.objects):
+            loc: Loc = ("objects", index)
+            if spec.name in resolved and not spec.replace:
+                self.problems.add(
+                    (*loc, "name"),
+                    f"the world '{world.world}' has an object '{spec.name}' already",
+                    "say `replace: true` to put this one in its place",
+                )
+            elif spec.name not in resolved and spec.replace:
+                self.problems.unknown((*loc, "name"), "object of the world", spec.name, resolved)
+            obj = self._resolve(spec, loc, self._start_pose(spec, loc))
+            if obj is not None:
+                resolved[spec.name] = obj
+        return tuple(resolved.values())
+
+    def _start_pose(self, spec: ObjectSpec, loc: Loc) -> SE3:
+        description = self.sources.description
+        frame = spec.pose.frame
+        if frame in ("world", *description.link_names):
+            start = description.start_positions()
+            placed = SE3.identity()
+            if frame != "world":
+                placed = self.sources.kinematics.link_pose(start, frame)
+            return placed @ spec.pose.se3()
+        self.problems.unknown(
+            (*loc, "pose", "frame"), "frame", frame, ("world", *description.link_names)
+        )
+        return spec.pose.se3()
+
+    def _resolve(self, spec: ObjectSpec, loc: Loc, pose: SE3) -> WorldObject | None:
+        if spec.name == "world" or spec.name in self.sources.description.link_names:
+            self.problems.add(
+                (*loc, "name"), f"'{spec.name}' is a robot link's name", "choose another"
+            )
+        try:
+            return resolve_object(spec, pose, self.sources.base_dir)
+        except ObjectUnusableError as unusable:
+            self.problems.add(loc, f"object '{spec.name}': {unusable}")
+            return None
+
+    def _later_object(self, spec: ObjectSpec, loc: Loc) -> None:
+        """Prepare an object that a step adds; the same object may come and go, another may not."""
+        if spec.replace:
+            self.problems.add(loc, "`replace` is for the scenario's `objects`")
+        obj = self._resolve(spec, loc, spec.pose.se3())
+        if obj is None:
+            return
+        known = self.later.get(spec.name)
+        if known is None and spec.name not in self.scope.objects:
+            self.later[spec.name] = obj
+            self.scope.add_object(obj)
+        elif known is None or self.later_specs[spec.name] != _without_pose(spec):
+            self.problems.add(
+                (*loc, "name"),
+                f"another object is called '{spec.name}'",
+                "every object has a name of its own",
+            )
+        self.later_specs.setdefault(spec.name, _without_pose(spec))
+
+    # -- steps --------------------------------------------------------------------------------
+
+    def _steps(self, specs: Sequence[AnyStep], loc: Loc, path: str) -> tuple[ProgramStep, ...]:
+        return tuple(
+            self._step(spec, (*loc, index), f"{path}[{index}]") for index, spec in enumerate(specs)
+        )
+
+    def _step(self, spec: AnyStep, loc: Loc, path: str) -> ProgramStep:
+        sources = self.sources
+        self.step_locs[path] = loc
+        if type(spec) not in execute:
+            self.problems.add(loc, f"the step `{spec.do}` is {NOT_YET}", _available_steps())
+        step_id = spec.id or path
+        if not self.scope.claim_step_id(step_id):
+            self.problems.add((*loc, "id"), f"another step has the id '{step_id}'")
+        if isinstance(spec, AddObject):
+            for index, obj in enumerate(spec.objects):
+                self._later_object(obj, (*loc, "objects", index))
+        if isinstance(spec, AttachObject) and isinstance(spec.object, ObjectSpec):
+            self._later_object(spec.object, (*loc, "object"))
+        check_step(spec, loc, self.scope)
+        children: tuple[ProgramStep, ...] = ()
+        if isinstance(spec, AllowCollisions):
+            children = self._steps(spec.during, (*loc, "during"), f"{path}.during")
+        line, _ = sources.lines.line_of(loc)
+        step = ProgramStep(
+            id=step_id,
+            path=path,
+            spec=spec,
+            summary=summarize(spec),
+            line=line,
+            options=self._options(spec.planning, loc, step_seed(sources.scenario.seed, path)),
+            children=children,
+        )
+        for index, expectation in enumerate(spec.expect):
+            self._expectation(expectation, (*loc, "expect", index), step_id)
+        return step
+
+    def _options(self, planning: Planning | None, loc: Loc, seed: int) -> PlanningOptions:
+        sources = self.sources
+        if planning is not None:
+            check_planning(planning, (*loc, "planning"), self.problems, sources.check_planner)
+        return merged_options(
+            sources.scenario.planning, planning, seed, sources.checks_per_second, self._planner_name
+        )
+
+    def _planner_name(self, name: str) -> str:
+        try:
+            return self.sources.check_planner(name)
+        except ValueError:  # reported where it is said
+            return name
+
+    def _expectation(self, spec: AnyExpectation, loc: Loc, step: str) -> None:
+        self.pending.append((spec, loc))
+        line, _ = self.sources.lines.line_of(loc)
+        self.expectations.append(ProgramExpectation(spec, step, line))
+
+
+def _available_steps() -> str:
+    return "available: " + ", ".join(sorted(model.model_fields["do"].default for model in execute))
+
+
+def _without_pose(spec: ObjectSpec) -> ObjectSpec:
+    return spec.model_copy(update={"pose": type(spec.pose)()})

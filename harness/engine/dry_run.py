@@ -1,0 +1,181 @@
+"""Adapters that move nothing: what can be said of a program before any physics.
+
+`harness check` and `harness explain` execute the program on these; reach, goals in collision and
+missing objects come out as they would, contacts are taken to happen as the file hopes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from harness.core.spatial import SE3
+from harness.core.trajectory import JointTrajectory
+from harness.core.types import FloatArray
+from harness.engine.program import Program
+from harness.ports import (
+    Goal,
+    GripperResult,
+    JointGoal,
+    Kinematics,
+    MotionPlan,
+    MotionPlanner,
+    PlanningOptions,
+    PoseGoal,
+)
+from harness.recording.run import Signals
+from harness.robot.description import RobotDescription
+
+
+class DrySimulator:
+    """The Simulator port without physics: commands come true at once, time stands still."""
+
+    def __init__(self, program: Program) -> None:
+        self._description = program.description
+        self._positions = program.description.start_positions()
+        self._poses = {obj.name: obj.pose for obj in program.world.objects}
+        self._movable = tuple(
+            obj.name for obj in program.all_objects() if obj.in_simulation and not obj.is_static
+        )
+
+    @property
+    def time(self) -> float:
+        return 0.0
+
+    @property
+    def sample_count(self) -> int:
+        return 1
+
+    def joint_positions(self) -> FloatArray:
+        return np.array(self._positions)
+
+    def commanded_positions(self) -> FloatArray:
+        return np.array(self._positions)
+
+    def object_pose(self, name: str) -> SE3:
+        return self._poses[name]
+
+    def track(self, trajectory: JointTrajectory) -> None:
+        for name, position in zip(trajectory.joint_names, trajectory.positions[-1], strict=True):
+            self._positions[self._description.joint_index[name]] = position
+        self._positions = self._description.with_mimics(self._positions)
+
+    def command_gripper(
+        self, position: float, max_effort: float, *, timeout: float
+    ) -> GripperResult:
+        del max_effort, timeout
+        gripper = self._description.gripper
+        if gripper is None:
+            raise RuntimeError("the robot has no gripper")
+        index = self._description.joint_index[gripper.joint]
+        before = self._positions[index]
+        self._positions[index] = position
+        self._positions = self._description.with_mimics(self._positions)
+        span = gripper.closed_position - gripper.open_position
+        is_closing = (position - before) * span > 0
+        touched = self._movable if is_closing else ()
+        return GripperResult(
+            position=position,
+            effort=0.0,
+            stalled=False,
+            reached_goal=True,
+            contacts=dict.fromkeys(gripper.sides, touched),
+        )
+
+    def hold(self, duration: float) -> None:
+        del duration
+
+    def settle(self, max_velocity: float, timeout: float) -> bool:
+        del max_velocity, timeout
+        return True
+
+    def add_object(self, name: str, pose: SE3) -> None:
+        self._poses[name] = pose
+
+    def remove_object(self, name: str) -> None:
+        self._poses.pop(name, None)
+
+    def move_object(self, name: str, pose: SE3) -> None:
+        self._poses[name] = pose
+
+    def weld(self, name: str, link: str) -> None:
+        del name, link
+
+    def unweld(self, name: str) -> None:
+        del name
+
+    def finish(self) -> Signals:
+        raise RuntimeError("nothing is recorded without physics")
+
+
+class DryPlanner:
+    """The MotionPlanner port that checks goals and jumps to them."""
+
+    def __init__(
+        self, planner: MotionPlanner, kinematics: Kinematics, description: RobotDescription
+    ) -> None:
+        self._planner = planner
+        self._kinematics = kinematics
+        self._description = description
+
+    def plan(
+        self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
+    ) -> MotionPlan:
+        facts = self.check_goal(group, start, goal, options)
+        if isinstance(goal, JointGoal):
+            positions = goal.positions
+        else:
+            positions = facts.get("positions")
+            if positions is None:
+                positions = self._kinematics.solve(group, goal, start, options.seed)[0]
+        names = self._description.groups[group].joint_names
+        indices = list(self._description.group_indices(group))
+        ends = np.vstack([start[indices], positions])
+        still = np.zeros_like(ends)
+        trajectory = JointTrajectory(names, np.array([0.0, 1e-3]), ends, still, still)
+        return MotionPlan(trajectory, {}, facts)
+
+    def plan_joint_motion(
+        self,
+        group: str,
+        start: FloatArray,
+        positions: FloatArray,
+        options: PlanningOptions,
+        duration: float | None = None,
+    ) -> MotionPlan:
+        del duration
+        return self.plan(group, start, JointGoal(positions), options)
+
+    def plan_linear(
+        self, group: str, start: FloatArray, goal: PoseGoal, options: PlanningOptions
+    ) -> MotionPlan:
+        return self.plan(group, start, goal, options)
+
+    def plan_relative(
+        self,
+        group: str,
+        start: FloatArray,
+        link: str,
+        twist: FloatArray,
+        distances: tuple[float, float],
+        options: PlanningOptions,
+    ) -> MotionPlan:
+        pose = self._kinematics.link_pose(start, link)
+        moved = SE3(pose.rotation, pose.translation + distances[0] * twist[:3])
+        if np.any(twist[3:]):
+            moved = SE3(_turn(twist[3:], distances[0]) @ pose.rotation, pose.translation)
+        return self.plan(group, start, PoseGoal(link, moved, 1e-3, 1e-2), options)
+
+    def check_goal(
+        self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
+    ) -> Mapping[str, Any]:
+        return self._planner.check_goal(group, start, goal, options)
+
+
+def _turn(axis: FloatArray, angle: float) -> FloatArray:
+    """Rotation about a unit axis (Rodrigues), shape (3, 3)."""
+    x, y, z = axis
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross

@@ -1,0 +1,194 @@
+"""Carry out a program step by step, and record what became of each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+from harness.core.errors import StepFailed
+from harness.engine import executors as executors
+from harness.engine.cell import Cell, Presence, StepNotes
+from harness.engine.program import Program, ProgramStep
+from harness.engine.registry import execute
+from harness.ports import Kinematics, MotionPlanner, PlanningScene, Simulator
+from harness.recording.run import AttachmentRecord, ObjectRecord, StepRecord, StepStatus
+
+OnStep = Callable[[Literal["step_started", "step_finished"], ProgramStep, StepRecord | None], None]
+
+
+@dataclass(frozen=True)
+class Execution:
+    """What executing a program leaves, besides the simulator's signals."""
+
+    steps: tuple[StepRecord, ...]
+    objects: tuple[ObjectRecord, ...]
+    attachments: tuple[AttachmentRecord, ...]
+    ended_early: str
+
+
+class _RunEndedError(Exception):
+    """A step failed in a way that nothing expected; carries the failure up through nesting."""
+
+    def __init__(self, failure: StepFailed) -> None:
+        self.failure = failure
+        super().__init__(str(failure))
+
+
+@dataclass
+class _Runner:
+    cell: Cell
+    on_step: OnStep
+    keep_going: bool = False
+    records: list[StepRecord] = field(default_factory=list[StepRecord])
+
+    def run(self, steps: Sequence[ProgramStep]) -> None:
+        """Carry out steps in order; the first unexpected failure ends it."""
+        for step in steps:
+            self._run_step(step)
+
+    def _run_step(self, step: ProgramStep) -> None:
+        cell = self.cell
+        self.on_step("step_started", step, None)
+        cell.step, cell.notes = step, StepNotes()
+        place = len(self.records)
+        self.records.append(_not_reached(step))
+        # the sample at the step's start belongs to it, so that no step is without samples
+        start_time, start_index = cell.simulator.time, max(0, cell.simulator.sample_count - 1)
+        failure = self._attempt(step)
+        status, message = _judge_step(step, failure)
+        notes = cell.notes
+        self.records[place] = replace(
+            self.records[place],
+            status=status,
+            error_code=failure.code if failure else "",
+            message=message,
+            start_time=start_time,
+            end_time=cell.simulator.time,
+            start_index=start_index,
+            end_index=cell.simulator.sample_count,
+            trajectory=notes.trajectory,
+            planner=notes.planner,
+            explanation={**notes.explanation, **(failure.facts if failure else {})},
+            result=notes.result,
+        )
+        self.on_step("step_finished", step, self.records[place])
+        if status == "failed" and not self.keep_going:
+            code = failure.code if failure else "FAILURE"
+            raise _RunEndedError(failure or StepFailed(code, message))
+
+    def _attempt(self, step: ProgramStep) -> StepFailed | None:
+        try:
+            execute(step.spec, self.cell)
+        except StepFailed as failure:
+            return failure
+        except _RunEndedError as ended:
+            return ended.failure
+        return None
+
+
+def execute_program(
+    program: Program,
+    scene: PlanningScene,
+    kinematics: Kinematics,
+    planner: MotionPlanner,
+    simulator: Simulator,
+    on_step: OnStep,
+    *,
+    keep_going: bool = False,
+) -> Execution:
+    """Run a program on adapters that stand at its start state.
+
+    Args:
+        program: What to do.
+        scene: Empty; the world's objects are added here.
+        kinematics: Of the program's robot.
+        planner: Plans in `scene`.
+        simulator: At the start state, with every object of the program prepared and the world's
+            present.
+        on_step: Called before and after each step.
+        keep_going: Whether a failed step lets the next one begin all the same.
+    """
+    cell = Cell(
+        description=program.description,
+        scene=scene,
+        kinematics=kinematics,
+        planner=planner,
+        simulator=simulator,
+        later_objects=program.later_objects,
+        seed=program.seed,
+    )
+    for obj in program.world.objects:
+        cell.presence[obj.name] = Presence(obj, obj.pose, [[0.0, float("inf")]])
+        if obj.in_planning:
+            scene.add_object(obj, obj.pose)
+    runner = _Runner(cell, on_step, keep_going)
+    cell.run_steps = runner.run
+    ended_early = ""
+    try:
+        runner.run(program.steps)
+    except _RunEndedError as ended:
+        ended_early = str(ended.failure)
+    records = _with_unreached(program, runner.records, simulator)
+    return Execution(
+        steps=records,
+        objects=tuple(_object_record(presence, simulator) for presence in cell.presence.values()),
+        attachments=tuple(
+            replace(record, end_time=min(record.end_time, simulator.time))
+            for record in cell.attachments
+        ),
+        ended_early=ended_early,
+    )
+
+
+def _not_reached(step: ProgramStep) -> StepRecord:
+    return StepRecord(
+        id=step.id,
+        path=step.path,
+        verb=step.spec.do,
+        summary=step.summary,
+        line=step.line,
+        status="not_reached",
+        expected_error=step.spec.expect_error or "",
+    )
+
+
+def _judge_step(step: ProgramStep, failure: StepFailed | None) -> tuple[StepStatus, str]:
+    """Whether a step did what the file says, and what to say when it did not."""
+    expected = step.spec.expect_error
+    if expected is None:
+        return ("failed", failure.message) if failure else ("passed", "")
+    if failure is None:
+        return "failed", f"expected to fail with {expected}, but it succeeded"
+    if failure.code != expected:
+        return "failed", f"expected {expected}, but it failed with {failure}"
+    return "expected_error", failure.message
+
+
+def _with_unreached(
+    program: Program, records: list[StepRecord], simulator: Simulator
+) -> tuple[StepRecord, ...]:
+    """Records in execution order, then the steps of the file that were never reached."""
+    reached = {record.path for record in records}
+    end = {"start_time": simulator.time, "end_time": simulator.time}
+    index = {"start_index": simulator.sample_count, "end_index": simulator.sample_count}
+    unreached = [
+        replace(_not_reached(step), **end, **index)
+        for step in program.all_steps()
+        if step.path not in reached
+    ]
+    return (*records, *unreached)
+
+
+def _object_record(presence: Presence, simulator: Simulator) -> ObjectRecord:
+    obj = presence.obj
+    return ObjectRecord(
+        name=obj.name,
+        is_static=obj.is_static,
+        in_planning=obj.in_planning,
+        in_simulation=obj.in_simulation,
+        shapes=obj.visuals or obj.shapes,
+        present=tuple((start, min(end, simulator.time)) for start, end in presence.intervals),
+        pose=tuple(float(value) for value in presence.pose.as_vector()),
+        mass=obj.mass,
+    )

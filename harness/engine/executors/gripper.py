@@ -1,0 +1,48 @@
+"""gripper: GripperCommand."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.engine.cell import Cell
+from harness.engine.registry import execute
+from harness.ports import GripperResult
+from harness.robot.description import Gripper as GripperDescription
+from harness.spec.steps import Gripper
+
+DEFAULT_TIMEOUT = 10.0  # [s] of simulation
+
+
+@execute.handles(Gripper)
+def gripper(step: Gripper, cell: Cell) -> None:
+    """Drive the gripper's joint until it arrives or stalls; a stall is no failure, as in ROS."""
+    hand = cell.gripper
+    if step.named_target is not None:
+        states = cell.description.states_of(hand.group)
+        target = states[step.named_target].positions[hand.joint]
+    elif step.position is not None:
+        target = step.position
+    else:
+        target = position_for_width(hand, step.width or 0.0)
+    result = cell.simulator.command_gripper(
+        target, step.max_effort or hand.grip_effort, timeout=step.timeout or DEFAULT_TIMEOUT
+    )
+    note_result(cell, target, result)
+
+
+def position_for_width(hand: GripperDescription, width: float) -> float:
+    """Joint position at which the pads are `width` apart [m]."""
+    rows = hand.widths[np.argsort(hand.widths[:, 1])]
+    return float(np.interp(width, rows[:, 1], rows[:, 0]))
+
+
+def note_result(cell: Cell, target: float, result: GripperResult) -> None:
+    """Leave GripperCommand's result, and the contacts, in the step's record."""
+    cell.notes.result.update(
+        target=target,
+        position=result.position,
+        effort=result.effort,
+        stalled=result.stalled,
+        reached_goal=result.reached_goal,
+        contacts={side: list(names) for side, names in result.contacts.items()},
+    )

@@ -1,0 +1,17 @@
+"""move_to: plan a collision-free motion, then follow it."""
+
+from __future__ import annotations
+
+from harness.engine.cell import Cell
+from harness.engine.goals import group_of, resolve_goal
+from harness.engine.registry import execute
+from harness.spec.steps import MoveTo
+
+
+@execute.handles(MoveTo)
+def move_to(step: MoveTo, cell: Cell) -> None:
+    """Plan from where the arm stands to the goal, time the path, track it."""
+    cell.sync_scene()
+    group = group_of(cell, step.group)
+    goal = resolve_goal(step, group, cell)
+    cell.carry_out(cell.planner.plan(group, cell.planning_start(), goal, cell.current.options))

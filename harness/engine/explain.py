@@ -1,0 +1,75 @@
+"""A program as text for a person."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from harness.core.world import World
+from harness.engine.program import Program
+from harness.ports import PlanningOptions
+from harness.recording.run import StepRecord
+from harness.robot.description import RobotDescription
+from harness.spec.checks import AnyExpectation
+
+Describe = Callable[[AnyExpectation], str]
+
+
+def explain(program: Program, predicted: Sequence[StepRecord], describe: Describe) -> str:
+    """Robot, world, steps with their seeds and expansion, expectations.
+
+    Args:
+        program: What will be executed.
+        predicted: Step records of a dry run; composite steps come with what they expand to.
+        describe: An expectation in one line.
+    """
+    lines = [program.title, "", *_robot(program.description), *_world(program.world), "steps"]
+    lines += _steps(program, predicted, describe)
+    whole = [item for item in program.expectations if not item.step]
+    if whole:
+        lines.append("expected of the whole run")
+        lines += [f"  {item.line:>4}  {describe(item.spec)}" for item in whole]
+    return "\n".join(lines) + "\n"
+
+
+def _robot(robot: RobotDescription) -> list[str]:
+    lines = [f"robot {robot.name}, TCP {robot.tcp_link}, inverse kinematics: {robot.ik_solver}"]
+    for name, group in robot.groups.items():
+        states = ", ".join(robot.states_of(name)) or "none"
+        lines.append(f"  group {name}: {', '.join(group.joint_names)}; named states: {states}")
+    start = ", ".join(f"{name} {value:.4g}" for name, value in robot.start_state.items())
+    return [*lines, f"  starts at {start}" if start else "  starts at zero", ""]
+
+
+def _world(world: World) -> list[str]:
+    lines = [f"world {world.name}, physics step {world.timestep * 1e3:g} ms"]
+    for obj in world.objects:
+        x, y, z = obj.pose.translation
+        kind = "static" if obj.is_static else f"{obj.mass:g} kg"
+        parts = ["planning"] * obj.in_planning + ["simulation"] * obj.in_simulation
+        lines.append(
+            f"  {obj.name}: {kind}, at ({x:.4g}, {y:.4g}, {z:.4g}),"
+            f" friction {obj.friction.sliding:g}, in {' and '.join(parts)}"
+        )
+    return [*lines, ""]
+
+
+def _steps(program: Program, predicted: Sequence[StepRecord], describe: Describe) -> list[str]:
+    options = {step.path: step.options for step in program.all_steps()}
+    lines: list[str] = []
+    for record in predicted:
+        indent = "  " * (1 + record.path.count("."))
+        lines.append(f"{indent}{record.line:>4}  {record.summary}{_seed(record, options)}")
+        if record.error_code:
+            known = "as expected" if record.error_code == record.expected_error else "NOT EXPECTED"
+            lines.append(f"{indent}        fails ({known}): {record.error_code}: {record.message}")
+        lines += [
+            f"{indent}        expect {describe(item.spec)}"
+            for item in program.expectations
+            if item.step == record.id and record.path in options
+        ]
+    return [*lines, ""]
+
+
+def _seed(record: StepRecord, options: dict[str, PlanningOptions]) -> str:
+    step = options.get(record.path)
+    return "" if step is None else f"  [seed {step.seed}]"

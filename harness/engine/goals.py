@@ -1,0 +1,92 @@
+"""From the goal a file states to the goal a planner takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.core.errors import StepFailed
+from harness.core.types import FloatArray
+from harness.engine.cell import Cell
+from harness.ports import Goal, JointGoal, PoseGoal, PositionGoal
+from harness.spec.goals import GoalFields
+from harness.spec.poses import Pose, PoseTolerance, Position
+from harness.spec.steps import Lin, MoveTo
+
+DEFAULT_TOLERANCE = PoseTolerance()
+
+
+@dataclass(frozen=True)
+class TcpGoal:
+    """Where a composite step wants the TCP: a pose, or a position and a pitch [rad]."""
+
+    target: Pose | Position
+    pitch: float | None = None
+
+    def move_to(self, group: str | None) -> MoveTo:
+        """The free motion there."""
+        if isinstance(self.target, Pose):
+            return MoveTo(pose=self.target, group=group)
+        return MoveTo(position=self.target, pitch=self.pitch, group=group)
+
+    def lin(self, group: str | None) -> Lin:
+        """The straight motion there."""
+        if isinstance(self.target, Pose):
+            return Lin(pose=self.target, group=group)
+        return Lin(position=self.target, pitch=self.pitch, group=group)
+
+
+def group_of(cell: Cell, group: str | None) -> str:
+    """The step's planning group: its own, else the arm's, else the gripper's."""
+    if group is not None:
+        return group
+    gripper = cell.description.gripper
+    return cell.description.arm_group or (gripper.group if gripper else "")
+
+
+def resolve_goal(goal: GoalFields, group: str, cell: Cell) -> Goal:
+    """The goal with every number known, in the world, as things stand now."""
+    if goal.named_target is not None:
+        state = cell.description.states_of(group)[goal.named_target]
+        return JointGoal(_joint_positions(cell, group, dict(state.positions)))
+    if goal.joints is not None:
+        return JointGoal(_joint_positions(cell, group, goal.joints))
+    if goal.pose is not None:
+        return pose_goal(goal.pose, goal.link, goal.tolerance, cell)
+    if goal.position is None:
+        raise StepFailed("UNRECOGNIZED_GOAL_TYPE", "the step has no goal")
+    tolerance = goal.tolerance or DEFAULT_TOLERANCE
+    point = cell.frame(goal.position.frame).apply(np.array(goal.position.xyz))
+    return PositionGoal(
+        link=goal.link or cell.description.tcp_link,
+        position=point,
+        pitch=goal.pitch,
+        position_tolerance=tolerance.position,
+        pitch_tolerance=tolerance.orientation,
+    )
+
+
+def pose_goal(
+    pose: Pose, link: str | None, tolerance: PoseTolerance | None, cell: Cell
+) -> PoseGoal:
+    """A pose goal; `link` may be a held object, as Task Constructor's ik_frame."""
+    limits = tolerance or DEFAULT_TOLERANCE
+    target = cell.world_pose(pose)
+    name = link or cell.description.tcp_link
+    attached = cell.scene.attached()
+    if name in attached:
+        start = cell.planning_start()
+        carrier = attached[name]
+        in_carrier = cell.kinematics.link_pose(start, carrier).inverse() @ cell.scene.object_pose(
+            name, start
+        )
+        name, target = carrier, target @ in_carrier.inverse()
+    return PoseGoal(name, target, limits.position, limits.orientation)
+
+
+def _joint_positions(cell: Cell, group: str, positions: dict[str, float]) -> FloatArray:
+    start = cell.planning_start()
+    index = cell.description.joint_index
+    names = cell.description.groups[group].joint_names
+    return np.array([positions.get(name, float(start[index[name]])) for name in names])

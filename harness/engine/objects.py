@@ -1,0 +1,162 @@
+"""Objects of a file made whole: shapes, mass, inertia, friction."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Rgba, Shape, Sphere
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.core.world import Friction, Light, World, WorldObject
+from harness.spec.world import FrictionSpec, ObjectSpec, ShapeSpec, WorldSpec
+
+DEFAULT_DENSITY = 1000.0  # [kg/m^3]
+DEFAULT_COLOR: Rgba = (0.62, 0.66, 0.72, 1.0)
+
+
+class ObjectUnusableError(ValueError):
+    """An object lacks something that only its author can say."""
+
+
+def resolve_object(spec: ObjectSpec, pose: SE3, base_dir: Path) -> WorldObject:
+    """The object with every number known.
+
+    Args:
+        spec: What the file says; its own pose is not read.
+        pose: T_world_object.
+        base_dir: Folder that mesh files are relative to.
+
+    Raises:
+        ObjectUnusableError: A dynamic object of meshes or planes without mass and inertia, or a
+            mesh file that is not there.
+    """
+    parts = spec.shapes or (spec,)
+    shapes = tuple(_shape(part, spec.color, base_dir) for part in parts)
+    mass, center, inertia = 0.0, np.array(spec.center_of_mass, dtype=float), np.zeros((3, 3))
+    if not spec.static:
+        mass, center, inertia = _mass_properties(spec, shapes)
+    return WorldObject(
+        name=spec.name,
+        shapes=shapes,
+        pose=pose,
+        is_static=spec.static,
+        mass=mass,
+        center_of_mass=center,
+        inertia=inertia,
+        friction=_friction(spec.friction),
+        in_planning=spec.in_ in ("planning", "both"),
+        in_simulation=spec.in_ in ("simulation", "both"),
+    )
+
+
+def resolve_world(spec: WorldSpec, objects: tuple[WorldObject, ...]) -> World:
+    """The world around resolved objects."""
+    return World(
+        name=spec.world,
+        objects=objects,
+        gravity=spec.physics.gravity,
+        timestep=spec.physics.timestep,
+        lights=tuple(
+            Light(light.direction, light.diffuse[:3], light.casts_shadow) for light in spec.lights
+        ),
+    )
+
+
+def _geometry(spec: ObjectSpec | ShapeSpec, base_dir: Path) -> Geometry:
+    if spec.box is not None:
+        return Box(spec.box.size)
+    if spec.cylinder is not None:
+        return Cylinder(spec.cylinder.radius, spec.cylinder.length)
+    if spec.sphere is not None:
+        return Sphere(spec.sphere.radius)
+    if spec.capsule is not None:
+        return Capsule(spec.capsule.radius, spec.capsule.length)
+    if spec.mesh is not None:
+        path = base_dir / spec.mesh.file
+        if not path.is_file():
+            raise ObjectUnusableError(f"there is no mesh file '{spec.mesh.file}' beside the file")
+        scale = spec.mesh.scale
+        return Mesh(path, scale if isinstance(scale, tuple) else (scale, scale, scale))
+    return Plane()
+
+
+def _shape(spec: ObjectSpec | ShapeSpec, color: Rgba | None, base_dir: Path) -> Shape:
+    pose = spec.pose.se3() if isinstance(spec, ShapeSpec) else SE3.identity()
+    own = spec.color or color or DEFAULT_COLOR
+    return Shape(_geometry(spec, base_dir), pose, own, spec.name or "")
+
+
+def _friction(spec: float | FrictionSpec | None) -> Friction:
+    if spec is None:
+        return Friction()
+    if isinstance(spec, FrictionSpec):
+        return Friction(spec.sliding, spec.torsional, spec.rolling)
+    return Friction(sliding=spec)
+
+
+def _mass_properties(
+    spec: ObjectSpec, shapes: tuple[Shape, ...]
+) -> tuple[float, FloatArray, FloatArray]:
+    """Mass [kg], centre of mass [m] and inertia about it [kg m^2], from the file or from solids."""
+    if any(isinstance(shape.geometry, Plane) for shape in shapes):
+        raise ObjectUnusableError("a plane has no mass: say `static: true`")
+    solids = [_solid(shape.geometry) for shape in shapes]
+    if any(solid is None for solid in solids) and (spec.mass is None or spec.inertia is None):
+        raise ObjectUnusableError("a mesh that moves needs `mass` and `inertia`, or `static: true`")
+    known = [solid for solid in solids if solid is not None]
+    volume = sum(volume for volume, _ in known)
+    mass = spec.mass if spec.mass is not None else DEFAULT_DENSITY * volume
+    given_center = np.array(spec.center_of_mass, dtype=float)
+    if spec.inertia is not None:
+        i = spec.inertia
+        tensor = np.array([[i.ixx, i.ixy, i.ixz], [i.ixy, i.iyy, i.iyz], [i.ixz, i.iyz, i.izz]])
+        _check_inertia(tensor)
+        return mass, given_center, tensor
+    density = mass / volume
+    centroid = np.zeros(3)
+    for shape, (part, _) in zip(shapes, known, strict=True):
+        centroid += part / volume * shape.pose.translation
+    center = given_center if np.any(given_center) else centroid
+    inertia = np.zeros((3, 3))
+    for shape, (part, unit) in zip(shapes, known, strict=True):
+        offset = shape.pose.translation - center
+        rotation = shape.pose.rotation
+        inertia += density * (rotation @ unit @ rotation.T)
+        inertia += density * part * (offset @ offset * np.eye(3) - np.outer(offset, offset))
+    return mass, center, inertia
+
+
+def _check_inertia(tensor: FloatArray) -> None:
+    moments = np.linalg.eigvalsh(tensor)
+    if moments[0] <= 0 or moments[2] > moments[0] + moments[1] + 1e-12:
+        raise ObjectUnusableError(
+            "no body has this inertia: its principal moments are "
+            + ", ".join(f"{moment:.3g}" for moment in moments)
+            + " kg m^2, and each must be positive and no more than the sum of the others"
+        )
+
+
+def _solid(geometry: Geometry) -> tuple[float, FloatArray] | None:
+    """Volume [m^3] and inertia at density 1 about the centre [m^5]; None for planes and meshes."""
+    match geometry:
+        case Box(size=(x, y, z)):
+            volume = x * y * z
+            return volume, volume / 12 * np.diag([y * y + z * z, x * x + z * z, x * x + y * y])
+        case Cylinder(radius=r, length=h):
+            volume = math.pi * r * r * h
+            side = (3 * r * r + h * h) / 12
+            return volume, volume * np.diag([side, side, r * r / 2])
+        case Sphere(radius=r):
+            volume = 4 / 3 * math.pi * r**3
+            return volume, volume * 0.4 * r * r * np.eye(3)
+        case Capsule(radius=r, length=h):
+            cylinder, ball = math.pi * r * r * h, 4 / 3 * math.pi * r**3
+            axial = cylinder * r * r / 2 + ball * 0.4 * r * r
+            side = cylinder * (3 * r * r + h * h) / 12
+            side += ball * (0.4 * r * r + h * h / 4 + 3 * h * r / 8)
+            return cylinder + ball, np.diag([side, side, axial])
+        case _:
+            return None

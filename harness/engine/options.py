@@ -1,0 +1,75 @@
+"""Planning options of a step: its own words, then the scenario's, then the defaults."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from harness.engine.program import Loc
+from harness.engine.scope import Problems
+from harness.ports import PlanningOptions
+from harness.spec.planning import Planning
+
+DEFAULT_SCALING = 0.3  # of the joint limits: the course's default plan request
+DEFAULT_PADDING = 0.002  # [m]
+DEFAULT_PLANNER = "RRTConnect"
+DEFAULT_STATE_CHECKS = 200_000
+
+
+def merged_options(
+    scenario: Planning,
+    step: Planning | None,
+    seed: int,
+    checks_per_second: int,
+    planner_name: Callable[[str], str],
+) -> PlanningOptions:
+    """Options with every number known.
+
+    Args:
+        scenario: The scenario's `planning`.
+        step: The step's, which wins key by key.
+        seed: Of the step.
+        checks_per_second: State checks that a second of `planning_time` buys.
+        planner_name: Normalises `planner_id`.
+    """
+    said = scenario.model_dump(exclude_none=True)
+    if step is not None:
+        own = step.model_dump(exclude_none=True)
+        if {"planning_time", "max_state_checks"} & own.keys():
+            said.pop("planning_time", None)
+            said.pop("max_state_checks", None)
+        said.update(own)
+    checks = said.get("max_state_checks")
+    if checks is None:
+        seconds = said.get("planning_time")
+        checks = DEFAULT_STATE_CHECKS if seconds is None else int(seconds * checks_per_second)
+    return PlanningOptions(
+        planner_id=planner_name(said.get("planner_id", DEFAULT_PLANNER)),
+        max_state_checks=max(1, checks),
+        attempts=said.get("planning_attempts", 1),
+        velocity_scaling=said.get("max_velocity_scaling_factor", DEFAULT_SCALING),
+        acceleration_scaling=said.get("max_acceleration_scaling_factor", DEFAULT_SCALING),
+        padding=said.get("padding", DEFAULT_PADDING),
+        seed=seed,
+        parameters=said.get("parameters", {}),
+    )
+
+
+def check_planning(
+    planning: Planning, loc: Loc, problems: Problems, check_planner: Callable[[str], str]
+) -> None:
+    """Report a planner that there is not, and a pipeline that is a step of its own."""
+    if planning.planner_id is not None:
+        try:
+            check_planner(planning.planner_id)
+        except ValueError as error:
+            problems.add((*loc, "planner_id"), str(error))
+    if planning.pipeline == "pilz_industrial_motion_planner":
+        problems.add(
+            (*loc, "pipeline"),
+            "Pilz's planners are steps here",
+            "write `ptp:` or `lin:` instead of `move_to:`",
+        )
+    if planning.planning_time is not None and planning.max_state_checks is not None:
+        problems.add(
+            (*loc, "planning_time"), "both `planning_time` and `max_state_checks` are given"
+        )

@@ -1,0 +1,153 @@
+"""What exists while a file is read from top to bottom, and the problems found on the way."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Iterable
+
+from harness.core.errors import Problem, SpecError
+from harness.core.world import WorldObject
+from harness.engine.program import Loc
+from harness.robot.description import RobotDescription
+
+LISTED = 12  # names in a hint
+
+
+class Problems:
+    """Collects located problems, so that all of a file's are told at once."""
+
+    def __init__(self, locate: Callable[[Loc, str, str], Problem]) -> None:
+        self._locate = locate
+        self._found: list[Problem] = []
+
+    def add(self, loc: Loc, message: str, hint: str = "") -> None:
+        """Note a problem at a place of the file."""
+        self._found.append(self._locate(loc, message, hint))
+
+    def unknown(self, loc: Loc, what: str, name: str, known: Iterable[str]) -> None:
+        """Note a name that nothing has, with the nearest that something has, then the rest."""
+        names = list(dict.fromkeys(known))
+        near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+        rest = ", ".join(names[:LISTED]) + (", ..." if len(names) > LISTED else "")
+        parts = [f"did you mean '{near[0]}'?"] if near else []
+        parts.append(f"known: {rest}" if names else "there is none here")
+        self.add(loc, f"there is no {what} '{name}'", " ".join(parts))
+
+    def raise_if_any(self) -> None:
+        """Raise SpecError with everything found, if anything was."""
+        if self._found:
+            raise SpecError(self._found)
+
+
+class Scope:
+    """Names that a step or an expectation may use.
+
+    Attributes:
+        description: The robot.
+        objects: Every object known so far, by name, whether it is in the scene now or not.
+        present: Objects in the scene at this point of the file, as far as the file tells.
+        attached: Objects attached at this point.
+        added: Objects that steps added and nothing removed.
+        problems: Where to report.
+    """
+
+    def __init__(self, description: RobotDescription, problems: Problems) -> None:
+        self.description = description
+        self.problems = problems
+        self.objects: dict[str, WorldObject] = {}
+        self.present: dict[str, None] = {}
+        self.attached: dict[str, None] = {}
+        self.added: dict[str, None] = {}
+        self.step_ids: dict[str, None] = {}
+
+    def add_object(self, obj: WorldObject, *, present: bool = False) -> None:
+        """Make an object known; `present` when it is in the scene from the start."""
+        self.objects[obj.name] = obj
+        if present:
+            self.present[obj.name] = None
+
+    def claim_step_id(self, step_id: str) -> bool:
+        """Whether the id was free; it no longer is."""
+        if step_id in self.step_ids:
+            return False
+        self.step_ids[step_id] = None
+        return True
+
+    # -- names --------------------------------------------------------------------------------
+
+    def check_frame(self, name: str, loc: Loc) -> None:
+        """`world`, a link, or an object."""
+        frames = ("world", *self.description.link_names)
+        if name not in frames and name not in self.objects:
+            self.problems.unknown(loc, "frame", name, (*frames, *self.objects))
+
+    def check_link(self, name: str | None, loc: Loc) -> None:
+        """A robot link."""
+        if name is not None and name not in self.description.link_names:
+            self.problems.unknown(loc, "link", name, self.description.link_names)
+
+    def check_link_or_held(self, name: str | None, loc: Loc) -> None:
+        """A robot link, or an object that is attached here (Task Constructor's ik_frame)."""
+        if name is not None and name not in self.attached:
+            self.check_link(name, loc)
+
+    def check_group(self, name: str | None, loc: Loc) -> str:
+        """A planning group; returns the one that is meant."""
+        if name is None:
+            gripper = self.description.gripper
+            return self.description.arm_group or (gripper.group if gripper else "")
+        if name not in self.description.groups:
+            self.problems.unknown(loc, "planning group", name, self.description.groups)
+        return name
+
+    def check_object(self, name: str, loc: Loc, *, simulated: bool = False) -> None:
+        """An object of the world or of an earlier step, and one that the physics knows."""
+        obj = self.objects.get(name)
+        if obj is None:
+            self.problems.unknown(loc, "object", name, self.objects)
+        elif simulated and not obj.in_simulation:
+            self.problems.add(
+                loc,
+                f"'{name}' is known to the planner alone, so the physics cannot tell of it",
+                "name an object that is `in: both` or `in: simulation`",
+            )
+
+    def check_present(self, name: str, loc: Loc) -> None:
+        """An object that is in the scene at this point of the file."""
+        if name not in self.objects:
+            self.check_object(name, loc)
+        elif name not in self.present:
+            self.problems.add(loc, f"'{name}' is not in the scene at this step", "add it first")
+
+    def check_body(self, name: str, loc: Loc, *, special: tuple[str, ...]) -> None:
+        """A link, an object, or one of some special words."""
+        known = (*special, *self.objects, *self.description.link_names)
+        if name not in known:
+            self.problems.unknown(loc, "object or link", name, known)
+
+    def check_state(self, group: str, state: str, loc: Loc) -> None:
+        """A named state of a group."""
+        states = self.description.states_of(group)
+        if state not in states and group in self.description.groups:
+            self.problems.unknown(loc, f"named state of '{group}'", state, states)
+
+    def check_joint(self, name: str, loc: Loc, group: str | None = None) -> None:
+        """A movable joint, of a group if one is given."""
+        names = self.description.joint_names
+        where = "joint"
+        if group is not None and group in self.description.groups:
+            names = self.description.groups[group].joint_names
+            where = f"joint of '{group}'"
+        if name not in names:
+            self.problems.unknown(loc, where, name, names)
+
+    def check_gripper(self, loc: Loc, what: str) -> bool:
+        """Whether the robot has a gripper, which `what` needs."""
+        if self.description.gripper is None:
+            self.problems.add(
+                loc,
+                f"{what} needs a gripper, and {self.description.name} has none",
+                "say `gripper: rh_p12_rn_a` under `robot`",
+            )
+            return False
+        return True

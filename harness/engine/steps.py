@@ -1,0 +1,264 @@
+"""What a step says, checked against the robot and the scene at its place in the file."""
+
+from __future__ import annotations
+
+from harness.core.registry import Registry
+from harness.engine.program import Loc
+from harness.engine.scope import Scope
+from harness.spec.goals import GoalFields
+from harness.spec.poses import Pose
+from harness.spec.steps import (
+    AddObject,
+    AllowCollisions,
+    AnyStep,
+    AttachObject,
+    ClearObjects,
+    DetachObject,
+    Grasp,
+    Gripper,
+    Lin,
+    MoveObject,
+    MoveRelative,
+    MoveTo,
+    Pick,
+    Place,
+    Ptp,
+    Release,
+    RemoveObject,
+)
+
+SPECIAL_BODIES = ("robot",)
+
+
+class At:
+    """A scope and the place of the step in it."""
+
+    def __init__(self, scope: Scope, loc: Loc) -> None:
+        self.scope = scope
+        self.loc = loc
+
+    def key(self, *keys: str | int) -> Loc:
+        """Place of something inside the step."""
+        return (*self.loc, *keys)
+
+
+check: Registry[At, None] = Registry()
+
+
+def check_step(step: AnyStep, loc: Loc, scope: Scope) -> None:
+    """Report what is wrong with a step, then let the scope know what it changes."""
+    at = At(scope, loc)
+    if step.group is not None:
+        scope.check_group(step.group, at.key("group"))
+    if type(step) in check:
+        check(step, at)
+
+
+def _check_pose(pose: Pose, at: At, *keys: str | int) -> None:
+    at.scope.check_frame(pose.frame, at.key(*keys, "frame"))
+
+
+def _check_goal(goal: GoalFields, group_name: str | None, at: At) -> None:
+    scope = at.scope
+    group = scope.check_group(group_name, at.key("group"))
+    if goal.named_target is not None:
+        scope.check_state(group, goal.named_target, at.key("named_target"))
+    for name in goal.joints or {}:
+        scope.check_joint(name, at.key("joints", name), group)
+    if goal.pose is not None:
+        _check_pose(goal.pose, at, "pose")
+    if goal.position is not None:
+        scope.check_frame(goal.position.frame, at.key("position", "frame"))
+    scope.check_link_or_held(goal.link, at.key("link"))
+    description = scope.description
+    has_no_tip = group in description.groups and not description.groups[group].tip_link
+    if (goal.pose or goal.position) and has_no_tip:
+        scope.problems.add(
+            at.loc, f"the group '{group}' is no chain, so it has no link to send to a pose"
+        )
+
+
+@check.handles(MoveTo)
+def _move_to(step: MoveTo, at: At) -> None:
+    _check_goal(step, step.group, at)
+    if step.path_constraints is not None:
+        at.scope.problems.add(at.key("path_constraints"), "`path_constraints` is not yet available")
+
+
+@check.handles(Ptp)
+def _ptp(step: Ptp, at: At) -> None:
+    _check_goal(step, step.group, at)
+    if step.duration is not None and not (step.joints or step.named_target):
+        at.scope.problems.add(at.key("duration"), "`duration` goes with `joints` or a named state")
+
+
+@check.handles(Lin)
+def _lin(step: Lin, at: At) -> None:
+    _check_goal(step, step.group, at)
+    if step.cartesian_limits is not None:
+        at.scope.problems.add(at.key("cartesian_limits"), "`cartesian_limits` is not yet available")
+
+
+@check.handles(MoveRelative)
+def _move_relative(step: MoveRelative, at: At) -> None:
+    at.scope.check_group(step.group, at.key("group"))
+    at.scope.check_link(step.link, at.key("link"))
+    for key in ("direction", "rotation"):
+        direction = getattr(step, key)
+        if direction is not None:
+            at.scope.check_frame(direction.frame, at.key(key, "frame"))
+
+
+@check.handles(Gripper)
+def _gripper(step: Gripper, at: At) -> None:
+    if not at.scope.check_gripper(at.loc, "`gripper`"):
+        return
+    hand = at.scope.description.gripper
+    if hand is not None and step.named_target is not None:
+        at.scope.check_state(hand.group, step.named_target, at.key("named_target"))
+    _check_gripper_position(step.position, at)
+
+
+@check.handles(Grasp)
+def _grasp(step: Grasp, at: At) -> None:
+    if at.scope.check_gripper(at.loc, "`grasp`"):
+        _check_gripper_position(step.position, at)
+    _check_graspable(step.object, at)
+    at.scope.attached[step.object] = None
+
+
+@check.handles(Release)
+def _release(step: Release, at: At) -> None:
+    scope = at.scope
+    hand = scope.description.gripper
+    if scope.check_gripper(at.loc, "`release`") and hand and step.named_target:
+        scope.check_state(hand.group, step.named_target, at.key("named_target"))
+    if step.object is not None:
+        scope.check_object(step.object, at.key("object"))
+        scope.attached.pop(step.object, None)
+    elif scope.attached:
+        scope.attached.popitem()
+
+
+def _check_gripper_position(position: float | None, at: At) -> None:
+    hand = at.scope.description.gripper
+    if position is None or hand is None:
+        return
+    joint = at.scope.description.joint_by_name[hand.joint]
+    if not joint.lower <= position <= joint.upper:
+        at.scope.problems.add(
+            at.key("position"),
+            f"'{joint.name}' goes from {joint.lower:g} to {joint.upper:g}, not to {position:g}",
+        )
+
+
+def _check_graspable(name: str, at: At) -> None:
+    scope = at.scope
+    scope.check_present(name, at.key("object"))
+    obj = scope.objects.get(name)
+    if obj is not None:
+        scope.check_object(name, at.key("object"), simulated=True)
+    if obj is not None and obj.is_static:
+        scope.problems.add(at.key("object"), f"'{name}' is static: it cannot be picked up")
+    if obj is not None and not obj.in_planning:
+        scope.problems.add(
+            at.key("object"), f"'{name}' is unknown to the planner, so it cannot be attached"
+        )
+
+
+@check.handles(AttachObject)
+def _attach(step: AttachObject, at: At) -> None:
+    scope = at.scope
+    if isinstance(step.object, str):
+        name = step.object
+        scope.check_present(name, at.key("object"))
+    else:
+        name = step.object.name
+        _check_pose(step.object.pose, at, "object", "pose")
+        scope.present[name] = None
+        scope.added[name] = None
+    scope.check_link(step.link, at.key("link"))
+    for index, link in enumerate(step.touch_links or ()):
+        scope.check_link(link, at.key("touch_links", index))
+    if step.represents is not None:
+        scope.check_object(step.represents, at.key("represents"), simulated=True)
+    scope.attached[name] = None
+
+
+@check.handles(DetachObject)
+def _detach(step: DetachObject, at: At) -> None:
+    at.scope.check_object(step.object, at.key("object"))
+    if step.object in at.scope.objects and step.object not in at.scope.attached:
+        at.scope.problems.add(at.key("object"), f"'{step.object}' is not attached at this step")
+    at.scope.attached.pop(step.object, None)
+
+
+@check.handles(AddObject)
+def _add(step: AddObject, at: At) -> None:
+    for index, spec in enumerate(step.objects):
+        _check_pose(spec.pose, at, "objects", index, "pose")
+        if spec.name in at.scope.present:
+            at.scope.problems.add(
+                at.key("objects", index, "name"), f"'{spec.name}' is in the scene already"
+            )
+        at.scope.present[spec.name] = None
+        at.scope.added[spec.name] = None
+
+
+@check.handles(RemoveObject)
+def _remove(step: RemoveObject, at: At) -> None:
+    for index, name in enumerate(step.objects):
+        at.scope.check_present(name, at.key("objects", index))
+        at.scope.present.pop(name, None)
+        at.scope.added.pop(name, None)
+
+
+@check.handles(MoveObject)
+def _move_object(step: MoveObject, at: At) -> None:
+    at.scope.check_present(step.object, at.key("object"))
+    _check_pose(step.pose, at, "pose")
+
+
+@check.handles(ClearObjects)
+def _clear(step: ClearObjects, at: At) -> None:
+    scope = at.scope
+    going = list(scope.present) if step.world else list(scope.added)
+    for name in going:
+        if name not in scope.attached:
+            scope.present.pop(name, None)
+            scope.added.pop(name, None)
+
+
+@check.handles(AllowCollisions)
+def _allow(step: AllowCollisions, at: At) -> None:
+    for index, pair in enumerate(step.pairs):
+        for side, name in enumerate(pair):
+            at.scope.check_body(name, at.key("pairs", index, side), special=SPECIAL_BODIES)
+
+
+@check.handles(Pick)
+def _pick(step: Pick, at: At) -> None:
+    at.scope.check_gripper(at.loc, "`pick`")
+    _check_graspable(step.object, at)
+    if step.grasp_pose is not None:
+        _check_pose(step.grasp_pose, at, "grasp_pose")
+    for key in ("approach", "lift"):
+        travel = getattr(step, key)
+        if travel is not None and travel.direction is not None:
+            at.scope.check_frame(travel.direction.frame, at.key(key, "direction", "frame"))
+    at.scope.attached[step.object] = None
+
+
+@check.handles(Place)
+def _place(step: Place, at: At) -> None:
+    at.scope.check_gripper(at.loc, "`place`")
+    _check_pose(step.pose, at, "pose")
+    if step.object is not None:
+        at.scope.check_object(step.object, at.key("object"))
+    for key in ("approach", "retreat"):
+        travel = getattr(step, key)
+        if travel is not None and travel.direction is not None:
+            at.scope.check_frame(travel.direction.frame, at.key(key, "direction", "frame"))
+    name = step.object or next(reversed(at.scope.attached), None)
+    if name is not None:
+        at.scope.attached.pop(name, None)

@@ -1,0 +1,69 @@
+"""A step in a few words."""
+
+from __future__ import annotations
+
+from harness.spec.goals import GoalFields
+from harness.spec.steps import (
+    AddObject,
+    AllowCollisions,
+    AnyStep,
+    AttachObject,
+    ClearObjects,
+    Grasp,
+    Gripper,
+    MoveRelative,
+    RemoveObject,
+    Wait,
+)
+
+
+def summarize(step: AnyStep) -> str:
+    """One line for a person: `move_to mogi_home`."""
+    if step.name:
+        return f"{step.do} {step.name}"
+    return f"{step.do} {_content(step)}".rstrip()
+
+
+def _content(step: AnyStep) -> str:
+    match step:
+        case GoalFields():
+            return _goal(step)
+        case Gripper():
+            if step.named_target is not None:
+                return step.named_target
+            if step.position is not None:
+                return f"to {step.position:g}"
+            return f"width {(step.width or 0.0) * 1e3:g} mm"
+        case Grasp():
+            return step.object if step.mode == "friction" else f"{step.object} ({step.mode})"
+        case MoveRelative():
+            amount = step.distance or step.max_distance
+            return f"{amount:g} m" if amount else f"{step.angle or 0.0:g} rad"
+        case AttachObject():
+            name = step.object if isinstance(step.object, str) else step.object.name
+            return f"{name} for {step.represents}" if step.represents else name
+        case AddObject():
+            return ", ".join(spec.name for spec in step.objects)
+        case RemoveObject():
+            return ", ".join(step.objects)
+        case ClearObjects():
+            return "with the world's" if step.world else ""
+        case AllowCollisions():
+            return ", ".join(f"{a}-{b}" for a, b in step.pairs)
+        case Wait():
+            return f"{step.duration:g} s"
+        case _:
+            name = getattr(step, "object", None)
+            return name if isinstance(name, str) else ""
+
+
+def _goal(goal: GoalFields) -> str:
+    if goal.named_target is not None:
+        return goal.named_target
+    if goal.joints is not None:
+        return "joints " + ", ".join(f"{value:.4g}" for value in goal.joints.values())
+    place = goal.pose or goal.position
+    if place is None:
+        return ""
+    x, y, z = place.xyz
+    return f"({x:.4g}, {y:.4g}, {z:.4g}) in {place.frame}"

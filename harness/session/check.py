@@ -1,0 +1,73 @@
+"""What can be said of a scenario without physics: its problems, and what will fail."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from harness.assertions.wording import describe
+from harness.core.errors import Problem, SpecError
+from harness.engine.explain import explain
+from harness.engine.predict import predict, unexpected
+from harness.engine.program import Loc, Program
+from harness.session.prepare import prepare
+
+
+@dataclass(frozen=True)
+class CheckResult:
+    """What a check found.
+
+    Attributes:
+        title: The scenario's; its file name when it cannot be read.
+        problems: Mistakes of the file.
+        predicted: Steps that will fail though the file does not expect it, each at its line.
+        steps: How many steps there are.
+    """
+
+    title: str
+    problems: tuple[Problem, ...] = ()
+    predicted: tuple[Problem, ...] = ()
+    steps: int = 0
+
+
+def check_file(
+    path: Path, *, overrides: Mapping[str, str] | None = None, seed: int | None = None
+) -> CheckResult:
+    """Read, compile, and look for goals that are out of reach or in collision."""
+    try:
+        prepared = prepare(path, overrides, seed)
+    except SpecError as error:
+        return CheckResult(path.name, problems=tuple(error.problems))
+    program = prepared.program
+    records = predict(program, prepared.scene, prepared.kinematics, prepared.planner)
+    predicted = [
+        prepared.loaded.lines.problem(
+            _loc(program, record.path),
+            f"{record.error_code}: {record.message}",
+        )
+        for record in records
+        if unexpected(record)
+    ]
+    return CheckResult(program.title, (), tuple(dict.fromkeys(predicted)), len(program.steps))
+
+
+def _loc(program: Program, path: str) -> Loc:
+    """Where a step stands in the file; what a composite step expands to stands where that does."""
+    while path not in program.step_locs and "." in path:
+        path = path.rpartition(".")[0]
+    return program.step_locs.get(path, ("steps",))
+
+
+def explain_file(
+    path: Path, *, overrides: Mapping[str, str] | None = None, seed: int | None = None
+) -> str:
+    """The program as text: every number resolved, composite steps expanded.
+
+    Raises:
+        SpecError: With every problem of the file.
+    """
+    prepared = prepare(path, overrides, seed)
+    program = prepared.program
+    records = predict(program, prepared.scene, prepared.kinematics, prepared.planner)
+    return explain(program, records, describe)

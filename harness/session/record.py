@@ -1,0 +1,110 @@
+"""The run's record: the robot as verdicts and reports need it, versions, signals."""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+
+from harness.engine.execute import Execution
+from harness.engine.program import Program
+from harness.ports import Kinematics
+from harness.recording.run import (
+    Finding,
+    GripperRecord,
+    JointRecord,
+    RobotRecord,
+    Run,
+    Signals,
+)
+from harness.robot.description import RobotDescription
+
+LIBRARIES = ("armharness", "mujoco", "pin", "coal", "ompl", "toppra", "numpy")
+
+
+def robot_record(description: RobotDescription, kinematics: Kinematics) -> RobotRecord:
+    """The robot without its planner and physics."""
+    static = tuple(name for name in description.link_names if name in description.static_links)
+    start = description.start_positions()
+    return RobotRecord(
+        name=description.name,
+        joints=tuple(
+            JointRecord(
+                name=joint.name,
+                kind=joint.kind,
+                lower=joint.lower,
+                upper=joint.upper,
+                velocity=joint.velocity,
+                acceleration=joint.acceleration,
+                effort=joint.effort,
+                is_mimic=joint.mimic is not None,
+            )
+            for joint in description.movable_joints
+        ),
+        groups={name: group.joint_names for name, group in description.groups.items()},
+        named_states={
+            group: {
+                name: dict(state.positions) for name, state in description.states_of(group).items()
+            }
+            for group in description.groups
+        },
+        arm_group=description.arm_group,
+        tcp_link=description.tcp_link,
+        base_link=description.base_link,
+        link_names=description.link_names,
+        static_links=static,
+        gripper=_gripper_record(description),
+        link_visuals={link.name: link.visuals for link in description.links if link.visuals},
+        urdf=description.urdf,
+        srdf=description.srdf,
+        static_link_poses={
+            name: tuple(float(x) for x in kinematics.link_pose(start, name).as_vector())
+            for name in static
+        },
+    )
+
+
+def _gripper_record(description: RobotDescription) -> GripperRecord | None:
+    gripper = description.gripper
+    if gripper is None:
+        return None
+    return GripperRecord(
+        group=gripper.group,
+        joint=gripper.joint,
+        sides={side: tuple(links) for side, links in gripper.sides.items()},
+        open_position=gripper.open_position,
+        closed_position=gripper.closed_position,
+        widths=tuple((float(q), float(width)) for q, width in gripper.widths),
+        palm_link=gripper.palm_link,
+    )
+
+
+def run_record(
+    program: Program,
+    kinematics: Kinematics,
+    execution: Execution,
+    signals: Signals,
+    *,
+    file: str,
+    source: str,
+    resolved: str,
+    findings: tuple[Finding, ...] = (),
+) -> Run:
+    """Everything that happened, in one noun."""
+    return Run(
+        scenario=program.title,
+        file=file,
+        case="",
+        seed=program.seed,
+        robot=robot_record(program.description, kinematics),
+        objects=execution.objects,
+        attachments=execution.attachments,
+        steps=execution.steps,
+        signals=signals,
+        gravity=program.world.gravity,
+        timestep=program.world.timestep,
+        allowed_contacts=tuple(sorted(program.description.allowed_collisions)),
+        findings=findings,
+        source=source,
+        resolved=resolved,
+        versions={name: version(name) for name in LIBRARIES},
+        ended_early=execution.ended_early,
+    )

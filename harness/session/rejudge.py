@@ -1,0 +1,48 @@
+"""Judge a saved run again, by its own expectations or by another file's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from harness.assertions.judge import judge
+from harness.assertions.placed import PlacedExpectation
+from harness.assertions.wording import describe
+from harness.recording.run import Verdict
+from harness.recording.store import read_run
+from harness.spec.load import LoadedScenario, load_scenario
+
+
+def judge_run(run_dir: Path, with_file: Path | None = None) -> tuple[Verdict, ...]:
+    """Verdicts of a saved run; needs neither planner nor physics.
+
+    Args:
+        run_dir: A report folder.
+        with_file: A scenario file whose expectations are judged instead of the run's own.
+
+    Raises:
+        HarnessError: The folder holds no run.
+        SpecError: The scenario cannot be read.
+    """
+    run = read_run(run_dir).run
+    loaded = load_scenario(with_file or run_dir / "scenario.resolved.yaml")
+    return judge(run, expectations_of(loaded))
+
+
+def expectations_of(loaded: LoadedScenario) -> list[PlacedExpectation]:
+    """Every expectation of a file, those of steps first."""
+    found: list[PlacedExpectation] = []
+
+    def visit(steps: tuple[object, ...], loc: tuple[str | int, ...], path: str) -> None:
+        for index, step in enumerate(steps):
+            here, name = (*loc, index), f"{path}[{index}]"
+            step_id = getattr(step, "id", None) or name
+            for number, spec in enumerate(getattr(step, "expect", ())):
+                line, _ = loaded.lines.line_of((*here, "expect", number))
+                found.append(PlacedExpectation(spec, step_id, line, describe(spec)))
+            visit(getattr(step, "during", ()), (*here, "during"), f"{name}.during")
+
+    visit(loaded.scenario.steps, ("steps",), "steps")
+    for number, spec in enumerate(loaded.scenario.expect):
+        line, _ = loaded.lines.line_of(("expect", number))
+        found.append(PlacedExpectation(spec, "", line, describe(spec)))
+    return found

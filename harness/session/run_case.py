@@ -1,0 +1,222 @@
+"""One case from file to report."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Literal
+
+from harness.assertions.judge import judge
+from harness.assertions.observations import observations
+from harness.assertions.placed import PlacedExpectation
+from harness.assertions.wording import describe
+from harness.core.errors import HarnessError, SpecError
+from harness.engine.execute import Execution, execute_program
+from harness.engine.program import Program, ProgramStep
+from harness.recording.digest import digest
+from harness.recording.run import Outcome, Run, Signals, StepRecord, Verdict
+from harness.recording.store import write_run
+from harness.reporting.result import CaseResult, ProgressEvent, StepLine
+from harness.session.prepare import Prepared, prepare
+from harness.session.record import run_record
+from harness.session.timing import Clock, TimedSimulator
+from harness.spec.resolve import resolved_text
+
+Notify = Callable[[ProgressEvent], None]
+
+
+def run_case(
+    path: Path,
+    *,
+    overrides: Mapping[str, str] | None = None,
+    seed: int | None = None,
+    report_dir: Path | None = None,
+    stills: bool = True,
+    on_progress: Notify = lambda _: None,
+) -> CaseResult:
+    """Compile, execute, judge and report one scenario.
+
+    Args:
+        path: The scenario file.
+        overrides: Dotted path in the file -> new value, as YAML text.
+        seed: Instead of the file's.
+        report_dir: Folder to write; None writes nothing.
+        stills: Whether to render a picture of every step.
+        on_progress: Told of every step.
+    """
+    clock = Clock()
+    try:
+        with clock.part("compile"):
+            prepared = prepare(path, overrides, seed)
+    except SpecError as error:
+        return CaseResult(
+            str(path), "", path.name, "invalid", problems=tuple(error.problems),
+            message="; ".join(problem.message for problem in error.problems[:1]),
+        )  # fmt: skip
+    program = prepared.program
+    on_progress(ProgressEvent("compiled", 0, len(program.steps), program.title, "", 0.0, ""))
+    try:
+        run = _execute(prepared, str(path), clock, on_progress)
+        with clock.part("judge"):
+            verdicts = judge(run, _placed(program))
+        outcome = _outcome(run, verdicts)
+        _tell_verdicts(program, run, outcome, on_progress)
+        fingerprint = digest(run, verdicts)
+        notes: tuple[str, ...] = ()
+        if report_dir is not None:
+            with clock.part("write"):
+                notes = _write(
+                    report_dir, prepared, run, verdicts, outcome, fingerprint, clock, stills
+                )
+            on_progress(ProgressEvent("written", 0, 0, "", outcome, run_time(run), str(report_dir)))
+    except HarnessError as error:
+        return CaseResult(
+            str(path), "", program.title, "error", seed=program.seed, message=str(error),
+            wall_times=clock.seconds,
+        )  # fmt: skip
+    return CaseResult(
+        file=str(path),
+        case="",
+        title=program.title,
+        outcome=outcome,
+        digest=fingerprint,
+        seed=program.seed,
+        sim_time=run_time(run),
+        report_dir="" if report_dir is None else str(report_dir),
+        steps=tuple(step_line(step) for step in run.steps),
+        verdicts=verdicts,
+        notes=notes,
+        wall_times=clock.seconds,
+    )
+
+
+def run_time(run: Run) -> float:
+    """Length of a run [s]."""
+    return float(run.signals.times[-1])
+
+
+def step_line(step: StepRecord) -> StepLine:
+    """A step in one line."""
+    return StepLine(
+        id=step.id,
+        verb=step.verb,
+        summary=step.summary,
+        status=step.status,
+        error_code=step.error_code,
+        message=step.message,
+        sim_time=step.end_time - step.start_time,
+        line=step.line,
+    )
+
+
+def _execute(prepared: Prepared, file: str, clock: Clock, on_progress: Notify) -> Run:
+    program = prepared.program
+    needed = observations(expectation.spec for expectation in program.expectations)
+    links = set(program.description.link_names)
+    with clock.part("compile"):
+        simulator = TimedSimulator(
+            clock,
+            program.description,
+            [obj for obj in program.all_objects() if obj.in_simulation],
+            [obj.name for obj in program.world.objects if obj.in_simulation],
+            gravity=program.world.gravity,
+            timestep=program.world.timestep,
+            frames=[name for name in needed.frames if name in links],
+        )
+    with clock.part("execute"):
+        execution = execute_program(
+            program,
+            prepared.scene,
+            prepared.kinematics,
+            prepared.planner,
+            simulator,
+            _step_teller(program, on_progress, simulator),
+        )
+    with clock.part("judge"):
+        signals = _observe(prepared, simulator.finish(), execution, needed.clearance_cutoff)
+    # what is not physics in execution is planning
+    executed = clock.seconds.pop("execute")
+    clock.seconds["plan"] = max(0.0, executed - clock.seconds.get("simulate", 0.0))
+    seeds = {program.step_locs[step.path]: step.options.seed for step in program.all_steps()}
+    return run_record(
+        program,
+        prepared.kinematics,
+        execution,
+        signals,
+        file=file,
+        source=prepared.loaded.text,
+        resolved=resolved_text(prepared.loaded, seeds),
+    )
+
+
+def _observe(prepared: Prepared, signals: Signals, execution: Execution, cutoff: float) -> Signals:
+    from harness.planning.clearance import CoalClearance
+
+    observer = CoalClearance(prepared.program.description)
+    return observer.observe(signals, execution.objects, execution.attachments, cutoff)
+
+
+def _step_teller(program: Program, on_progress: Notify, simulator: TimedSimulator):  # noqa: ANN202
+    places = {step.path: index for index, step in enumerate(program.steps)}
+    total = len(program.steps)
+
+    def tell(
+        kind: Literal["step_started", "step_finished"],
+        step: ProgramStep,
+        record: StepRecord | None,
+    ) -> None:
+        on_progress(
+            ProgressEvent(
+                kind,
+                places.get(step.path, -1),
+                total,
+                step.summary,
+                record.status if record else "",
+                simulator.time,
+                record.message if record else "",
+            )
+        )
+
+    return tell
+
+
+def _placed(program: Program) -> list[PlacedExpectation]:
+    return [
+        PlacedExpectation(item.spec, item.step, item.line, describe(item.spec))
+        for item in program.expectations
+    ]
+
+
+def _outcome(run: Run, verdicts: tuple[Verdict, ...]) -> Outcome:
+    is_good = not run.ended_early and all(verdict.status == "passed" for verdict in verdicts)
+    return "passed" if is_good else "failed"
+
+
+def _tell_verdicts(program: Program, run: Run, outcome: Outcome, on_progress: Notify) -> None:
+    total = len(program.steps)
+    on_progress(ProgressEvent("judged", total, total, "", outcome, run_time(run), ""))
+
+
+def _write(
+    folder: Path,
+    prepared: Prepared,
+    run: Run,
+    verdicts: tuple[Verdict, ...],
+    outcome: Outcome,
+    fingerprint: str,
+    clock: Clock,
+    stills: bool,
+) -> tuple[str, ...]:
+    """Write the report folder; what a person should know of it comes back as notes."""
+
+    def draw(target: Path) -> tuple[str, ...]:
+        from harness.cameras.stills import save_stills
+
+        program = prepared.program
+        report = save_stills(program.description, program.all_objects(), run, target / "images")
+        return (report.note,) if report.note else ()
+
+    return write_run(
+        folder, run, verdicts, outcome, fingerprint, dict(clock.seconds),
+        extra=draw if stills else None,
+    ) or ()  # fmt: skip

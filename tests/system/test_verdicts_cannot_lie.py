@@ -1,0 +1,73 @@
+"""A pick that does not hold the object fails `lifted` and `grasped`, whatever the planner believes."""
+
+import textwrap
+
+import pytest
+
+from harness.session import run_case
+
+PICK = """
+scenario: A pick that looks like one
+robot: {{model: ur3e, gripper: rh_p12_rn_a, base: {{xyz: [0, 0, 1.02]}}}}
+world: lesson_ur
+{objects}
+params: {{y: {y}}}
+steps:
+  - move_to: {{pose: {{frame: base_link, xyz: [0.32, "${{y}}", 0.25], rpy: [180 deg, 0, 0]}}}}
+  - lin: {{pose: {{frame: base_link, xyz: [0.32, "${{y}}", 0.08], rpy: [180 deg, 0, 0]}}}}
+  - {close}
+  - attach_object: {{object: green_cylinder}}
+    id: believe
+  - move_relative: {{direction: {{xyz: [0, 0, 1]}}, distance: 0.15}}
+    id: lift
+  - wait: 1 s
+expect:
+  - lifted: {{object: green_cylinder, above: 5 cm, for: 0.5 s}}
+  - grasped: green_cylinder
+"""
+CLOSE = "gripper: {position: 0.62}"
+SLIPPERY = """
+objects:
+  - name: green_cylinder
+    replace: true
+    cylinder: {radius: 0.03, length: 0.1}
+    pose: {xyz: [0.32, -0.168, 1.065]}
+    mass: 0.1 kg
+    friction: 0.01
+"""
+
+
+def run_pick(folder, *, y=-0.168, close=CLOSE, objects=""):
+    path = folder / "pick.scenario.yaml"
+    path.write_text(textwrap.dedent(PICK).format(y=y, close=close, objects=objects))
+    return run_case(path, stills=False)
+
+
+def test_a_real_pick_passes_both(tmp_path):
+    result = run_pick(tmp_path)
+    assert [verdict.status for verdict in result.verdicts] == ["passed", "passed"], result
+
+
+@pytest.mark.parametrize(
+    ("what", "changes"),
+    [
+        ("closing 4 cm beside the box", {"y": -0.208 - 0.06}),
+        ("friction 0.01", {"objects": SLIPPERY}),
+        ("2 % of the grasp force", {"close": "gripper: {position: 0.62, max_effort: WEAK}"}),
+        ("attached in the planning scene, never touched", {"close": "wait: 0.1 s"}),
+    ],
+)
+def test_a_pick_that_does_not_hold_fails_both(tmp_path, what, changes):
+    if "WEAK" in changes.get("close", ""):
+        from harness.robot.load import load_robot
+        from harness.spec.scenario import RobotSpec
+
+        gripper = load_robot(RobotSpec(gripper="rh_p12_rn_a")).gripper
+        changes = {"close": changes["close"].replace("WEAK", f"{0.02 * gripper.grip_effort}")}
+    result = run_pick(tmp_path, **changes)
+    assert result.outcome == "failed", what
+    lifted, grasped = result.verdicts
+    for verdict in (lifted, grasped):
+        assert verdict.status == "failed", (what, verdict)
+        assert any(character.isdigit() for character in verdict.reason), verdict
+    assert not any(step.status == "failed" for step in result.steps), result.steps
