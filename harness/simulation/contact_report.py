@@ -12,7 +12,7 @@ LOOK_BACK = 25
 def strongest_contacts(
     recording: Recording, row: int, description: RobotDescription
 ) -> dict[BodyPair, float]:
-    """Largest force [N] of each pair that involves the robot shortly before a sample, strongest first."""
+    """Largest force [N] of each pair with a robot link shortly before a sample, largest first."""
     links = set(description.link_names)
     peaks = {
         pair: float(force.max())

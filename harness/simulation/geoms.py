@@ -1,5 +1,7 @@
 """MuJoCo geoms of the program's shapes, and contact parameters that every surface shares."""
 
+# pyright: reportAttributeAccessIssue=false
+
 from __future__ import annotations
 
 from collections.abc import Iterable

@@ -96,7 +96,7 @@ class GripperDrive:
         return abs(float(self._simulator.joint_positions()[self._joint]) - position)
 
     def _start(self, position: float) -> float:
-        """Where the set point starts: at the last command, or where the joint is when that lies behind it."""
+        """The last command, or the joint's position when the command lies behind it."""
         measured = float(self._simulator.joint_positions()[self._joint])
         commanded = float(self._simulator.commanded_positions()[self._joint])
         turns_back = (position - measured) * (commanded - measured) < 0

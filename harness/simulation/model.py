@@ -1,4 +1,6 @@
-"""The compiled physics: robot, servos, objects and sensors, and where each stands in MuJoCo's arrays."""
+"""The compiled physics: robot, servos, objects, sensors, and their places in MuJoCo's arrays."""
+
+# pyright: reportAttributeAccessIssue=false
 
 from __future__ import annotations
 
@@ -81,7 +83,7 @@ def build_model(
 
     Args:
         description: The robot.
-        objects: Everything that stands in the world at any time; planning-only objects are left out.
+        objects: Everything in the world at any time; planning-only objects are left out.
         present: Names of the objects that are there at the start.
         gravity: [m/s^2].
         timestep: [s].

@@ -1,4 +1,6 @@
-"""The simulator port on MuJoCo: trajectories tracked by servos under effort limits, every sample kept."""
+"""The simulator port on MuJoCo: servos under effort limits, every sample recorded."""
+
+# pyright: reportAttributeAccessIssue=false
 
 from __future__ import annotations
 
@@ -125,7 +127,7 @@ class MujocoSimulator:
     def command_gripper(
         self, position: float, max_effort: float, *, timeout: float
     ) -> GripperResult:
-        """Drive the gripper's joint to a position under an effort limit until it arrives or stalls."""
+        """Drive the gripper's joint under an effort limit until it arrives or stalls."""
         if self._gripper is None:
             raise StepFailed("INVALID_GROUP_NAME", f"{self.description.name} has no gripper")
         return self._gripper.drive(position, max_effort, timeout)
@@ -135,7 +137,7 @@ class MujocoSimulator:
         self.hold_samples(round(duration / self._timestep))
 
     def settle(self, max_velocity: float, timeout: float) -> bool:
-        """Hold until joints and objects are slower than a limit [m/s, rad/s] for ten samples on end."""
+        """Hold until joints and objects are slower than a limit for ten samples on end."""
         for _ in range(max(1, int(np.ceil(timeout / self._timestep / SETTLE_EVERY)))):
             first = self._recording.count
             self.hold_samples(SETTLE_EVERY)
@@ -189,9 +191,7 @@ class MujocoSimulator:
     def follow(self, whole: SetPoints, begin: int, end: int) -> None:
         """Advance along set points of all actuated joints from row `begin` to row `end`."""
         part = SetPoints(*(rows[begin : end + 1] for rows in vars(whole).values()))
-        self._recording.advance(
-            self._controls(part)[:-1], part.positions[1:], part.velocities[1:]
-        )
+        self._recording.advance(self._controls(part)[:-1], part.positions[1:], part.velocities[1:])
         self._command = part.positions[-1]
 
     def whole(self, points: SetPoints, columns: IntArray) -> SetPoints:

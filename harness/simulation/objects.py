@@ -1,5 +1,7 @@
 """Lets prepared objects appear, move, disappear and be welded in a running physics."""
 
+# pyright: reportAttributeAccessIssue=false
+
 from __future__ import annotations
 
 import mujoco
@@ -16,7 +18,11 @@ class Objects:
     """Which objects are there, and where; keeps what is needed to tell it of every sample."""
 
     def __init__(
-        self, physics: PhysicsModel, data: mujoco.MjData, recording: Recording, present: frozenset[str]
+        self,
+        physics: PhysicsModel,
+        data: mujoco.MjData,
+        recording: Recording,
+        present: frozenset[str],
     ) -> None:
         self._physics = physics
         self._data = data

@@ -1,5 +1,7 @@
 """Steps the physics and keeps every sample of it."""
 
+# pyright: reportAttributeAccessIssue=false
+
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -161,7 +163,7 @@ class Recording:
         return self._sensors[self.count - 1, start:]
 
     def contacts(self, first: int, last: int) -> Mapping[BodyPair, FloatArray]:
-        """Normal force between pairs that touch in samples first..last-1, (last - first,) each [N]."""
+        """Normal force [N] of pairs that touch in samples first to last - 1, (samples,) each."""
         begin = self._contact_end[first - 1] if first else 0
         end = self._contact_end[last - 1]
         per_row = np.diff(self._contact_end[first:last], prepend=begin)
@@ -175,13 +177,15 @@ class Recording:
             chosen = codes == code
             first_body, second_body = divmod(int(code), self._physics.model.nbody)
             force = np.bincount(rows[chosen], forces[chosen], minlength=last - first)
-            found[self._pair(first_body, second_body)] = force
+            found[self._pair(first_body, second_body)] = force.astype(np.float64)
         return dict(sorted(found.items()))
 
     def _pair(self, first: int, second: int) -> BodyPair:
         names, robot = self._physics.body_names, self._physics.robot_bodies
         if (first in robot) != (second in robot):
-            return (names[first], names[second]) if first in robot else (names[second], names[first])
+            return (
+                (names[first], names[second]) if first in robot else (names[second], names[first])
+            )
         a, b = sorted((names[first], names[second]))
         return a, b
 
@@ -201,7 +205,7 @@ class Recording:
         efforts[:, physics.actuated] = self._sensors[:count, frame_end:]
         frames = self._sensors[:count, :frame_end].reshape(count, -1, 7)
         return Signals(
-            times=np.arange(count) * self.timestep,
+            times=np.arange(count, dtype=np.float64) * self.timestep,
             joint_positions=self.joint_positions(0).copy(),
             joint_velocities=self.joint_velocities(0).copy(),
             joint_efforts=efforts,

@@ -1,5 +1,7 @@
 """The robot's bodies, joints, mimic couplings and contacts as a MuJoCo specification."""
 
+# pyright: reportAttributeAccessIssue=false
+
 from __future__ import annotations
 
 import mujoco

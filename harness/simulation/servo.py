@@ -1,5 +1,7 @@
 """Servos of the actuated joints: gains, rotor inertia and inverse-dynamics feed-forward."""
 
+# pyright: reportAttributeAccessIssue=false
+
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -13,12 +15,18 @@ from harness.simulation.geoms import Surfaces
 from harness.simulation.robot_mjcf import add_robot, coupling, link_friction
 
 BANDWIDTH_PER_STEP = 0.3
-"""Natural frequency of an arm servo times the physics step; 150 rad/s at 2 ms. Explicit stiffness is
-stable below 2, and a folded arm has several times less inertia than the stretched one it is made for."""
+"""Natural frequency of an arm servo times the physics step; 150 rad/s at 2 ms.
+
+Explicit stiffness is stable below 2; a folded arm has several times less inertia than the
+stretched one that the servo is made for.
+"""
 
 ROTOR_INERTIA_PER_EFFORT = 1e-3
-"""Rotor inertia seen through the gear [kg m^2 per N m, kg per N]: at its full effort a joint cannot
-accelerate its own rotor faster than 1000 rad/s^2. Data sheets give neither rotor nor gear inertia."""
+"""Rotor inertia seen through the gear [kg m^2 per N m, kg per N].
+
+An estimate, as data sheets give neither rotor nor gear inertia: at full effort a joint cannot
+accelerate its own rotor faster than 1000 rad/s^2.
+"""
 
 GRIPPER_SATURATION = 0.005
 """Part of its range by which a gripper's joint may lag when it already presses with full effort."""
@@ -31,7 +39,7 @@ GRIPPER_BANDWIDTH_PER_STEP = 0.5
 class Servos:
     """Parameters of each actuated joint, in description order without mimic joints.
 
-    Force of a servo: `stiffness * (control - position) - damping * velocity`, cut at the effort limit.
+    A servo's force is `stiffness * (control - position) - damping * velocity`, cut at its limit.
 
     Attributes:
         stiffness: [N m/rad or N/m], shape (m,).
@@ -151,9 +159,7 @@ class FeedForward:
         return efforts[:, self._velocities] @ self._coupling
 
 
-def set_rotor_inertia(
-    spec: mujoco.MjSpec, description: RobotDescription, servos: Servos
-) -> None:
+def set_rotor_inertia(spec: mujoco.MjSpec, description: RobotDescription, servos: Servos) -> None:
     """Give each actuated joint its rotor's inertia."""
     actuated = (joint for joint in description.movable_joints if joint.mimic is None)
     for joint, inertia in zip(actuated, servos.rotor_inertia, strict=True):

@@ -51,8 +51,10 @@ def sample_trajectory(trajectory: JointTrajectory, timestep: float) -> SetPoints
     return SetPoints(positions, velocities, accelerations)
 
 
-def ramp(start: float, goal: float, velocity: float, acceleration: float, timestep: float) -> SetPoints:
-    """A motion of one joint with a trapezoid of velocity, at rest at both ends; columns have shape (N, 1)."""
+def ramp(
+    start: float, goal: float, velocity: float, acceleration: float, timestep: float
+) -> SetPoints:
+    """A motion of one joint with a trapezoid of velocity, at rest at both ends; (N, 1) each."""
     distance = abs(goal - start)
     peak = min(velocity, float(np.sqrt(distance * acceleration)))
     if peak == 0.0:
@@ -68,4 +70,6 @@ def ramp(start: float, goal: float, velocity: float, acceleration: float, timest
     travelled = 0.5 * acceleration * up**2 + peak * level - 0.5 * acceleration * down**2
     direction = np.sign(goal - start)
     accelerations = acceleration * ((times < rise).astype(float) - (down > 0) * (down < rise))
-    return SetPoints(start + direction * travelled, direction * velocities, direction * accelerations)
+    return SetPoints(
+        start + direction * travelled, direction * velocities, direction * accelerations
+    )

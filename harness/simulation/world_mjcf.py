@@ -1,4 +1,6 @@
-"""Objects of the world as MuJoCo bodies; those that appear later are there from the start, parked."""
+"""Objects of the world as MuJoCo bodies; those that appear later are parked from the start."""
+
+# pyright: reportAttributeAccessIssue=false
 
 from __future__ import annotations
 
