@@ -14,9 +14,6 @@ from harness.reporting.result import CaseResult, ProgressEvent
 from harness.suite.environment import use_one_thread
 from harness.suite.warm import Ended, Heard, WarmServer
 
-MODULES = ("harness.session", "mujoco", "pinocchio", "coal", "ompl.base", "toppra")
-"""What the fork server imports: everything that a run would import."""
-
 HARD_CAP_SECONDS = 600.0
 """Wall time after which a case ends as an error, whatever it is doing; HARNESS_HARD_CAP sets it."""
 

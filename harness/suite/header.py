@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
 from dataclasses import dataclass
 from pathlib import Path
 
+from harness.core.errors import SpecError
 from harness.suite.discovery import SUFFIX
 
 
@@ -26,18 +26,22 @@ class Header:
 
 def read_header(file: Path) -> Header:
     """Read a file's header; of a broken file, which tells its problems later, the name."""
-    import yaml
+    from harness.spec.source import Source
+    from harness.spec.yaml_file import parse_yaml, read_text
 
-    title, tags, line = file.name.removesuffix(SUFFIX), (), 1
-    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-    with contextlib.suppress(yaml.YAMLError, OSError, UnicodeDecodeError, RecursionError):
-        root = yaml.compose(file.read_text(encoding="utf-8"), Loader=loader)
-        if isinstance(root, yaml.MappingNode):
-            for key, value in root.value:
-                if key.value == "scenario" and isinstance(value, yaml.ScalarNode):
-                    title, line = value.value.strip() or title, key.start_mark.line + 1
-                elif key.value == "tags" and isinstance(value, yaml.SequenceNode):
-                    tags = tuple(
-                        item.value for item in value.value if isinstance(item, yaml.ScalarNode)
-                    )
-    return Header(title, tags, line)
+    nameless = Header(file.name.removesuffix(SUFFIX))
+    try:
+        text = read_text(file)
+        entries = parse_yaml(text, Source.of_text(str(file), text)).mapping()
+    except SpecError:
+        return nameless
+    tags: tuple[str, ...] = ()
+    if "tags" in entries:
+        values = (item.value for item in entries["tags"].value.items())
+        tags = tuple(value for value in values if isinstance(value, str) and value)
+    if "scenario" not in entries:
+        return Header(nameless.title, tags)
+    key, title = entries["scenario"]
+    if not isinstance(title.value, str) or not title.value.strip():
+        return Header(nameless.title, tags, key.line)
+    return Header(" ".join(title.value.split()), tags, key.line)

@@ -22,6 +22,9 @@ from harness.core.errors import HarnessError
 from harness.suite.environment import use_one_thread
 from harness.suite.server import receive, send
 
+RUN_MODULES = ("harness.session", "mujoco", "pinocchio", "coal", "ompl.base", "toppra")
+"""Everything that a run imports."""
+
 STOP_SECONDS = 5.0
 LOG_TAIL_BYTES = 4000
 
@@ -76,7 +79,7 @@ class WarmServer:
     process dies in whatever way.
     """
 
-    def __init__(self, modules: Sequence[str]) -> None:
+    def __init__(self, modules: Sequence[str] = RUN_MODULES) -> None:
         self._modules = tuple(modules)
         self._process: subprocess.Popen[bytes] | None = None
         self._control: socket.socket | None = None

@@ -1,0 +1,46 @@
+"""`harness check`: what is known of a file without physics."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from harness.cli.output import guarded, only_json_on_stdout, say
+from harness.suite.discovery import discover
+from harness.suite.outcome import EXIT_CODES
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Check files; problems of all of them are told."""
+    return guarded(lambda: _run(arguments))
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    from harness import session
+    from harness.reporting.terminal import Style
+
+    files = discover(arguments.paths)
+    style = Style.of(sys.stdout)
+    code = 0
+    documents: list[object] = []
+    for file in files:
+        found = session.check_file(file, overrides=dict(arguments.overrides), seed=arguments.seed)
+        outcome = "invalid" if found.problems else "failed" if found.unexpected else "passed"
+        code = max(code, EXIT_CODES[outcome])
+        documents.append({"file": str(file), "outcome": outcome, "problems": found.problems,
+                          "predicted": found.predicted})  # fmt: skip
+        if arguments.json:
+            continue
+        for problem in (*found.problems, *found.predicted):
+            say(str(problem))
+        count = len(found.problems)
+        told = {
+            "invalid": f"{count} problem{'s' if count != 1 else ''}",
+            "failed": "steps that will fail",
+            "passed": "ok",
+        }[outcome]
+        say(f"{file}: {style.outcome(outcome, told)}")
+    if arguments.json:
+        with only_json_on_stdout() as write_json:
+            write_json({"format": "armharness-check/1", "exit_code": code, "files": documents})
+    return code

@@ -1,0 +1,22 @@
+"""`harness explain`."""
+
+from __future__ import annotations
+
+import argparse
+
+from harness.cli.output import guarded, say
+from harness.suite.discovery import discover
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the program of each file."""
+    return guarded(lambda: _run(arguments))
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    from harness import session
+
+    for file in discover(arguments.paths):
+        overrides = dict(arguments.overrides)
+        say(session.explain_file(file, overrides=overrides, seed=arguments.seed).rstrip())
+    return 0

@@ -1,0 +1,46 @@
+"""`harness judge`: the expectations again, on a saved run."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from harness.cli.output import guarded, only_json_on_stdout, say
+from harness.suite.discovery import UsageError
+from harness.suite.outcome import EXIT_CODES
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Judge a run's folder and print every verdict."""
+    return guarded(lambda: _run(arguments))
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    folder = Path(arguments.folder)
+    if not (folder / "run.json").is_file():
+        raise UsageError(f"'{folder}' is no run's folder: it has no run.json")
+    from harness import session
+    from harness.reporting.terminal import Style, measure_text, verdict_line
+
+    with_file = Path(arguments.with_file) if arguments.with_file else None
+    if with_file and not with_file.is_file():
+        raise UsageError(f"no such file: '{with_file}'")
+    verdicts = session.judge_run(folder, with_file)
+    has_passed = bool(verdicts) and all(verdict.status == "passed" for verdict in verdicts)
+    code = 0 if has_passed else EXIT_CODES["failed"]
+    if arguments.json:
+        with only_json_on_stdout() as write_json:
+            write_json({"format": "armharness-verdicts/1", "exit_code": code, "verdicts": verdicts})
+        return code
+    style = Style.of(sys.stdout)
+    for verdict in verdicts:
+        place = f"line {verdict.line}: " if verdict.line else ""
+        mark = style.mark(verdict.status == "passed")
+        say(f"{mark} {place}{verdict.expectation}: {verdict_line(verdict)}")
+        if verdict.status != "passed":
+            for measure in verdict.measures:
+                say(f"    {measure_text(measure)}")
+    held = sum(verdict.status == "passed" for verdict in verdicts)
+    say(f"{held} of {len(verdicts)} expectations hold")
+    return code

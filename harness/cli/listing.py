@@ -1,0 +1,89 @@
+"""`harness list`: what a scenario may name."""
+
+from __future__ import annotations
+
+import argparse
+import inspect
+from collections.abc import Callable, Iterable
+from typing import Any, get_args
+
+from harness.cli.output import guarded, say
+
+Rows = Iterable[tuple[str, str]]
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print one line for each thing of a kind."""
+    return guarded(lambda: _run(LISTINGS[arguments.kind]()))
+
+
+def _run(rows: Rows) -> int:
+    table = list(rows)
+    width = max((len(name) for name, _ in table), default=0)
+    for name, text in table:
+        say(f"{name:<{width}}  {text}".rstrip())
+    return 0
+
+
+def _robots() -> Rows:
+    from harness.robot.load import gripper_names, robot_names
+
+    grippers = gripper_names()
+    return [(name, "gripper" if name in grippers else "arm") for name in robot_names()]
+
+
+def _worlds() -> Rows:
+    from harness.core.resources import data_folder
+
+    files = sorted(data_folder("worlds").glob("*.yaml"))
+    return [(file.stem, "") for file in files]
+
+
+def _scenarios() -> Rows:
+    from harness.suite.discovery import bundled_scenarios
+    from harness.suite.header import read_header
+
+    return [(name, read_header(file).title) for name, file in bundled_scenarios().items()]
+
+
+def _steps() -> Rows:
+    import harness.engine.executors
+    from harness.engine.registry import execute
+    from harness.spec.steps import AnyStep
+
+    del harness
+    return [_row(model, "do", model in execute) for model in get_args(AnyStep)]
+
+
+def _expectations() -> Rows:
+    import harness.assertions.judge
+    from harness.assertions.registry import signal
+    from harness.spec.checks import Always, AnyPredicate, Eventually, Never, Until
+
+    del harness
+    predicates = [_row(model, "check", model in signal) for model in get_args(AnyPredicate)]
+    words = [
+        _row(model, "check", model is not Until) for model in (Always, Never, Eventually, Until)
+    ]
+    return predicates + words
+
+
+def _row(model: Any, tag: str, is_available: bool) -> tuple[str, str]:
+    said = inspect.cleandoc(model.__doc__).splitlines()[0]
+    return model.model_fields[tag].default, said if is_available else f"{said} (not yet available)"
+
+
+def _planners() -> Rows:
+    from harness.planning.planner_names import DEFAULT_PLANNER, planner_names
+
+    return [(name, "default" if name == DEFAULT_PLANNER else "") for name in planner_names()]
+
+
+LISTINGS: dict[str, Callable[[], Rows]] = {
+    "robots": _robots,
+    "worlds": _worlds,
+    "scenarios": _scenarios,
+    "steps": _steps,
+    "expectations": _expectations,
+    "planners": _planners,
+}

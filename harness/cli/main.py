@@ -1,0 +1,166 @@
+"""The command `harness`: arguments in, exit code out. Imports nothing that takes time."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+
+from harness import __version__
+
+EPILOG = """exit codes: 0 passed, 1 failed, 2 invalid file or wrong usage, 3 error, 130 Ctrl-C"""
+BROKEN_PIPE_EXIT_CODE = 141  # as a shell shows SIGPIPE
+LISTS = ("robots", "worlds", "scenarios", "steps", "expectations", "planners")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Returns:
+        The exit code.
+    """
+    parsed = _parser().parse_args(arguments)
+    command = importlib.import_module(f"harness.cli.{parsed.module}")
+    try:
+        code = command.run(parsed)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        # The reader of a pipe has left; nothing is to be said to it at exit either.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return BROKEN_PIPE_EXIT_CODE
+    except KeyboardInterrupt:
+        return 130
+    return code
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="harness",
+        description="Run scenarios of robot arms: planned, simulated, judged, reported.",
+        epilog=EPILOG,
+    )
+    parser.add_argument("--version", action="version", version=f"armharness {__version__}")
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+
+    def command(name: str, text: str, module: str = "") -> argparse.ArgumentParser:
+        added = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
+        added.set_defaults(module=module or name)
+        return added
+
+    _run_options(command("run", "run scenarios and judge them"))
+    _check_options(command("check", "validate scenarios and the reach of their goals"))
+    _file_options(command("explain", "print the program that a scenario becomes"))
+    _list_options(command("list", "list what a scenario may name", module="listing"))
+    _judge_options(command("judge", "judge a saved run again"))
+    _new_options(command("new", "write a commented scenario that passes"))
+    _schema_options(command("schema", "print the JSON Schema of scenario files"))
+    return parser
+
+
+def _run_options(run: argparse.ArgumentParser) -> None:
+    _file_options(run)
+    run.add_argument(
+        "-k",
+        metavar="EXPR",
+        dest="expression",
+        default="",
+        help="only scenarios whose path, title or tags match: 'pick and not ur5e'",
+    )
+    run.add_argument(
+        "-j",
+        metavar="N",
+        dest="workers",
+        type=_count,
+        default=1,
+        help="run N scenarios side by side",
+    )
+    run.add_argument(
+        "--repeat",
+        metavar="N",
+        type=_count,
+        default=1,
+        help="run each N times and say whether all digests are the same",
+    )
+    run.add_argument(
+        "--report-dir", metavar="DIR", default="reports", help="where reports go (default: reports)"
+    )
+    run.add_argument("--no-report", action="store_true", help="write no report")
+    run.add_argument("--json", action="store_true", help="one JSON document on stdout")
+    run.add_argument(
+        "--hard-cap",
+        metavar="SECONDS",
+        type=_seconds,
+        default=None,
+        help="wall time after which a scenario ends as an error (default: 600)",
+    )
+    run.add_argument("--in-process", action="store_true",
+                     help="no process for each scenario: for debuggers")  # fmt: skip
+
+
+def _check_options(check: argparse.ArgumentParser) -> None:
+    _file_options(check)
+    check.add_argument("--json", action="store_true", help="one JSON document on stdout")
+
+
+def _list_options(listing: argparse.ArgumentParser) -> None:
+    listing.add_argument("kind", choices=LISTS)
+
+
+def _judge_options(judge: argparse.ArgumentParser) -> None:
+    judge.add_argument("folder", metavar="RUN", help="the run's report folder")
+    judge.add_argument("--with", metavar="FILE", dest="with_file",
+                       help="by the expectations of this scenario")  # fmt: skip
+    judge.add_argument("--json", action="store_true", help="one JSON document on stdout")
+
+
+def _new_options(new: argparse.ArgumentParser) -> None:
+    new.add_argument("file", metavar="FILE", help="for example first.scenario.yaml")
+
+
+def _schema_options(schema: argparse.ArgumentParser) -> None:
+    schema.add_argument("--write", metavar="FILE", help="write it to a file instead")
+
+
+def _file_options(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "paths",
+        metavar="PATH",
+        nargs="+",
+        help="a scenario file, a folder of *.scenario.yaml, or a bundled name",
+    )
+    command.add_argument(
+        "--set",
+        metavar="PATH=VALUE",
+        dest="overrides",
+        action="append",
+        type=_override,
+        default=[],
+        help="change a value of the file: --set robot.model=ur5e",
+    )
+    command.add_argument("--seed", metavar="N", type=int, default=None,
+                         help="in place of the file's")  # fmt: skip
+
+
+def _override(text: str) -> tuple[str, str]:
+    path, equals, value = text.partition("=")
+    if not equals or not path.strip():
+        raise argparse.ArgumentTypeError(f"'{text}' is not PATH=VALUE, as in robot.model=ur5e")
+    return path.strip(), value
+
+
+def _count(text: str) -> int:
+    if not text.isdigit() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number from 1")
+    return int(text)
+
+
+def _seconds(text: str) -> float:
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = float("nan")
+    if not 0 < seconds < float("inf"):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of seconds above 0")
+    return seconds

@@ -1,0 +1,60 @@
+"""Lines of progress while cases run: rewritten in place on a terminal, plain elsewhere."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TextIO
+
+from harness.reporting.result import CaseResult, ProgressEvent
+from harness.reporting.terminal import Style, case_line, step_done, step_running
+
+CLEAR_LINE = "\r\x1b[2K"
+
+
+class ProgressLines:
+    """Tells a case's steps as they end, and the case's outcome.
+
+    One case at a time has its file as a headline and its steps below; of several side by side,
+    every line begins with the case it belongs to.
+    """
+
+    def __init__(
+        self, stream: TextIO, files: Sequence[Path], *, is_side_by_side: bool, style: Style
+    ) -> None:
+        self._stream = stream
+        self._files = files
+        self._style = style
+        self._is_side_by_side = is_side_by_side
+        self._rewrites = stream.isatty() and style.has_color and not is_side_by_side
+        self._headline = -1
+
+    def step(self, index: int, event: ProgressEvent) -> None:
+        """Take note of a sign of life."""
+        if event.kind == "step_started" and self._rewrites:
+            self._begin(index)
+            width = shutil.get_terminal_size().columns
+            self._stream.write(f"{CLEAR_LINE}{step_running(event, self._style)[: width - 1]}")
+            self._stream.flush()
+        elif event.kind == "step_finished":
+            self._begin(index)
+            self._line(index, step_done(event, self._style))
+
+    def result(self, index: int, result: CaseResult) -> None:
+        """Tell a case's outcome."""
+        self._begin(index)
+        self._line(index, f"  {case_line(result, self._style)}")
+        for note in result.notes:
+            self._line(index, f"  {self._style.quiet(note)}")
+
+    def _begin(self, index: int) -> None:
+        if not self._is_side_by_side and self._headline != index:
+            self._headline = index
+            self._stream.write(f"{self._style.strong(str(self._files[index]))}\n")
+
+    def _line(self, index: int, text: str) -> None:
+        clear = CLEAR_LINE if self._rewrites else ""
+        whose = f"{self._files[index]}:" if self._is_side_by_side else ""
+        self._stream.write(f"{clear}{whose}{text}\n")
+        self._stream.flush()

@@ -1,0 +1,194 @@
+"""What the command line and pytest say of results, as text for people."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TextIO
+
+from harness.recording.run import Measure, Verdict
+from harness.reporting.result import CaseResult, ProgressEvent, StepLine
+
+OUTCOMES = ("error", "invalid", "failed", "passed")
+
+
+@dataclass(frozen=True)
+class Style:
+    """How text may look: with colours, with signs beyond ASCII."""
+
+    has_color: bool = False
+    has_signs: bool = False
+
+    @classmethod
+    def of(cls, stream: TextIO) -> Style:
+        """Colours on a terminal unless NO_COLOR is set; signs where the encoding has them."""
+        try:
+            "✓✗…".encode(stream.encoding or "ascii")
+            has_signs = True
+        except (UnicodeEncodeError, LookupError):
+            has_signs = False
+        has_color = stream.isatty() and not os.environ.get("NO_COLOR")
+        return cls(has_color and os.environ.get("TERM") != "dumb", has_signs)
+
+    def good(self, text: str) -> str:
+        """Green."""
+        return self._paint("32", text)
+
+    def bad(self, text: str) -> str:
+        """Red."""
+        return self._paint("31", text)
+
+    def strong(self, text: str) -> str:
+        """Bold."""
+        return self._paint("1", text)
+
+    def quiet(self, text: str) -> str:
+        """Dim."""
+        return self._paint("2", text)
+
+    def outcome(self, outcome: str, text: str | None = None) -> str:
+        """The outcome's colour; its own name where no text is given."""
+        return (self.good if outcome == "passed" else self.bad)(text or outcome)
+
+    def mark(self, is_good: bool) -> str:
+        """A tick or a cross."""
+        if self.has_signs:
+            return self.good("✓") if is_good else self.bad("✗")
+        return self.good("ok") if is_good else self.bad("no")
+
+    def _paint(self, code: str, text: str) -> str:
+        return f"\x1b[{code}m{text}\x1b[0m" if self.has_color else text
+
+
+PLAIN = Style()
+
+
+def step_running(event: ProgressEvent, style: Style = PLAIN) -> str:
+    """The line of a step that is under way."""
+    dots = " …" if style.has_signs else " ..."
+    return f"    {_count(event)}  {event.step}{dots}"
+
+
+def step_done(event: ProgressEvent, style: Style = PLAIN) -> str:
+    """The line of a step that is over: sign, number, what it said, simulation time, failure."""
+    is_good = event.status in {"passed", "expected_error"}
+    line = f"  {style.mark(is_good)} {_count(event)}  {event.step}"
+    line += style.quiet(f"  t={event.sim_time:.2f} s")
+    if event.status == "expected_error":
+        line += style.quiet("  failed as expected")
+    if not is_good or event.status == "expected_error":
+        message = event.message.splitlines()[0] if event.message else ""
+        line += f"  {message}" if message else ""
+    return line
+
+
+def _count(event: ProgressEvent) -> str:
+    width = len(str(event.total))
+    return f"{event.index + 1:>{width}}/{event.total}"
+
+
+def case_line(result: CaseResult, style: Style = PLAIN) -> str:
+    """One line of a finished case."""
+    name = f"{result.title} [{result.case}]" if result.case else result.title
+    parts = [f"{style.outcome(result.outcome):<8}{style.strong(name)}"]
+    if result.outcome in {"passed", "failed"}:
+        held = sum(verdict.status == "passed" for verdict in result.verdicts)
+        parts.append(f"{_plural(len(result.steps), 'step')}, {result.sim_time:.1f} s simulated")
+        parts.append(f"{held} of {_plural(len(result.verdicts), 'expectation')} hold")
+        parts.append(style.quiet(f"digest {result.digest[:12]}"))
+    return "  ".join(parts)
+
+
+def failure(result: CaseResult, style: Style = PLAIN, *, again: str = "") -> str:
+    """Why a case did not pass: every cause with its line and numbers, and where the report is.
+
+    Args:
+        result: Of the case.
+        style: Of the terminal.
+        again: The command that runs exactly this case; empty to leave it out.
+    """
+    name = f"{result.file} [{result.case}]" if result.case else result.file
+    lines = [f"{style.outcome(result.outcome, result.outcome.upper())} {name}: {result.title}"]
+    causes = [str(problem) for problem in result.problems]
+    causes += [step_failure(result.file, step) for step in result.steps if step.status == "failed"]
+    causes += [
+        verdict_failure(result.file, verdict)
+        for verdict in result.verdicts
+        if verdict.status != "passed"
+    ]
+    causes += [result.message] if result.message else []
+    lines += [_indent(cause) for cause in causes or ["no cause was told"]]
+    if result.report_dir:
+        lines.append(f"  report: {result.report_dir}")
+    if again:
+        lines.append(f"  again:  {again}")
+    return "\n".join(lines)
+
+
+def step_failure(file: str, step: StepLine) -> str:
+    """Place, step, error code and message."""
+    place = f"{file}:{step.line}" if step.line else file
+    said = step.message.removeprefix(f"{step.error_code}: ")
+    why = ": ".join(part for part in (step.error_code, said) if part)
+    return f"{place}: {step.summary}: {why}"
+
+
+def verdict_failure(file: str, verdict: Verdict) -> str:
+    """Place, expectation, status, why, and everything measured."""
+    place = f"{file}:{verdict.line}" if verdict.line else file
+    lines = [f"{place}: {verdict.expectation}: {verdict_line(verdict)}"]
+    lines += [f"    {measure_text(measure)}" for measure in verdict.measures]
+    return "\n".join(lines)
+
+
+def verdict_line(verdict: Verdict) -> str:
+    """Status, margin and reason in one line."""
+    text = verdict.status
+    if not math.isnan(verdict.margin):
+        text += f" by {abs(verdict.margin):.4g} {verdict.unit}".rstrip()
+    if not math.isnan(verdict.time):
+        text += f" at t={verdict.time:.3f} s"
+    return f"{text}: {verdict.reason}" if verdict.reason else text
+
+
+def measure_text(measure: Measure) -> str:
+    """A measure with its limit, where it has one."""
+    if math.isnan(measure.limit):
+        where = f" ({measure.detail})" if measure.detail else ""
+        return (
+            f"{measure.name}: {measure.value:.6g} {measure.unit} at t={measure.time:.3f} s{where}"
+        )
+    return str(measure)
+
+
+def summary(results: Sequence[CaseResult], seconds: float, style: Style = PLAIN) -> str:
+    """The last line: how many of each outcome, and the wall time."""
+    counts = Counter(result.outcome for result in results)
+    parts = [
+        style.outcome(outcome, f"{counts[outcome]} {outcome}")
+        for outcome in OUTCOMES
+        if counts[outcome]
+    ]
+    told = ", ".join(parts) or "nothing was run"
+    return f"{told} of {_plural(len(results), 'case')} in {seconds:.1f} s"
+
+
+def repeats(results: Iterable[CaseResult], style: Style = PLAIN) -> str:
+    """Whether runs of the same case have the same digest."""
+    digests = Counter(result.digest or f"no digest ({result.outcome})" for result in results)
+    if len(digests) == 1:
+        [(digest, count)] = digests.items()
+        return f"{style.mark(True)} {count} runs, one digest: {digest}"
+    told = "; ".join(f"{count} x {digest}" for digest, count in digests.items())
+    return f"{style.mark(False)} {digests.total()} runs, {len(digests)} digests: {told}"
+
+
+def _indent(text: str) -> str:
+    return "\n".join(f"  {line}" for line in text.splitlines())
+
+
+def _plural(count: int, word: str) -> str:
+    return f"{count} {word}" if count == 1 else f"{count} {word}s"
