@@ -251,7 +251,7 @@ class RobotDescription:
 
     @cached_property
     def static_links(self) -> frozenset[str]:
-        """Links that no movable joint separates from the world; they stand where they are mounted."""
+        """Links that no movable joint separates from the world: they never move."""
         static = {"world"}
         for joint in self.joints:
             if joint.kind == "fixed" and joint.parent in static:

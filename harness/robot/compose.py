@@ -1,0 +1,217 @@
+"""Arm, gripper and base pose put together into one robot that stands in the world."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from harness.core.errors import RobotError
+from harness.core.spatial import SE3
+from harness.robot.description import (
+    Camera,
+    Gripper,
+    Joint,
+    Link,
+    NamedState,
+    RobotDescription,
+    TrackingTolerances,
+)
+from harness.robot.robot_yaml import GripperFacts, Mount, RobotYaml
+from harness.robot.srdf import EndEffector, Srdf, link_pair, planning_groups, write_srdf
+from harness.robot.urdf import Urdf, in_tree_order, write_urdf
+
+WORLD = "world"
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """One robot folder, read: an arm or a gripper.
+
+    Attributes:
+        name: As the scenario calls it (the variant, where there is one).
+        facts: Its robot.yaml.
+        urdf: Its links and joints, with the limits of robot.yaml.
+        srdf: Its groups.
+        source: What messages call it.
+    """
+
+    name: str
+    facts: RobotYaml
+    urdf: Urdf
+    srdf: Srdf
+    source: str
+
+
+def compose(arm: Part | None, gripper: Part | None, base: SE3) -> RobotDescription:
+    """One description of an arm, a gripper on its flange, or a gripper alone, fixed in the world.
+
+    Args:
+        arm: None for a gripper on no arm.
+        gripper: None for an arm without one, or with one of its own.
+        base: T_world_base of the first link.
+
+    Raises:
+        RobotError: The arm has no flange, or names clash between arm and gripper.
+    """
+    parts = [part for part in (arm, gripper) if part is not None]
+    first = parts[0]
+    source = " + ".join(part.name for part in parts)
+    links: list[Link] = [Link(WORLD, None)]
+    joints: list[Joint] = [_fixed("world_joint", WORLD, first.urdf.root, base)]
+    for part in parts:
+        links += part.urdf.links
+        joints += part.urdf.joints
+    tcp_link = first.facts.tcp_link or ""
+    srdf = first.srdf
+    if gripper is not None and gripper.facts.mount is not None:
+        mount = gripper.facts.mount
+        flange = _flange(arm, gripper) if arm is not None else ""
+        frame, added = _mounted(gripper, mount, flange)
+        links.append(frame)
+        joints += added
+        tcp_link = frame.name
+        if arm is not None:
+            srdf = _joined(arm, gripper, flange, tcp_link)
+    _refuse_clashes(links, joints, source)
+    tree_links, tree_joints = in_tree_order(links, joints, source)
+    srdf = replace(srdf, disabled=_allowed(srdf, tree_links, tree_joints, source))
+    facts = next((part.facts.gripper for part in parts[::-1] if part.facts.gripper), None)
+    return RobotDescription(
+        name=source,
+        urdf=write_urdf(source, tree_links, tree_joints),
+        srdf=write_srdf(source, srdf),
+        links=tree_links,
+        joints=tree_joints,
+        groups=planning_groups(srdf, tree_joints, source),
+        named_states=srdf.states,
+        allowed_collisions=srdf.disabled,
+        arm_group="" if arm is None else arm.facts.arm_group or "",
+        gripper=None if facts is None else _gripper(facts),
+        tcp_link=tcp_link,
+        base_link=first.urdf.root,
+        start_state=_start_state(parts, srdf),
+        cameras={
+            name: Camera(name=name, **camera.model_dump())
+            for part in parts
+            for name, camera in part.facts.cameras.items()
+        },
+        tracking=TrackingTolerances(**first.facts.tracking.model_dump()),
+        ik_solver=first.facts.ik_solver,
+    )
+
+
+def _fixed(name: str, parent: str, child: str, pose: SE3) -> Joint:
+    return Joint(name, "fixed", parent, child, pose, np.array([1.0, 0.0, 0.0]))
+
+
+def _flange(arm: Part, gripper: Part) -> str:
+    if not arm.facts.flange_link:
+        raise RobotError(
+            f"'{arm.name}' has no flange that the gripper '{gripper.name}' could be mounted on; "
+            f"leave `gripper` out"
+        )
+    return arm.facts.flange_link
+
+
+def _mounted(gripper: Part, mount: Mount, flange: str) -> tuple[Link, list[Joint]]:
+    """The gripper's TCP frame, and the joints that hold it and the gripper's root."""
+    root = gripper.urdf.root
+    on_root = SE3.from_xyz_rpy(mount.tcp.xyz, mount.tcp.rpy)
+    frame = Link(mount.tcp.link, None)
+    if not flange:
+        return frame, [_fixed(mount.tcp.joint, root, frame.name, on_root)]
+    on_flange = SE3.from_xyz_rpy(mount.xyz, mount.rpy)
+    return frame, [
+        _fixed(mount.joint, flange, root, on_flange),
+        _fixed(mount.tcp.joint, flange, frame.name, on_flange @ on_root),
+    ]
+
+
+def _joined(arm: Part, gripper: Part, flange: str, tcp_link: str) -> Srdf:
+    """Groups of both; chains that ended at the flange end at the gripper's TCP."""
+    groups = tuple(
+        replace(
+            group,
+            chains=tuple((base, tcp_link if tip == flange else tip) for base, tip in group.chains),
+        )
+        for group in arm.srdf.groups
+    )
+    tools = tuple(
+        EndEffector(tool.name, flange, tool.group, arm.facts.arm_group or "")
+        for tool in gripper.srdf.end_effectors
+    )
+    return Srdf(
+        groups + gripper.srdf.groups,
+        arm.srdf.states + gripper.srdf.states,
+        arm.srdf.end_effectors + tools,
+        arm.srdf.passive + gripper.srdf.passive,
+        {**arm.srdf.disabled, **gripper.srdf.disabled},
+    )
+
+
+def _refuse_clashes(links: list[Link], joints: list[Joint], source: str) -> None:
+    for kind, names in (
+        ("link", [link.name for link in links]),
+        ("joint", [joint.name for joint in joints]),
+    ):
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise RobotError(f"{source}: {kind} names are there twice: {', '.join(twice)}")
+
+
+def _allowed(
+    srdf: Srdf, links: tuple[Link, ...], joints: tuple[Joint, ...], source: str
+) -> dict[tuple[str, str], str]:
+    """The SRDF's pairs, and every link with the nearest one before it that has a shape."""
+    shaped = {link.name for link in links if link.collisions}
+    names = {link.name for link in links}
+    before = {joint.child: joint.parent for joint in joints}
+    allowed = dict(srdf.disabled)
+    for pair in allowed:
+        for name in pair:
+            if name not in names:
+                raise RobotError(f"{source}: disable_collisions names the unknown link '{name}'")
+    for name in (link.name for link in links if link.name in shaped):
+        parent = before.get(name)
+        while parent is not None and parent not in shaped:
+            parent = before.get(parent)
+        if parent is not None:
+            allowed.setdefault(link_pair(name, parent), "Adjacent")
+    return allowed
+
+
+def _gripper(facts: GripperFacts) -> Gripper:
+    return Gripper(
+        group=facts.group,
+        joint=facts.joint,
+        sides={name: side.links for name, side in facts.sides.items()},
+        pads={name: side.pad for name, side in facts.sides.items()},
+        palm_link=facts.palm_link,
+        open_position=facts.open_position,
+        closed_position=facts.closed_position,
+        grip_effort=facts.grip_effort,
+        max_effort=facts.max_effort,
+        widths=np.array(facts.widths),
+        friction=facts.friction,
+    )
+
+
+def _start_state(parts: list[Part], srdf: Srdf) -> Mapping[str, float]:
+    """Start positions of robot.yaml: a named state's, then joints over it."""
+    positions: dict[str, float] = {}
+    for part in parts:
+        start = part.facts.start_state
+        if start.named_target is not None:
+            positions |= _state(srdf.states, start.named_target, part.source).positions
+        positions |= start.joints or {}
+    return positions
+
+
+def _state(states: tuple[NamedState, ...], name: str, source: str) -> NamedState:
+    for state in states:
+        if state.name == name:
+            return state
+    known = ", ".join(state.name for state in states)
+    raise RobotError(f"{source}: start_state names the unknown state '{name}'; known are {known}")

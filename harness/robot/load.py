@@ -1,0 +1,277 @@
+"""Robots by name or folder: what a scenario's `robot:` becomes."""
+
+from __future__ import annotations
+
+import difflib
+import importlib.util
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from harness.core.errors import RobotError
+from harness.core.resources import data_folder
+from harness.robot.compose import Part, compose
+from harness.robot.description import Joint, NamedState, RobotDescription
+from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml
+from harness.robot.srdf import parse_srdf, write_srdf
+from harness.robot.urdf import Urdf, parse_urdf, write_urdf
+from harness.spec.scenario import JointLimits, RobotSpec, StartState
+
+LATER = ("urdf", "xacro", "mjcf", "kinematics")
+
+
+@lru_cache(maxsize=1)
+def _catalogue() -> dict[str, tuple[Path, RobotYaml]]:
+    """Every bundled model name, variants in place of their family, with its folder and facts."""
+    models: dict[str, tuple[Path, RobotYaml]] = {}
+    for path in sorted(data_folder("robots").glob("*/robot.yaml")):
+        facts = read_robot_yaml(path.parent)
+        for name in facts.variants or (facts.robot,):
+            models[name] = (path.parent, facts)
+    return models
+
+
+def robot_names() -> tuple[str, ...]:
+    """Names of the bundled robots that `model` accepts, grippers included."""
+    return tuple(_catalogue())
+
+
+def gripper_names() -> tuple[str, ...]:
+    """Names of the bundled grippers that `gripper` accepts."""
+    return tuple(name for name, (_, facts) in _catalogue().items() if facts.kind == "gripper")
+
+
+def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
+    """The robot that a scenario asks for, composed and with its options applied.
+
+    Args:
+        spec: The scenario's `robot:`.
+        base_dir: Where a `model` or `gripper` that is a path starts: the scenario's folder.
+
+    Raises:
+        RobotError: The robot is not known, its files cannot be used, or an option does not fit it.
+    """
+    for key in LATER:
+        if getattr(spec, key) is not None:
+            raise RobotError(
+                f"robot: `{key}` is not yet available; use `model` with one of "
+                f"{', '.join(robot_names())}"
+            )
+    if spec.base.frame != "world":
+        raise RobotError(f"robot.base stands in the frame 'world', not in '{spec.base.frame}'")
+    main = None if spec.model is None else _part(spec.model, "model", spec.args, base_dir)
+    tool = None if spec.gripper is None else _part(spec.gripper, "gripper", {}, base_dir)
+    if tool is not None and tool.facts.kind != "gripper":
+        raise RobotError(f"robot.gripper: '{spec.gripper}' is an arm; {_known(gripper_names())}")
+    if main is not None and main.facts.kind == "gripper":
+        if tool is not None:
+            raise RobotError(f"robot.model: '{spec.model}' is a gripper and carries no other one")
+        main, tool = None, main
+    description = compose(main, tool, spec.base.se3())
+    return _with_options(description, spec)
+
+
+def _part(name: str, key: str, args: Mapping[str, Any], base_dir: Path) -> Part:
+    """A bundled robot or gripper, or the one in a folder."""
+    if name in _catalogue():
+        return _bundled(name, tuple(sorted((k, str(v)) for k, v in args.items())))
+    folder = base_dir / name
+    if (folder / "robot.yaml").is_file():
+        return _read(folder, read_robot_yaml(folder), "", args)
+    names = gripper_names() if key == "gripper" else robot_names()
+    hint = ""
+    if "/" in name or name.startswith("."):
+        hint = f"{folder} has no robot.yaml; "
+    elif near := difflib.get_close_matches(name.lower(), names, 1):
+        hint = f"did you mean '{near[0]}'? "
+    raise RobotError(f"robot.{key}: '{name}' is not known; {hint}{_known(names)}")
+
+
+def _known(names: tuple[str, ...]) -> str:
+    return f"known are {', '.join(names)}"
+
+
+@lru_cache(maxsize=32)
+def _bundled(name: str, args: tuple[tuple[str, str], ...]) -> Part:
+    folder, facts = _catalogue()[name]
+    return _read(folder, facts, name if facts.variants else "", dict(args))
+
+
+def _read(folder: Path, facts: RobotYaml, variant: str, args: Mapping[str, Any]) -> Part:
+    """URDF and SRDF of a folder, with the limits of its robot.yaml."""
+    name = variant or facts.robot
+    if facts.xacro is not None:
+        path = folder / facts.xacro.file
+        text = _rendered(path, facts.xacro, variant, args)
+    else:
+        path = folder / (facts.urdf or "")
+        text = _text(path)
+        if args:
+            raise RobotError(f"robot.args: '{name}' is no xacro file and takes no arguments")
+    urdf = parse_urdf(text, folder, str(path))
+    urdf = Urdf(urdf.name, urdf.links, tuple(_with_facts(joint, facts) for joint in urdf.joints))
+    for joint in facts.joints:
+        if joint not in {item.name for item in urdf.joints}:
+            raise RobotError(f"{folder / 'robot.yaml'}: joints.{joint}: the URDF has no such joint")
+    srdf_path = folder / facts.srdf
+    return Part(name, facts, urdf, parse_srdf(_text(srdf_path), str(srdf_path)), str(folder))
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise RobotError(f"{path}: cannot be read: {error.strerror}") from error
+
+
+def _rendered(path: Path, xacro_file: XacroFile, variant: str, args: Mapping[str, Any]) -> str:
+    """The URDF text of a xacro file."""
+    import xacro  # here: parsing plain URDFs does not need it
+
+    mappings = {key: str(value) for key, value in args.items()}
+    if xacro_file.variant_arg and variant:
+        mappings[xacro_file.variant_arg] = variant
+    if xacro_file.mesh_arg and xacro_file.mesh_arg not in mappings:
+        has_meshes = variant in xacro_file.mesh_variants and (
+            importlib.util.find_spec(xacro_file.mesh_package or "") is not None
+        )
+        mappings[xacro_file.mesh_arg] = str(has_meshes).lower()
+    try:
+        return str(xacro.process_file(str(path), mappings=mappings).toxml())
+    except (xacro.XacroException, OSError) as error:
+        raise RobotError(f"{path}: cannot be rendered: {error}") from error
+
+
+def _with_facts(joint: Joint, facts: RobotYaml) -> Joint:
+    """A joint with what robot.yaml says of its limits."""
+    if not joint.is_movable:
+        return joint
+    known = facts.joints.get(joint.name)
+    joint = replace(joint, acceleration=facts.max_acceleration, effort_source=facts.effort_source)
+    if known is None:
+        return joint
+    return replace(
+        joint,
+        velocity=known.max_velocity or joint.velocity,
+        acceleration=known.max_acceleration or joint.acceleration,
+        effort=known.max_effort or joint.effort,
+        effort_source=known.effort_source or joint.effort_source,
+    )
+
+
+# -- a scenario's options ---------------------------------------------------------------------
+
+
+def _with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescription:
+    joints = description.joints
+    if spec.joint_limits:
+        for name in spec.joint_limits:
+            _movable(description, name, "joint_limits")
+        joints = tuple(
+            _narrowed(joint, spec.joint_limits[joint.name])
+            if joint.name in spec.joint_limits
+            else joint
+            for joint in joints
+        )
+        urdf = write_urdf(description.name, description.links, joints)
+        description = replace(description, joints=joints, urdf=urdf)
+    if spec.named_states:
+        states = _with_states(description, spec)
+        srdf = replace(parse_srdf(description.srdf, description.name), states=states)
+        text = write_srdf(description.name, srdf)
+        description = replace(description, named_states=states, srdf=text)
+    if spec.start_state is not None:
+        start = {**description.start_state, **_start(description, spec.start_state)}
+        description = replace(description, start_state=start)
+    for name, position in description.start_state.items():
+        _within(description, name, position, "start_state")
+    return description
+
+
+def _movable(description: RobotDescription, name: str, where: str) -> Joint:
+    if name not in description.joint_index:
+        near = difflib.get_close_matches(name, description.joint_names, 1)
+        hint = f"did you mean '{near[0]}'? " if near else ""
+        raise RobotError(
+            f"robot.{where}: '{description.name}' has no joint '{name}'; {hint}"
+            f"joints: {', '.join(description.joint_names)}"
+        )
+    return description.joint_by_name[name]
+
+
+def _within(description: RobotDescription, name: str, position: float, where: str) -> None:
+    joint = _movable(description, name, where)
+    if not joint.lower <= position <= joint.upper:
+        raise RobotError(
+            f"robot.{where}: joint '{name}' at {position:.6g} is outside its limits "
+            f"[{joint.lower:.6g}, {joint.upper:.6g}]"
+        )
+
+
+def _narrowed(joint: Joint, limits: JointLimits) -> Joint:
+    """A joint under tighter limits; its acceleration, which no URDF says, may be any."""
+    for key, value, widest in (
+        ("max_position", limits.max_position, joint.upper),
+        ("max_velocity", limits.max_velocity, joint.velocity),
+        ("max_effort", limits.max_effort, joint.effort),
+    ):
+        if value is not None and value > widest:
+            raise RobotError(
+                f"robot.joint_limits.{joint.name}.{key}: {value:.6g} is more than the robot's "
+                f"{widest:.6g}; limits can be narrowed only"
+            )
+    if limits.min_position is not None and limits.min_position < joint.lower:
+        raise RobotError(
+            f"robot.joint_limits.{joint.name}.min_position: {limits.min_position:.6g} is less than "
+            f"the robot's {joint.lower:.6g}; limits can be narrowed only"
+        )
+    lower = joint.lower if limits.min_position is None else limits.min_position
+    upper = joint.upper if limits.max_position is None else limits.max_position
+    if lower >= upper:
+        raise RobotError(f"robot.joint_limits.{joint.name}: nothing is between {lower} and {upper}")
+    bounded = joint.kind == "continuous" and np.isfinite([lower, upper]).all()
+    return replace(
+        joint,
+        kind="revolute" if bounded else joint.kind,
+        lower=lower,
+        upper=upper,
+        velocity=limits.max_velocity or joint.velocity,
+        acceleration=limits.max_acceleration or joint.acceleration,
+        effort=limits.max_effort or joint.effort,
+        effort_source="the scenario" if limits.max_effort else joint.effort_source,
+    )
+
+
+def _with_states(description: RobotDescription, spec: RobotSpec) -> tuple[NamedState, ...]:
+    """The robot's states and the scenario's; one so named before is replaced."""
+    states = {(state.group, state.name): state for state in description.named_states}
+    for group, named in spec.named_states.items():
+        if group not in description.groups:
+            raise RobotError(
+                f"robot.named_states: '{description.name}' has no group '{group}'; "
+                f"groups: {', '.join(description.groups)}"
+            )
+        for name, positions in named.items():
+            for joint, position in positions.items():
+                _within(description, joint, position, f"named_states.{group}.{name}")
+            states[group, name] = NamedState(name, group, dict(positions))
+    return tuple(states.values())
+
+
+def _start(description: RobotDescription, start: StartState) -> dict[str, float]:
+    positions: dict[str, float] = {}
+    if start.named_target is not None:
+        found = [s for s in description.named_states if s.name == start.named_target]
+        if not found:
+            names = ", ".join(state.name for state in description.named_states)
+            raise RobotError(
+                f"robot.start_state: '{description.name}' has no state '{start.named_target}'; "
+                f"states: {names}"
+            )
+        preferred = [state for state in found if state.group == description.arm_group]
+        positions |= (preferred or found)[0].positions
+    return positions | dict(start.joints or {})
