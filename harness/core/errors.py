@@ -10,6 +10,8 @@ HarnessError
 
 from __future__ import annotations
 
+import textwrap
+import unicodedata
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
@@ -50,6 +52,16 @@ ErrorCode = Literal[
 ERROR_CODES: tuple[str, ...] = get_args(ErrorCode)
 
 
+EXCERPT_WIDTH = 110  # characters of a source line, and of a hint, on one line of a message
+
+
+def columns_of(character: str) -> int:
+    """Columns that a terminal gives a character: 2 for wide ones, 0 for combining ones."""
+    if unicodedata.combining(character) or not character.isprintable():
+        return 0
+    return 2 if unicodedata.east_asian_width(character) in "WF" else 1
+
+
 class HarnessError(Exception):
     """Base of every error that the program raises on purpose."""
 
@@ -81,10 +93,25 @@ class Problem:
         text = f"{place}: {self.message}"
         if not self.source_line:
             return f"{text}\n  {self.hint}" if self.hint else text
-        number = f"{self.line:>5}"
-        caret = " " * (self.column - 1) + "^" * max(1, self.length)
-        below = f"{caret} {self.hint}".rstrip()
-        return f"{text}\n{number} | {self.source_line}\n      | {below}"
+        return "\n".join([text, *self._excerpt()])
+
+    def _excerpt(self) -> list[str]:
+        """The source line with a caret under the place, and the hint, wrapped."""
+        start, line = 0, self.source_line
+        if len(line) > EXCERPT_WIDTH:
+            start = max(0, self.column - 1 - EXCERPT_WIDTH // 2)
+            line = line[start : start + EXCERPT_WIDTH]
+        before = line[: self.column - 1 - start]
+        blank = "".join("\t" if c == "\t" else " " * columns_of(c) for c in before)
+        under = line[len(before) : len(before) + self.length]
+        caret = blank + "^" * max(1, sum(map(columns_of, under)))
+        beside = f"{caret} {self.hint}".rstrip()
+        margin = f"{'':>5} | "
+        if len(beside) <= EXCERPT_WIDTH:
+            below = [beside]
+        else:
+            below = [caret, *textwrap.wrap(self.hint, EXCERPT_WIDTH, break_long_words=False)]
+        return [f"{self.line:>5} | {line}", *(margin + each for each in below)]
 
 
 class SpecError(HarnessError):

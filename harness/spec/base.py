@@ -2,18 +2,39 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any, ClassVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, Strict, model_validator
 
 from harness.spec.units import quantity
 
 
 class SpecModel(BaseModel):
-    """A part of a file: unknown keys refused, immutable, finite numbers only."""
+    """A part of a file: unknown keys refused, immutable, finite numbers only.
+
+    Attributes:
+        short: The field that a bare value stands for: `- gripper: open` is short for
+            `- gripper: {named_target: open}`; empty where there is none.
+        short_is_list: Whether that field is a list, and one value alone a list of one.
+    """
+
+    short: ClassVar[str] = ""
+    short_is_list: ClassVar[bool] = False
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _from_short_form(cls, value: Any) -> Any:
+        if not cls.short or isinstance(value, dict | BaseModel):
+            return value
+        is_one = cls.short_is_list and not isinstance(value, list | tuple)
+        return {cls.short: [value] if is_one else value}
+
+
+Number = Annotated[float, Strict()]
+Count = Annotated[int, Strict()]
+Flag = Annotated[bool, Strict()]
 
 Length = Annotated[float, BeforeValidator(quantity("m"))]
 Angle = Annotated[float, BeforeValidator(quantity("rad"))]
@@ -22,6 +43,8 @@ Force = Annotated[float, BeforeValidator(quantity("N"))]
 Mass = Annotated[float, BeforeValidator(quantity("kg")), Field(gt=0)]
 LinearVelocity = Annotated[float, BeforeValidator(quantity("m/s"))]
 AngularVelocity = Annotated[float, BeforeValidator(quantity("rad/s"))]
+JointVelocity = Annotated[float, BeforeValidator(quantity("rad/s", "m/s"))]
+JointAcceleration = Annotated[float, BeforeValidator(quantity("rad/s**2", "m/s**2"))]
 LinearAcceleration = Annotated[float, BeforeValidator(quantity("m/s**2"))]
 JointValue = Annotated[float, BeforeValidator(quantity("rad", "m"))]
 JointEffort = Annotated[float, BeforeValidator(quantity("N*m", "N"))]
@@ -30,15 +53,22 @@ PositiveLength = Annotated[Length, Field(gt=0)]
 NonNegativeLength = Annotated[Length, Field(ge=0)]
 NonNegativeAngle = Annotated[Angle, Field(ge=0)]
 PositiveDuration = Annotated[Duration, Field(gt=0)]
-Fraction = Annotated[float, Field(gt=0, le=1)]
+Fraction = Annotated[Number, Field(gt=0, le=1)]
 
 Xyz = tuple[Length, Length, Length]
 Rpy = tuple[Angle, Angle, Angle]
-Quaternion = tuple[float, float, float, float]
+Quaternion = tuple[Number, Number, Number, Number]
 Color = tuple[
-    Annotated[float, Field(ge=0, le=1)],
-    Annotated[float, Field(ge=0, le=1)],
-    Annotated[float, Field(ge=0, le=1)],
-    Annotated[float, Field(ge=0, le=1)],
+    Annotated[Number, Field(ge=0, le=1)],
+    Annotated[Number, Field(ge=0, le=1)],
+    Annotated[Number, Field(ge=0, le=1)],
+    Annotated[Number, Field(ge=0, le=1)],
 ]
+
+
+def kind_of(value: Any) -> str:
+    """`many` for a mapping, list or model, `one` for anything else: tells a union's branch."""
+    return "many" if isinstance(value, dict | list | tuple | BaseModel) else "one"
+
+
 Name = Annotated[str, Field(min_length=1, max_length=100)]

@@ -6,7 +6,7 @@ A predicate stands bare, or inside a temporal word. Bare, it is judged by its `j
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
@@ -14,13 +14,16 @@ from harness.spec.base import (
     Angle,
     AngularVelocity,
     Color,
+    Count,
     Duration,
+    Flag,
     Force,
     JointValue,
     LinearVelocity,
     Name,
     NonNegativeAngle,
     NonNegativeLength,
+    Number,
     PositiveDuration,
     PositiveLength,
     SpecModel,
@@ -42,19 +45,16 @@ class CheckFields(SpecModel):
         None, description="Must come true within this time of the window's start [s]."
     )
     during: Name | None = Field(None, description="Judged over the step with this id.")
-    points: Annotated[float, Field(ge=0)] | None = Field(None, description="Of a graded scenario.")
+    points: Annotated[Number, Field(ge=0)] | None = Field(None, description="Of a graded scenario.")
     name: str | None = Field(None, description="For people.")
 
 
 class ObjectCheck(CheckFields):
     """A predicate of one object; `- lifted: red_box` is short for `{object: red_box}`."""
 
-    object: Name
+    short = "object"
 
-    @model_validator(mode="before")
-    @classmethod
-    def _short(cls, value: Any) -> Any:
-        return {"object": value} if isinstance(value, str) else value
+    object: Name
 
 
 class Lifted(ObjectCheck):
@@ -123,19 +123,18 @@ class Upright(ObjectCheck):
 class Static(CheckFields):
     """The object, or everything, moves slower than a limit."""
 
+    short = "object"
+
     check: Literal["static"] = "static"
     object: Name | None = Field(None, description="Default: every dynamic object and the robot.")
     max_velocity: Annotated[LinearVelocity, Field(gt=0)] = 0.005
     max_angular_velocity: Annotated[AngularVelocity, Field(gt=0)] = 0.05
 
-    @model_validator(mode="before")
-    @classmethod
-    def _short(cls, value: Any) -> Any:
-        return {"object": value} if isinstance(value, str) else value
-
 
 class Between(CheckFields):
     """A predicate of two bodies: links, objects, `robot`, `gripper`."""
+
+    short = "between"
 
     between: tuple[Name, Name]
 
@@ -151,6 +150,8 @@ class InContact(Between):
 class Collision(CheckFields):
     """A contact that is neither allowed, nor a grasp, nor an object resting on its support."""
 
+    short = "between"
+
     judged = "eventually"
     check: Literal["collision"] = "collision"
     between: tuple[Name, Name] | None = Field(
@@ -160,6 +161,8 @@ class Collision(CheckFields):
 
 class Clearance(CheckFields):
     """The distance between the two bodies is at least so much."""
+
+    short = "at_least"
 
     judged = "always"
     check: Literal["clearance"] = "clearance"
@@ -176,7 +179,7 @@ class TcpPose(CheckFields):
     pose: Pose
     link: Name | None = None
     tolerance: PoseTolerance = Field(default_factory=PoseTolerance)
-    position_only: bool = False
+    position_only: Flag = False
 
 
 class Line(SpecModel):
@@ -215,31 +218,25 @@ class Joints(CheckFields):
 class NamedTarget(CheckFields):
     """A group stands at its named state."""
 
+    short = "state"
+
     check: Literal["named_target"] = "named_target"
     state: Name
     group: Name | None = None
     tolerance: Annotated[JointValue, Field(gt=0)] = 0.01
 
-    @model_validator(mode="before")
-    @classmethod
-    def _short(cls, value: Any) -> Any:
-        return {"state": value} if isinstance(value, str) else value
-
 
 class GripperState(CheckFields):
     """The gripper stands at a named state, a position or a width, or is stalled."""
+
+    short = "named_target"
 
     check: Literal["gripper"] = "gripper"
     named_target: Name | None = None
     position: JointValue | None = None
     width: NonNegativeLength | None = None
     tolerance: Annotated[JointValue, Field(gt=0)] = 0.02
-    stalled: bool | None = Field(None, description="What the last gripper step reported.")
-
-    @model_validator(mode="before")
-    @classmethod
-    def _short(cls, value: Any) -> Any:
-        return {"named_target": value} if isinstance(value, str) else value
+    stalled: Flag | None = Field(None, description="What the last gripper step reported.")
 
     @model_validator(mode="after")
     def _one(self) -> GripperState:
@@ -258,14 +255,16 @@ class WithinLimits(CheckFields):
 
     judged = "always"
     check: Literal["within_limits"] = "within_limits"
-    position: bool = True
-    velocity: bool = True
-    acceleration: bool = Field(False, description="Of the commanded trajectory.")
-    effort: bool = True
+    position: Flag = True
+    velocity: Flag = True
+    acceleration: Flag = Field(False, description="Of the commanded trajectory.")
+    effort: Flag = True
 
 
 class TrackingError(CheckFields):
     """Joints stay near their commands."""
+
+    short = "max"
 
     judged = "always"
     check: Literal["tracking_error"] = "tracking_error"
@@ -275,13 +274,17 @@ class TrackingError(CheckFields):
 class Effort(CheckFields):
     """Joint efforts stay below a share of their limits."""
 
+    short = "max_fraction"
+
     judged = "always"
     check: Literal["effort"] = "effort"
-    max_fraction: Annotated[float, Field(gt=0)] = 1.0
+    max_fraction: Annotated[Number, Field(gt=0)] = 1.0
 
 
 class DurationCheck(CheckFields):
     """The step, or the run, takes at most (at least) so long."""
+
+    short = "at_most"
 
     check: Literal["duration"] = "duration"
     at_most: Duration | None = None
@@ -297,6 +300,8 @@ class DurationCheck(CheckFields):
 class PathLength(CheckFields):
     """The TCP travels at most so far."""
 
+    short = "at_most"
+
     check: Literal["path_length"] = "path_length"
     at_most: PositiveLength
 
@@ -304,8 +309,10 @@ class PathLength(CheckFields):
 class FractionCheck(CheckFields):
     """A cartesian path was followed at least so far."""
 
+    short = "at_least"
+
     check: Literal["fraction"] = "fraction"
-    at_least: Annotated[float, Field(ge=0, le=1)] = 1.0
+    at_least: Annotated[Number, Field(ge=0, le=1)] = 1.0
 
 
 class Sees(CheckFields):
@@ -316,8 +323,8 @@ class Sees(CheckFields):
     camera: Name
     object: Name | None = None
     color: Color | None = None
-    marker: int | None = None
-    min_fraction: Annotated[float, Field(ge=0, le=1)] = 0.001
+    marker: Count | None = None
+    min_fraction: Annotated[Number, Field(ge=0, le=1)] = 0.001
 
 
 class Slip(ObjectCheck):
@@ -369,7 +376,7 @@ class TemporalFields(SpecModel):
         None, description="Deadline from the window's start [s]."
     )
     during: Name | None = Field(None, description="Judged over the step with this id.")
-    points: Annotated[float, Field(ge=0)] | None = None
+    points: Annotated[Number, Field(ge=0)] | None = None
     name: str | None = None
 
 
@@ -405,9 +412,11 @@ class Until(TemporalFields):
 class Formula(SpecModel):
     """Signal temporal logic over recorded signals."""
 
+    short = "formula"
+
     check: Literal["formula"] = "formula"
     formula: str
-    points: Annotated[float, Field(ge=0)] | None = None
+    points: Annotated[Number, Field(ge=0)] | None = None
     name: str | None = None
 
 

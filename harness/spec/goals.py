@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pydantic import Field, model_validator
 
 from harness.spec.base import Angle, JointValue, Name, SpecModel
@@ -14,6 +12,8 @@ GOAL_KEYS = ("named_target", "joints", "pose", "position")
 
 class GoalFields(SpecModel):
     """Exactly one of `named_target`, `joints`, `pose`, `position`, and how near is there."""
+
+    short = "named_target"
 
     named_target: Name | None = Field(None, description="An SRDF group state.")
     joints: dict[Name, JointValue] | None = Field(
@@ -26,11 +26,6 @@ class GoalFields(SpecModel):
     )
     link: Name | None = Field(None, description="Of pose and position goals; default: the TCP.")
     tolerance: PoseTolerance | None = Field(None, description="Of pose and position goals.")
-
-    @model_validator(mode="before")
-    @classmethod
-    def _short(cls, value: Any) -> Any:
-        return {"named_target": value} if isinstance(value, str) else value
 
     @model_validator(mode="after")
     def _one_goal(self) -> GoalFields:

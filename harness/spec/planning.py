@@ -8,12 +8,14 @@ from pydantic import Field
 
 from harness.spec.base import (
     Angle,
+    Count,
     Duration,
     Fraction,
     JointValue,
     Name,
     NonNegativeAngle,
     NonNegativeLength,
+    Number,
     PositiveLength,
     SpecModel,
 )
@@ -30,14 +32,14 @@ class Planning(SpecModel):
     planning_time: Annotated[Duration, Field(gt=0)] | None = Field(
         None, description="Converted to state checks at a fixed rate; never a wall clock."
     )
-    max_state_checks: Annotated[int, Field(ge=1, le=10_000_000)] | None = None
-    planning_attempts: Annotated[int, Field(ge=1, le=100)] | None = None
+    max_state_checks: Annotated[Count, Field(ge=1, le=10_000_000)] | None = None
+    planning_attempts: Annotated[Count, Field(ge=1, le=100)] | None = None
     max_velocity_scaling_factor: Fraction | None = None
     max_acceleration_scaling_factor: Fraction | None = None
     padding: NonNegativeLength | None = Field(
         None, description="Distance kept between the robot, what it holds, and every object [m]."
     )
-    parameters: dict[Name, float] | None = Field(None, description="Of the planner: `range` ...")
+    parameters: dict[Name, Number] | None = Field(None, description="Of the planner: `range` ...")
 
 
 class OrientationConstraint(SpecModel):

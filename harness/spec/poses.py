@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING
 
 from pydantic import Field, field_validator, model_validator
 
-from harness.core.spatial import SE3, wxyz_from_xyzw
 from harness.spec.base import (
     Name,
     NonNegativeAngle,
+    Number,
     PositiveLength,
     Quaternion,
     Rpy,
     SpecModel,
     Xyz,
 )
+
+if TYPE_CHECKING:
+    from harness.core.spatial import SE3
 
 QUATERNION_NORM_TOLERANCE = 1e-2
 
@@ -54,6 +57,8 @@ class Pose(SpecModel):
 
     def se3(self) -> SE3:
         """The pose in its frame: T_frame_this, quaternion normalised."""
+        from harness.core.spatial import SE3, wxyz_from_xyzw  # NumPy: 0.1 s, not needed to load
+
         if self.rpy is not None:
             return SE3.from_xyz_rpy(self.xyz, self.rpy)
         if self.quat_xyzw is not None:
@@ -66,19 +71,16 @@ class Pose(SpecModel):
 class Position(SpecModel):
     """A point in a frame."""
 
+    short = "xyz"
+
     xyz: Xyz = Field(description="Position [m].")
     frame: Name = Field("world", description="`world`, a robot link, or an object's name.")
-
-    @model_validator(mode="before")
-    @classmethod
-    def _short(cls, value: Any) -> Any:
-        return {"xyz": value} if isinstance(value, list | tuple) else value
 
 
 class Direction(SpecModel):
     """A direction of travel, or an axis to turn about; its length does not matter."""
 
-    xyz: tuple[float, float, float] = Field(description="Along x, y, z of the frame.")
+    xyz: tuple[Number, Number, Number] = Field(description="Along x, y, z of the frame.")
     frame: Name = Field("world", description="`world`, a robot link, or an object's name.")
 
     @field_validator("xyz")

@@ -6,7 +6,18 @@ from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
-from harness.spec.base import Fraction, JointValue, Name, SpecModel
+from harness.spec.base import (
+    Count,
+    Flag,
+    Fraction,
+    JointAcceleration,
+    JointEffort,
+    JointValue,
+    JointVelocity,
+    Name,
+    Number,
+    SpecModel,
+)
 from harness.spec.checks import Expectation
 from harness.spec.planning import Planning
 from harness.spec.poses import Pose
@@ -17,13 +28,10 @@ from harness.spec.world import ObjectSpec
 class StartState(SpecModel):
     """Where the robot stands at the start."""
 
+    short = "named_target"
+
     named_target: Name | None = None
     joints: dict[Name, JointValue] | None = None
-
-    @model_validator(mode="before")
-    @classmethod
-    def _short(cls, value: Any) -> Any:
-        return {"named_target": value} if isinstance(value, str) else value
 
 
 class JointLimits(SpecModel):
@@ -31,13 +39,15 @@ class JointLimits(SpecModel):
 
     min_position: JointValue | None = None
     max_position: JointValue | None = None
-    max_velocity: Annotated[float, Field(gt=0)] | None = None
-    max_acceleration: Annotated[float, Field(gt=0)] | None = None
-    max_effort: Annotated[float, Field(gt=0)] | None = None
+    max_velocity: Annotated[JointVelocity, Field(gt=0)] | None = None
+    max_acceleration: Annotated[JointAcceleration, Field(gt=0)] | None = None
+    max_effort: Annotated[JointEffort, Field(gt=0)] | None = None
 
 
 class RobotSpec(SpecModel):
     """The robot: a bundled model or files, with its gripper and where it stands."""
+
+    short = "model"
 
     model: str | None = Field(None, description="A name under robots/, or a path to such a folder.")
     urdf: str | None = None
@@ -56,9 +66,7 @@ class RobotSpec(SpecModel):
 
     @model_validator(mode="before")
     @classmethod
-    def _short(cls, value: Any) -> Any:
-        if isinstance(value, str):
-            return {"model": value}
+    def _course_word(cls, value: Any) -> Any:
         if isinstance(value, dict) and "ur_type" in value and "model" not in value:
             return {("model" if key == "ur_type" else key): item for key, item in value.items()}
         return value
@@ -77,7 +85,7 @@ class Expected(SpecModel):
     """A success rate to be shown by sampled cases."""
 
     at_least: Fraction
-    confidence: Annotated[float, Field(gt=0, lt=1)] = 0.95
+    confidence: Annotated[Number, Field(gt=0, lt=1)] = 0.95
 
 
 class Scenario(SpecModel):
@@ -86,18 +94,18 @@ class Scenario(SpecModel):
     scenario: Annotated[str, Field(min_length=1, max_length=200)] = Field(description="Its title.")
     description: str = ""
     tags: tuple[Name, ...] = Field((), description="pytest marks.")
-    points: Annotated[float, Field(ge=0)] | None = None
+    points: Annotated[Number, Field(ge=0)] | None = None
     verifies: tuple[str, ...] = Field((), description="Requirements.")
     robot: RobotSpec
     world: str = Field("empty", description="A name under worlds/, a .yaml path, or an .sdf path.")
     objects: tuple[ObjectSpec, ...] = Field((), description="Added to, or replacing, the world's.")
-    seed: Annotated[int, Field(ge=0, le=2**31 - 1)] = 0
+    seed: Annotated[Count, Field(ge=0, le=2**31 - 1)] = 0
     params: dict[Name, Any] = Field(default_factory=dict, description="For ${name} in the file.")
     planning: Planning = Field(default_factory=Planning)
-    deterministic: bool = True
+    deterministic: Flag = True
     steps: Annotated[tuple[Step, ...], Field(min_length=1)]
     expect: tuple[Expectation, ...] = Field((), description="Judged over the whole run.")
     parametrize: dict[str, Any] | list[Any] | None = None
     randomize: dict[str, Any] | None = None
-    samples: Annotated[int, Field(ge=1, le=100_000)] | None = None
+    samples: Annotated[Count, Field(ge=1, le=100_000)] | None = None
     expect_rate: Expected | None = None

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from harness.core.errors import ErrorCode
 from harness.spec.base import (
     Angle,
     AngularVelocity,
+    Count,
     Duration,
+    Flag,
     Force,
     Fraction,
     JointEffort,
@@ -20,9 +22,11 @@ from harness.spec.base import (
     LinearVelocity,
     Name,
     NonNegativeLength,
+    Number,
     PositiveDuration,
     PositiveLength,
     SpecModel,
+    kind_of,
 )
 from harness.spec.checks import Expectation
 from harness.spec.goals import GoalFields
@@ -165,12 +169,17 @@ class SequenceItem(SpecModel):
 class Sequence(StepFields):
     """Pilz's motion sequence with blends."""
 
+    short = "items"
+    short_is_list = True
+
     do: Literal["sequence"] = "sequence"
     items: Annotated[tuple[SequenceItem, ...], Field(min_length=1)]
 
 
 class Gripper(StepFields):
     """GripperCommand: a named state, `position`, or `width`."""
+
+    short = "named_target"
 
     do: Literal["gripper"] = "gripper"
     named_target: Name | None = Field(None, description="An SRDF group state of the gripper.")
@@ -179,11 +188,6 @@ class Gripper(StepFields):
     max_effort: Annotated[JointEffort, Field(gt=0)] | None = Field(
         None, description="Effort limit of the gripper's joint; default from the robot."
     )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _short(cls, value: Any) -> Any:
-        return {"named_target": value} if isinstance(value, str) else value
 
     @model_validator(mode="after")
     def _one_target(self) -> Gripper:
@@ -196,37 +200,35 @@ class Gripper(StepFields):
 class Grasp(StepFields):
     """Close until both finger sides touch the object, verify, attach it in the planning scene."""
 
+    short = "object"
+
     do: Literal["grasp"] = "grasp"
     object: Name
     mode: GripperAction = Field("friction", description="`weld` fixes it in the physics too.")
     max_effort: Annotated[JointEffort, Field(gt=0)] | None = None
     position: JointValue | None = Field(None, description="Closes to here at most; default closed.")
 
-    @model_validator(mode="before")
-    @classmethod
-    def _short(cls, value: Any) -> Any:
-        return {"object": value} if isinstance(value, str) else value
-
 
 class Release(StepFields):
     """Open, verify that nothing is held, detach in the planning scene."""
+
+    short = "object"
 
     do: Literal["release"] = "release"
     object: Name | None = Field(None, description="Default: what was grasped last.")
     named_target: Name | None = Field(None, description="Default: the gripper's open position.")
     position: JointValue | None = None
 
-    @model_validator(mode="before")
-    @classmethod
-    def _short(cls, value: Any) -> Any:
-        return {"object": value} if isinstance(value, str) else value
-
 
 class AttachObject(StepFields):
     """Fix an object to a link, in the planning scene alone."""
 
+    short = "object"
+
     do: Literal["attach_object"] = "attach_object"
-    object: Name | ObjectSpec = Field(description="A name in the scene, or a new object.")
+    object: Annotated[
+        Annotated[Name, Tag("one")] | Annotated[ObjectSpec, Tag("many")], Discriminator(kind_of)
+    ] = Field(description="A name in the scene, or a new object.")
     link: Name | None = Field(None, description="Default: the TCP link.")
     touch_links: tuple[Name, ...] | None = Field(
         None, description="Links that may touch it; default: the gripper's."
@@ -240,37 +242,30 @@ class AttachObject(StepFields):
 class DetachObject(StepFields):
     """Let go of an attached object, in the planning scene alone."""
 
+    short = "object"
+
     do: Literal["detach_object"] = "detach_object"
     object: Name
-
-    @model_validator(mode="before")
-    @classmethod
-    def _short(cls, value: Any) -> Any:
-        return {"object": value} if isinstance(value, str) else value
 
 
 class AddObject(StepFields):
     """Add one or several objects."""
 
+    short = "objects"
+    short_is_list = True
+
     do: Literal["add_object"] = "add_object"
     objects: Annotated[tuple[ObjectSpec, ...], Field(min_length=1)]
-
-    @model_validator(mode="before")
-    @classmethod
-    def _short(cls, value: Any) -> Any:
-        return _listed(value, "objects")
 
 
 class RemoveObject(StepFields):
     """Remove one or several objects."""
 
+    short = "objects"
+    short_is_list = True
+
     do: Literal["remove_object"] = "remove_object"
     objects: Annotated[tuple[Name, ...], Field(min_length=1)]
-
-    @model_validator(mode="before")
-    @classmethod
-    def _short(cls, value: Any) -> Any:
-        return _listed(value, "objects")
 
 
 class MoveObject(StepFields):
@@ -285,7 +280,7 @@ class ClearObjects(StepFields):
     """Remove what steps added; with `world: true` the world's objects too."""
 
     do: Literal["clear_objects"] = "clear_objects"
-    world: bool = False
+    world: Flag = False
 
 
 class AllowCollisions(StepFields):
@@ -307,6 +302,8 @@ class Travel(SpecModel):
 
 class Pick(StepFields):
     """Approach, grasp, lift; expands into the steps it is made of."""
+
+    short = "object"
 
     do: Literal["pick"] = "pick"
     object: Name
@@ -333,6 +330,8 @@ class Place(StepFields):
 class Capture(StepFields):
     """Take an image with a camera."""
 
+    short = "camera"
+
     do: Literal["capture"] = "capture"
     camera: Name
     kinds: tuple[Literal["color", "depth", "segmentation"], ...] = ("color",)
@@ -341,34 +340,28 @@ class Capture(StepFields):
 class Wait(StepFields):
     """Let simulated time pass."""
 
+    short = "duration"
+
     do: Literal["wait"] = "wait"
     duration: PositiveDuration
-
-    @model_validator(mode="before")
-    @classmethod
-    def _short(cls, value: Any) -> Any:
-        return value if isinstance(value, dict) else {"duration": value}
 
 
 class Settle(StepFields):
     """Wait until everything is slower than a limit."""
+
+    short = "max_velocity"
 
     do: Literal["settle"] = "settle"
     max_velocity: Annotated[LinearVelocity, Field(gt=0)] = Field(
         1e-3, description="Of objects [m/s] and joints [rad/s]."
     )
 
-    @model_validator(mode="before")
-    @classmethod
-    def _short(cls, value: Any) -> Any:
-        return {} if value is None or value is True else value
-
 
 class Inject(StepFields):
     """A fault, with a receipt."""
 
     do: Literal["inject"] = "inject"
-    friction: dict[Name, Annotated[float, Field(ge=0)]] | None = None
+    friction: dict[Name, Annotated[Number, Field(ge=0)]] | None = None
     gripper_effort: Fraction | None = None
     joint_stall: Name | None = None
     push: dict[Name, tuple[Force, Force, Force]] | None = None
@@ -380,12 +373,15 @@ class Repeat(StepFields):
     """The same steps several times."""
 
     do: Literal["repeat"] = "repeat"
-    times: Annotated[int, Field(ge=1, le=1000)]
+    times: Annotated[Count, Field(ge=1, le=1000)]
     steps: Annotated[tuple[Step, ...], Field(min_length=1)]
 
 
 class Parallel(StepFields):
     """Arm and gripper at once."""
+
+    short = "steps"
+    short_is_list = True
 
     do: Literal["parallel"] = "parallel"
     steps: Annotated[tuple[Step, ...], Field(min_length=2)]
@@ -394,18 +390,11 @@ class Parallel(StepFields):
 class Include(StepFields):
     """Steps from another file, with parameters."""
 
+    short = "file"
+
     do: Literal["include"] = "include"
     file: str
     params: dict[Name, Any] = Field(default_factory=dict)
-
-
-def _listed(value: Any, key: str) -> Any:
-    """`- verb: x` and `- verb: [x, y]` are short for `- verb: {objects: [...]}`."""
-    if isinstance(value, dict) and key in value:
-        return value
-    if isinstance(value, list | tuple):
-        return {key: value}
-    return {key: [value]}
 
 
 AnyStep = (

@@ -1,15 +1,169 @@
-"""Numbers that may carry a unit as text."""
+"""Numbers that may carry a unit as text: `5 cm` is 0.05 where metres are meant."""
 
 from __future__ import annotations
 
+import functools
+import re
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from harness.spec.mistakes import MistakeError, nearest
+
+if TYPE_CHECKING:
+    import pint
+
+DEFINITIONS = (
+    "nano- = 1e-9 = n-",
+    "micro- = 1e-6 = µ- = u- = μ-",
+    "milli- = 1e-3 = m-",
+    "centi- = 1e-2 = c-",
+    "deci- = 1e-1 = d-",
+    "kilo- = 1e3 = k-",
+    "mega- = 1e6 = M-",
+    "meter = [length] = m = metre",
+    "second = [time] = s = sec",
+    "gram = [mass] = g",
+    "radian = [angle] = rad",
+    "minute = 60 * second = min",
+    "hour = 3600 * second = h",
+    "inch = 0.0254 * meter = in",
+    "foot = 0.3048 * meter = ft = feet",
+    "degree = 0.017453292519943295 * radian = deg = °",
+    "turn = 6.283185307179586 * radian = _ = revolution = rev",
+    "rpm = turn / minute",
+    "newton = kilogram * meter / second ** 2 = N",
+    "newton_meter = newton * meter = Nm",
+    "hertz = 1 / second = Hz",
+)
+"""What a scenario may say, in pint's definition language; its own default file takes 0.1 s."""
+
+SUGGESTED = (
+    *("m", "mm", "cm", "km", "meter", "millimeter", "centimeter", "kilometer", "inch", "foot"),
+    *("rad", "deg", "radian", "degree", "turn", "mrad", "s", "ms", "second", "millisecond"),
+    *("minute", "hour", "kg", "g", "kilogram", "gram", "N", "kN", "newton", "Nm", "N*m"),
+    *("m/s", "mm/s", "cm/s", "rad/s", "deg/s", "rpm", "m/s**2", "rad/s**2", "deg/s**2"),
+)
+"""Units offered when one is misspelt."""
+
+MEANINGS = {
+    "m": ("a length", "m, cm, mm"),
+    "rad": ("an angle", "rad, deg"),
+    "s": ("a time", "s, ms"),
+    "kg": ("a mass", "kg, g"),
+    "N": ("a force", "N"),
+    "N*m": ("a torque", "N*m"),
+    "m/s": ("a speed", "m/s, cm/s"),
+    "rad/s": ("a turning speed", "rad/s, deg/s"),
+    "m/s**2": ("an acceleration", "m/s**2"),
+    "rad/s**2": ("a turning acceleration", "rad/s**2, deg/s**2"),
+}
+"""SI unit -> what it measures, and what a person would write."""
+
+NUMBER_AND_UNIT = re.compile(
+    r"\s*(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>.*?)\s*", re.DOTALL
+)
+UNIT = re.compile(r"[A-Za-zµμ°_]+(?:\s*(?:\*\*|[*/^·])?\s*(?:[A-Za-zµμ°_]+|-?[1-4]))*")
+LONGEST = 60
 
 
-def quantity(*units: str) -> Callable[[Any], Any]:
-    """A validator that turns `5 cm` into a number of the first unit that fits; numbers pass."""
+def quantity(*units: str) -> Callable[[Any], float]:
+    """A validator that turns `5 cm` into a number of the first unit that fits; numbers pass.
 
-    def parse(value: Any) -> Any:
-        return value
+    Args:
+        units: SI units accepted here, told apart by dimension (a joint is `rad` or `m`).
+    """
 
+    def parse(value: Any) -> float:
+        if isinstance(value, bool) or not isinstance(value, int | float | str):
+            raise MistakeError(
+                f"{expected(units)} is a number, not {describe(value)}", usage(units)
+            )
+        return in_si(value, units) if isinstance(value, str) else value
+
+    parse.units = units  # type: ignore[attr-defined]  # read by schema and reference
     return parse
+
+
+def in_si(text: str, units: tuple[str, ...]) -> float:
+    """The number of a text with a unit, in the first of the SI units that has its dimension.
+
+    Raises:
+        MistakeError: No number, no unit, an unknown one, or one that measures something else.
+    """
+    match = NUMBER_AND_UNIT.fullmatch(text) if len(text) <= LONGEST else None
+    if match is None:
+        raise MistakeError(f"{expected(units)} is a number, not {describe(text)}", usage(units))
+    number, unit = float(match["number"]), match["unit"]
+    if not unit:
+        hint = f"write {match['number']} without quotes for {units[0]}, or give a unit"
+        raise MistakeError(f"`{text}` is text without a unit", f"{hint}: {written(units)}")
+    given = _parsed(unit.replace("^", "**").replace("·", "*"))
+    if given is None:
+        near = nearest(unit, SUGGESTED)
+        start = f"did you mean `{match['number']} {near}`? " if near else ""
+        raise MistakeError(
+            f"`{text}`: no unit is called `{unit}`", f"{start}units: {written(units)}"
+        )
+    for target in units:
+        wanted = _parsed(target)
+        if wanted is not None and given.is_compatible_with(wanted):
+            return number * float(given.from_(1, strict=False).to(wanted).magnitude)
+    raise MistakeError(f"`{text}` is {_measured(given)}; {expected(units)} is meant", usage(units))
+
+
+def expected(units: tuple[str, ...]) -> str:
+    """`an angle or a length`."""
+    return " or ".join(MEANINGS[unit][0] for unit in units)
+
+
+def written(units: tuple[str, ...]) -> str:
+    """Units a person would write for these SI units: `rad, deg, m, cm, mm`."""
+    return ", ".join(MEANINGS[unit][1] for unit in units)
+
+
+def usage(units: tuple[str, ...]) -> str:
+    """What may be written where these units are meant."""
+    return f"write a number in {' or '.join(units)}, or one with a unit: {written(units)}"
+
+
+def describe(value: Any) -> str:
+    """A value as a person would speak of it: `` `x` ``, a list, nothing."""
+    if isinstance(value, dict):
+        return "a mapping"
+    if isinstance(value, list | tuple):
+        return "a list"
+    if value is None:
+        return "nothing"
+    text = str(value).lower() if isinstance(value, bool) else str(value)
+    return f"`{text if len(text) <= LONGEST else text[: LONGEST - 3] + '...'}`"
+
+
+def _measured(unit: pint.Unit) -> str:
+    for target, (meaning, _) in MEANINGS.items():
+        wanted = _parsed(target)
+        if wanted is not None and unit.is_compatible_with(wanted):
+            return meaning
+    return "something else"
+
+
+@functools.cache
+def _parsed(unit: str) -> pint.Unit | None:
+    """Pint's unit, or None where it knows none; only plain products and powers are let through."""
+    if UNIT.fullmatch(unit) is None:
+        return None
+    import pint  # takes 0.1 s: only files that carry units pay for it
+
+    try:
+        return _registry().parse_units(unit)
+    except (pint.PintError, ValueError, TypeError, AttributeError, SyntaxError):
+        return None
+
+
+@functools.cache
+def _registry() -> pint.UnitRegistry:
+    import pint
+
+    registry = pint.UnitRegistry(None)
+    for definition in DEFINITIONS:
+        registry.define(definition)
+    return registry

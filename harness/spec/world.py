@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from harness.spec.base import (
     Color,
+    Flag,
     Length,
     Mass,
     Name,
+    Number,
     PositiveDuration,
     PositiveLength,
     SpecModel,
     Xyz,
+    kind_of,
 )
 from harness.spec.poses import Pose
 
@@ -53,7 +56,10 @@ class MeshSpec(SpecModel):
     """A triangle mesh file beside the world or scenario file."""
 
     file: str
-    scale: float | tuple[float, float, float] = 1.0
+    scale: Annotated[
+        Annotated[Number, Tag("one")] | Annotated[tuple[Number, Number, Number], Tag("many")],
+        Discriminator(kind_of),
+    ] = 1.0
 
 
 class ShapeSpec(SpecModel):
@@ -84,20 +90,20 @@ class ShapeSpec(SpecModel):
 class FrictionSpec(SpecModel):
     """Coulomb friction of the surface; a contact takes the smaller of its two."""
 
-    sliding: Annotated[float, Field(ge=0)] = 1.0
-    torsional: Annotated[float, Field(ge=0)] = 0.005
-    rolling: Annotated[float, Field(ge=0)] = 0.0001
+    sliding: Annotated[Number, Field(ge=0)] = 1.0
+    torsional: Annotated[Number, Field(ge=0)] = 0.005
+    rolling: Annotated[Number, Field(ge=0)] = 0.0001
 
 
 class InertiaSpec(SpecModel):
     """About the centre of mass, body axes [kg m^2]."""
 
-    ixx: float
-    iyy: float
-    izz: float
-    ixy: float = 0.0
-    ixz: float = 0.0
-    iyz: float = 0.0
+    ixx: Number
+    iyy: Number
+    izz: Number
+    ixy: Number = 0.0
+    ixz: Number = 0.0
+    iyz: Number = 0.0
 
 
 class ObjectSpec(SpecModel):
@@ -105,7 +111,7 @@ class ObjectSpec(SpecModel):
 
     name: Name
     pose: Pose = Field(default_factory=Pose)
-    static: bool = Field(False, description="Fixed in the world.")
+    static: Flag = Field(False, description="Fixed in the world.")
     box: BoxSpec | None = None
     cylinder: CylinderSpec | None = None
     sphere: SphereSpec | None = None
@@ -116,12 +122,18 @@ class ObjectSpec(SpecModel):
     mass: Mass | None = Field(None, description="[kg]; default from the volume at 1000 kg/m^3.")
     center_of_mass: Xyz = (0.0, 0.0, 0.0)
     inertia: InertiaSpec | None = Field(None, description="Default: of the solid shape.")
-    friction: Annotated[float, Field(ge=0)] | FrictionSpec | None = None
+    friction: (
+        Annotated[
+            Annotated[Number, Field(ge=0), Tag("one")] | Annotated[FrictionSpec, Tag("many")],
+            Discriminator(kind_of),
+        ]
+        | None
+    ) = Field(None, description="Sliding friction alone, or all three.")
     color: Color | None = None
     in_: Literal["planning", "simulation", "both"] = Field(
         "both", alias="in", description="Who knows it: the planning scene, the physics, or both."
     )
-    replace: bool = Field(False, description="In `objects`: replaces the world's object so named.")
+    replace: Flag = Field(False, description="In `objects`: replaces the world's object so named.")
 
     @model_validator(mode="after")
     def _some_shape(self) -> ObjectSpec:
@@ -135,9 +147,9 @@ class ObjectSpec(SpecModel):
 class LightSpec(SpecModel):
     """A directional light."""
 
-    direction: tuple[float, float, float] = (-0.5, 0.1, -0.9)
+    direction: tuple[Number, Number, Number] = (-0.5, 0.1, -0.9)
     diffuse: Color = (0.8, 0.8, 0.8, 1.0)
-    casts_shadow: bool = True
+    casts_shadow: Flag = True
 
 
 class PhysicsSpec(SpecModel):

@@ -1,0 +1,183 @@
+"""Loads scenarios and worlds: every mistake of a file at once, each at its place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Generic, TypeVar
+
+from pydantic import ValidationError
+
+from harness.core.errors import Problem, SpecError
+from harness.core.resources import data_folder
+from harness.spec.annotations import keys_of
+from harness.spec.base import SpecModel
+from harness.spec.mistakes import did_you_mean
+from harness.spec.params import override, substitute
+from harness.spec.scenario import Scenario
+from harness.spec.short_forms import models_shape
+from harness.spec.source import Located, Source, SourceMap
+from harness.spec.wording import problems_of
+from harness.spec.world import WorldSpec
+from harness.spec.yaml_file import parse_yaml, read_text
+
+M = TypeVar("M", bound=SpecModel)
+
+WORLD_SUFFIXES = (".yaml", ".yml")
+
+
+@dataclass(frozen=True, eq=False)
+class Loaded(Generic[M]):
+    """A file's model, and the way back to the file.
+
+    Attributes:
+        model: What the file says.
+        path: Where it was read.
+        text: As read.
+        lines: From a field of the model to its line and column.
+        written: The file's values in its own short forms, parameters and overrides applied.
+    """
+
+    model: M
+    path: Path
+    text: str
+    lines: SourceMap
+    written: Located
+
+
+class LoadedScenario(Loaded[Scenario]):
+    """A scenario file."""
+
+    @property
+    def scenario(self) -> Scenario:
+        """What the file says."""
+        return self.model
+
+    @property
+    def resolved(self) -> dict[str, object]:
+        """The file as plain data, parameters and overrides applied."""
+        plain = self.written.plain()
+        return dict(plain) if isinstance(plain, dict) else {}
+
+
+class LoadedWorld(Loaded[WorldSpec]):
+    """A world file."""
+
+    @property
+    def world(self) -> WorldSpec:
+        """What the file says."""
+        return self.model
+
+
+def load_scenario(
+    path: Path, overrides: Mapping[str, str] | None = None, seed: int | None = None
+) -> LoadedScenario:
+    """A scenario file, checked as far as it can be without robot and world.
+
+    Args:
+        path: The file.
+        overrides: Dotted path -> YAML value, as given with `--set`.
+        seed: Taken in place of the file's.
+
+    Raises:
+        SpecError: With every problem of the file and of the overrides.
+    """
+    given = dict(overrides or {})
+    if seed is not None:
+        given["seed"] = str(seed)
+    return parse_scenario(read_text(path), path, given)
+
+
+def parse_scenario(
+    text: str, path: Path, overrides: Mapping[str, str] | None = None
+) -> LoadedScenario:
+    """As `load_scenario`, of a text that would stand in the file."""
+    problems: list[Problem] = []
+    written = parse_yaml(text, Source.of_text(str(path), text))
+    written = override(written, overrides or {}, keys_of(Scenario))
+    written = substitute(written, problems)
+    model, lines = _model(written, Scenario, problems)
+    return LoadedScenario(model, path, text, lines, written)
+
+
+def load_world(name_or_path: str, base_dir: Path) -> LoadedWorld:
+    """A bundled world by its name, or a world file.
+
+    Args:
+        name_or_path: As a scenario's `world` says it.
+        base_dir: Folder of the scenario file; relative paths begin here.
+
+    Raises:
+        SpecError: No such world, or with every problem of its file.
+    """
+    path = world_path(name_or_path, base_dir)
+    text = read_text(path)
+    problems: list[Problem] = []
+    written = parse_yaml(text, Source.of_text(str(path), text))
+    model, lines = _model(written, WorldSpec, problems)
+    return LoadedWorld(model, path, text, lines, written)
+
+
+def bundled_worlds() -> tuple[str, ...]:
+    """Names of the worlds that come with the program, sorted."""
+    return tuple(sorted(path.stem for path in data_folder("worlds").glob("*.yaml")))
+
+
+def world_path(name_or_path: str, base_dir: Path) -> Path:
+    """The file of a world.
+
+    Raises:
+        SpecError: No such world; the problem has no line, which the scenario knows.
+    """
+    suffix = Path(name_or_path).suffix.lower()
+    if suffix in (".sdf", ".world"):
+        raise _no_world(name_or_path, "SDF worlds are not yet available", "write the world as YAML")
+    if suffix in WORLD_SUFFIXES:
+        return file_path(name_or_path, base_dir)
+    names = bundled_worlds()
+    if name_or_path in names:
+        return data_folder("worlds") / f"{name_or_path}.yaml"
+    hint = did_you_mean(name_or_path, names, "worlds")
+    raise _no_world(
+        name_or_path, f"no world is called `{name_or_path}`", f"{hint}; or a .yaml path"
+    )
+
+
+def file_path(text: str, base_dir: Path) -> Path:
+    """The file that a scenario names, relative to its folder.
+
+    Raises:
+        SpecError: A URL, or not a path at all; whether the file is there shows on reading.
+    """
+    if "://" in text:
+        raise _no_world(
+            text, f"`{text}` is a URL; only files are read", "save the file beside this"
+        )
+    if not text.isprintable():
+        raise _no_world(text, f"{text!r} is not a path", "")
+    return base_dir / Path(text).expanduser() if text.startswith("~") else base_dir / text
+
+
+def _model(written: Located, model: type[M], problems: list[Problem]) -> tuple[M, SourceMap]:
+    """The model of a file's values.
+
+    Raises:
+        SpecError: With the problems found before and all that are found here.
+    """
+    lines = SourceMap(models_shape(written, model, problems))
+    try:
+        loaded = model.model_validate(lines.root.plain())
+    except ValidationError as error:
+        places = {(problem.line, problem.column) for problem in problems}
+        for problem in problems_of(error.errors(include_url=False), lines):
+            if (problem.line, problem.column) not in places:  # else it follows from the first
+                problems.append(problem)
+        raise SpecError(problems) from None
+    if problems:
+        raise SpecError(problems)
+    return loaded, lines
+
+
+def _no_world(name: str, message: str, hint: str) -> SpecError:
+    return SpecError([Problem(name, 0, 0, message, hint)])

@@ -1,0 +1,43 @@
+"""Mistakes found while a file is read, and the nearest word to the one that was written."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+LONGEST_LIST = 40
+
+
+class MistakeError(ValueError):
+    """A value that cannot be meant; validators raise it, the loader adds the place.
+
+    Attributes:
+        message: What is wrong, the offending value quoted.
+        hint: What to do instead.
+    """
+
+    def __init__(self, message: str, hint: str = "") -> None:
+        self.message = message
+        self.hint = hint
+        super().__init__(message)
+
+
+def nearest(word: str, valid: Iterable[str]) -> str | None:
+    """The valid word most like the one written, if any is like it."""
+    words = list(valid)
+    folded = {each.lower().replace("-", "_"): each for each in reversed(words)}
+    plain = word.lower().replace("-", "_").replace(" ", "_")
+    if plain in folded:
+        return folded[plain]
+    near = difflib.get_close_matches(plain, folded, 1, 0.6)
+    return folded[near[0]] if near else None
+
+
+def did_you_mean(word: str, valid: Iterable[str], what: str) -> str:
+    """``did you mean `arm`? groups: arm, gripper``, as much of it as there is to say."""
+    words = list(dict.fromkeys(valid))
+    near = nearest(word, words)
+    start = f"did you mean `{near}`? " if near else ""
+    more = f", and {len(words) - LONGEST_LIST} more" if len(words) > LONGEST_LIST else ""
+    rest = f"{what}: {', '.join(words[:LONGEST_LIST])}{more}" if words else f"there are no {what}"
+    return start + rest

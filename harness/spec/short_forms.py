@@ -1,0 +1,316 @@
+"""Brings a file's short forms into the models' shape: `- gripper: open` to `{do: gripper, ...}`.
+
+Guided by the models: a verb or predicate becomes a tag, a bare value the field it is short for.
+Unknown words are refused here, where it is known what could stand in their place; what is wrong
+is left out, so that pydantic goes on with the rest. Every value keeps its place in the file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple, get_args, get_origin
+
+from harness.core.errors import Problem
+from harness.spec.annotations import bare, branches, is_model, keys_of
+from harness.spec.base import SpecModel
+from harness.spec.checks import Expectation, Predicate
+from harness.spec.language import (
+    BESIDE_CHECK,
+    BESIDE_VERB,
+    EXPECTATIONS,
+    PREDICATES,
+    TEMPORAL,
+    UNTIL,
+    VERBS,
+)
+from harness.spec.mistakes import did_you_mean, nearest
+from harness.spec.scenario import RobotSpec
+from harness.spec.source import Entry, Located, Place
+from harness.spec.steps import Step, StepFields
+from harness.spec.units import describe
+
+UNTIL_USAGE = "`- {always: A, until: B}`: A holds until B does"
+
+STEP, EXPECTATION, PREDICATE = bare(Step), bare(Expectation), bare(Predicate)
+
+
+def models_shape(item: Located, model: type[SpecModel], problems: list[Problem]) -> Located:
+    """A file's values in the shape of its model; mistakes are added to `problems`."""
+    return _Shaper(problems).model(item, model)
+
+
+class _Words(NamedTuple):
+    """A mapping taken apart: its one word, its content, and what stands beside it."""
+
+    word: str
+    entry: Entry
+    beside: dict[str, Entry]
+
+
+class _Shaper:
+    def __init__(self, problems: list[Problem]) -> None:
+        self.problems = problems
+
+    def shape(self, item: Located, annotation: Any) -> Located:
+        annotation = bare(annotation)
+        if annotation == STEP:
+            return self.step(item)
+        if annotation == EXPECTATION:
+            return self.expectation(item)
+        if annotation == PREDICATE:
+            return self.predicate(item)
+        if is_model(annotation):
+            return self.model(item, annotation)
+        members = branches(annotation)
+        if members:
+            fitting = [bare(each) for each in members if _fits(item, bare(each))]
+            return self.shape(item, fitting[0]) if fitting else item
+        arguments = get_args(annotation)
+        if get_origin(annotation) is tuple and isinstance(item.value, list):
+            kinds = [*arguments[:1]] * len(item.value) if arguments[-1] is ... else arguments
+            shaped = [self.shape(*pair) for pair in zip(item.value, kinds, strict=False)]
+            return Located(shaped + item.value[len(shaped) :], item.place)
+        if get_origin(annotation) is dict and isinstance(item.value, dict):
+            entries = {
+                key: Entry(entry.key, self.shape(entry.value, arguments[1]))
+                for key, entry in item.value.items()
+            }
+            return Located(entries, item.place)
+        return item
+
+    def model(self, item: Located, model: type[SpecModel], **names: str) -> Located:
+        """A mapping with the model's keys; `names` says how to speak of it."""
+        item = _expanded(item, model)
+        if not isinstance(item.value, dict):
+            return item
+        keys = keys_of(model)
+        inside = [key for key in keys if not (issubclass(model, StepFields) and key in BESIDE_VERB)]
+        entries: dict[str, Entry] = {}
+        for key, entry in item.value.items():
+            if key in inside:
+                shaped = self.shape(entry.value, keys[key].annotation)
+                entries[key] = Entry(entry.key, shaped)
+            elif key in keys and "verb" in names:
+                message = f"`{key}` stands beside `{names['verb']}`, not inside it"
+                hint = f"write it in the column of `{names['verb']}:`"
+                self.problems.append(entry.key.problem(message, hint))
+            else:
+                where = names.get("verb") or names.get("word") or ""
+                message = f"unknown key `{key}`" + (f" in `{where}`" if where else "")
+                hint = did_you_mean(key, inside, "keys") if inside else "it has no keys"
+                self.problems.append(entry.key.problem(message, hint))
+                meant = nearest(key, inside)
+                if meant is not None and meant not in item.value:  # go on as if it said so
+                    shaped = self.shape(entry.value, keys[meant].annotation)
+                    entries[meant] = Entry(entry.key, shaped)
+        return Located(entries, item.place)
+
+    def step(self, item: Located) -> Located:
+        found = self._words(item, VERBS, BESIDE_VERB, "step", "verb")
+        if found is None:
+            return _stand_in(item, "do", "settle", {})
+        model = VERBS[found.word]
+        content = self.model(_content(found.entry), model, verb=found.word)
+        if not isinstance(content.value, dict):
+            self._not_content(found, content, model)
+            content = Located({}, content.place)
+        beside = {
+            key: Entry(entry.key, self.shape(entry.value, keys_of(model)[key].annotation))
+            for key, entry in found.beside.items()
+        }
+        return _tagged("do", found, content.mapping() | beside)
+
+    def expectation(self, item: Located) -> Located:
+        words = (*BESIDE_CHECK, UNTIL)
+        found = self._words(item, EXPECTATIONS, words, "expectation", "predicate")
+        if found is None:
+            return _stand_in(item, "check", "within_limits", {})
+        until = found.beside.pop(UNTIL, None)
+        if until is not None and found.word != "always":
+            message = f"`until` goes with `always`, not with `{found.word}`"
+            self.problems.append(until.key.problem(message, UNTIL_USAGE))
+            until = None
+        if found.word in TEMPORAL:
+            return self._temporal(found, until)
+        return self._predicate(found)
+
+    def predicate(self, item: Located) -> Located:
+        found = self._words(item, PREDICATES, BESIDE_CHECK, "expectation", "predicate")
+        if found is None:
+            return _stand_in(item, "check", "within_limits", {})
+        return self._predicate(found)
+
+    def _predicate(self, found: _Words) -> Located:
+        model = EXPECTATIONS[found.word]
+        content = self.model(_content(found.entry), model, word=found.word)
+        if not isinstance(content.value, dict):
+            self._not_content(found, content, model)
+            content = Located({}, content.place)
+        allowed = keys_of(model)
+        entries = dict(content.mapping())
+        for key, entry in found.beside.items():
+            if key not in allowed:
+                message = f"`{key}` has no meaning beside `{found.word}`"
+                self.problems.append(entry.key.problem(message))
+            else:
+                self._put(entries, key, entry)
+        return _tagged("check", found, entries)
+
+    def _temporal(self, found: _Words, until: Entry | None) -> Located:
+        """`never: {collision: {...}, for: 1 s}`: the words inside belong to `never`."""
+        inner = self._words(found.entry.value, PREDICATES, BESIDE_CHECK, found.word, "predicate")
+        entries = dict(found.beside)
+        if inner is None:
+            return _stand_in(found.entry.value, "check", "within_limits", {})
+        for key, entry in inner.beside.items():
+            self._put(entries, key, entry)
+        predicate = self._predicate(_Words(inner.word, inner.entry, {}))
+        entries["predicate"] = Entry(found.entry.key, predicate)
+        if until is None:
+            return _tagged("check", found, entries)
+        entries[UNTIL] = Entry(until.key, self.predicate(until.value))
+        return _tagged("check", _Words(UNTIL, found.entry, {}), entries)
+
+    def _words(
+        self,
+        item: Located,
+        words: Mapping[str, object],
+        beside: tuple[str, ...],
+        whole: str,
+        kind: str,
+    ) -> _Words | None:
+        """Take a step or an expectation apart; None if there is no telling what it is."""
+        if isinstance(item.value, str):
+            if item.value in words:
+                return _Words(item.value, Entry(item.place, Located(None, item.place)), {})
+            meant = self._unknown(item.value, item.place, words, kind)
+            nothing = Entry(item.place, Located(None, item.place))
+            return None if meant is None else _Words(meant, nothing, {})
+        if not isinstance(item.value, dict):
+            message = f"{_a(whole)} is a {kind} with its content, not {describe(item.plain())}"
+            self.problems.append(item.place.problem(message, _all(words, kind)))
+            return None
+        said = [key for key in item.value if key in words]
+        others = [key for key in item.value if key not in words and key not in beside]
+        rest = {key: entry for key, entry in item.value.items() if key in beside}
+        if not said and others:
+            wrong = max(others, key=lambda key: nearest(key, words) is not None)
+            meant = self._unknown(wrong, item.value[wrong].key, words, kind)
+            return None if meant is None else _Words(meant, item.value[wrong], rest)
+        if not said:
+            message = f"{_a(whole)} has one {kind}; this one has none"
+            hint = UNTIL_USAGE if UNTIL in rest else _all(words, kind)
+            self.problems.append(item.place.problem(message, hint))
+            return None
+        for extra in said[1:]:
+            message = f"{_a(whole)} has one {kind}; this one has `{said[0]}` and `{extra}`"
+            hint = f"begin another one: `- {extra}:`"
+            self.problems.append(item.value[extra].key.problem(message, hint))
+        for other in others:
+            self._misplaced(other, item.value[other], said[0], words[said[0]], beside)
+        return _Words(said[0], item.value[said[0]], rest)
+
+    def _unknown(
+        self, word: str, place: Place, words: Mapping[str, object], kind: str
+    ) -> str | None:
+        """Refuse a word; the nearest valid one, to go on as if the file said that."""
+        if word in EXPECTATIONS and kind == "predicate":
+            message = f"`{word}` cannot stand inside a temporal word; a predicate can"
+        elif word in ("do", "check"):
+            message = f"`{word}:` is not written; the {kind} itself is the key"
+        else:
+            message = f"no {kind} is called `{word}`"
+        self.problems.append(place.problem(message, did_you_mean(word, words, f"{kind}s")))
+        return nearest(word, words)
+
+    def _misplaced(
+        self, key: str, entry: Entry, word: str, model: object, beside: tuple[str, ...]
+    ) -> None:
+        if is_model(model) and key in keys_of(model):
+            message = f"`{key}` stands inside `{word}`, not beside it"
+            hint = f"write it below `{word}:`, further right"
+        else:
+            message = f"unknown key `{key}` beside `{word}`"
+            hint = did_you_mean(key, beside, "words that may stand there")
+        self.problems.append(entry.key.problem(message, hint))
+
+    def _not_content(self, found: _Words, content: Located, model: type[SpecModel]) -> None:
+        message = f"`{found.word}` takes a mapping, not {describe(content.plain())}"
+        keys = [key for key in keys_of(model) if key not in (*BESIDE_VERB, *BESIDE_CHECK)]
+        hint = f"keys: {', '.join(keys)}" if keys else f"write `- {found.word}` alone"
+        self.problems.append(content.place.problem(message, hint))
+
+    def _put(self, entries: dict[str, Entry], key: str, entry: Entry) -> None:
+        if key in entries:
+            first = f"the first is in line {entries[key].key.line}"
+            self.problems.append(entry.key.problem(f"`{key}` is here twice", first))
+        else:
+            entries[key] = entry
+
+
+def _expanded(item: Located, model: type[SpecModel]) -> Located:
+    """A bare value as the field it is short for; a mapping as it is."""
+    if issubclass(model, RobotSpec):
+        return course_words(item)
+    if isinstance(item.value, dict):
+        items_are_models = model.short_is_list and _list_of_models(model)
+        if not items_are_models or model.short in item.value or not item.value:
+            return item
+    elif not model.short or item.value is None:
+        return item
+    if model.short_is_list and not isinstance(item.value, list):
+        item = Located([item], item.place)
+    return Located({model.short: Entry(item.place, item)}, item.place)
+
+
+def course_words(robot: Located) -> Located:
+    """`robot: ur3e`, and `ur_type: ur3e` as the course writes it, are short for `model: ur3e`."""
+    if isinstance(robot.value, str):
+        return Located({"model": Entry(robot.place, robot)}, robot.place)
+    entries = robot.mapping()
+    if "ur_type" not in entries or "model" in entries:
+        return robot
+    renamed = {("model" if key == "ur_type" else key): entry for key, entry in entries.items()}
+    return Located(renamed, robot.place)
+
+
+def _list_of_models(model: type[SpecModel]) -> bool:
+    """Whether one mapping alone may stand for the list: `add_object: {name: ...}`."""
+    kind = get_args(bare(keys_of(model)[model.short].annotation))[0]
+    return is_model(bare(kind)) or bare(kind) == STEP
+
+
+def _fits(item: Located, annotation: Any) -> bool:
+    if isinstance(item.value, dict):
+        return is_model(annotation) or get_origin(annotation) is dict
+    if isinstance(item.value, list):
+        return get_origin(annotation) in (tuple, list)
+    return False
+
+
+def _content(entry: Entry) -> Located:
+    """What stands behind a word; nothing is an empty mapping, standing at the word."""
+    if entry.value.value is None:
+        return Located({}, entry.key)
+    return entry.value
+
+
+def _tagged(tag: str, found: _Words, entries: dict[str, Entry]) -> Located:
+    place = found.entry.key
+    word = Entry(place, Located(found.word, place))
+    return Located({tag: word, **entries}, place, found.word)
+
+
+def _stand_in(item: Located, tag: str, word: str, beside: dict[str, Entry]) -> Located:
+    """Holds the place of what could not be read, so that indices stay."""
+    return _tagged(tag, _Words(word, Entry(item.place, item), {}), beside)
+
+
+def _a(whole: str) -> str:
+    if whole in ("step", "expectation"):
+        return f"a{'n' if whole[0] == 'e' else ''} {whole}"
+    return f"`{whole}`"
+
+
+def _all(words: Mapping[str, object], kind: str) -> str:
+    return f"{kind}s: {', '.join(words)}"

@@ -1,0 +1,146 @@
+"""pydantic's errors as problems of the file, in a roboticist's words."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from pydantic_core import ErrorDetails
+
+from harness.core.errors import Problem
+from harness.spec.mistakes import MistakeError, did_you_mean
+from harness.spec.source import Found, Loc, SourceMap
+from harness.spec.units import describe
+
+Wording = Callable[[ErrorDetails, dict[str, Any], str], tuple[str, str]]
+"""Error, its context, the offending value as text -> message and hint."""
+
+
+def problems_of(errors: Iterable[ErrorDetails], lines: SourceMap) -> list[Problem]:
+    """One problem for each place and message."""
+    problems: dict[tuple[int, int, str], Problem] = {}
+    for error in errors:
+        problem = _problem(error, lines)
+        problems.setdefault((problem.line, problem.column, problem.message), problem)
+    return list(problems.values())
+
+
+def _problem(error: ErrorDetails, lines: SourceMap) -> Problem:
+    loc: Loc = error["loc"]
+    found = lines.find(loc, tagged=True)
+    place = found.item.place
+    if error["type"] == "missing":
+        return place.problem(*_missing(loc, found))
+    if loc and loc[-1] == "[key]" and found.key is not None:
+        place = found.key
+    word = WORDINGS.get(error["type"], _as_said)
+    message, hint = word(error, error.get("ctx", {}), describe(error["input"]))
+    subject = _subject(found)
+    if subject and error["type"] not in ("value_error",):
+        message = f"`{subject}` {message}"
+    return place.problem(message, hint)
+
+
+def _subject(found: Found) -> str:
+    """The key that the value belongs to: `xyz`, or `xyz` for its third item."""
+    names = [part for part in found.path if isinstance(part, str)]
+    return names[-1] if names and found.item.tag == "" else ""
+
+
+def _missing(loc: Loc, found: Found) -> tuple[str, str]:
+    part = loc[-1]
+    if isinstance(part, int):
+        size = len(found.item.items())
+        return f"`{_subject(found)}` has {size} items; item {part + 1} is missing", ""
+    where = found.item.tag or next((p for p in reversed(found.path) if isinstance(p, str)), "")
+    inside = f" in `{where}`" if where else ""
+    return f"`{part}` is missing{inside}", f"add `{part}:`"
+
+
+def _value_error(error: ErrorDetails, context: dict[str, Any], _: str) -> tuple[str, str]:
+    raised = context.get("error")
+    if isinstance(raised, MistakeError):
+        return raised.message, raised.hint
+    said = str(raised) if raised is not None else error["msg"]
+    message, _, hint = said.partition("; ")
+    return message, hint
+
+
+def _literal(error: ErrorDetails, context: dict[str, Any], value: str) -> tuple[str, str]:
+    valid = re.findall(r"'([^']*)'", str(context.get("expected", "")))
+    hint = did_you_mean(str(error["input"]), valid, "valid")
+    return f"cannot be {value}", hint
+
+
+def _wants(what: str, hint: str = "") -> Wording:
+    return lambda _error, _context, value: (f"is {what}, not {value}", hint)
+
+
+def _bound(words: str, key: str) -> Wording:
+    def word(_: ErrorDetails, context: dict[str, Any], value: str) -> tuple[str, str]:
+        return f"must be {words} {context[key]:g}, not {value}", ""
+
+    return word
+
+
+def _length(words: str, key: str) -> Wording:
+    def word(_: ErrorDetails, context: dict[str, Any], __: str) -> tuple[str, str]:
+        count, actual = context[key], context.get("actual_length")
+        noun = "item" if count == 1 else "items"
+        found = f", not {actual}" if actual is not None else ""
+        return f"has {words} {count} {noun}{found}", ""
+
+    return word
+
+
+def _characters(words: str, key: str) -> Wording:
+    def word(_: ErrorDetails, context: dict[str, Any], value: str) -> tuple[str, str]:
+        return f"has {words} {context[key]} characters, not {value}", ""
+
+    return word
+
+
+def _text(error: ErrorDetails, _: dict[str, Any], value: str) -> tuple[str, str]:
+    is_scalar = isinstance(error["input"], int | float)
+    hint = f'write "{value.strip("`")}" to mean text' if is_scalar else ""
+    return f"is text, not {value}", hint
+
+
+def _as_said(error: ErrorDetails, _: dict[str, Any], value: str) -> tuple[str, str]:
+    said = error["msg"]
+    return f"cannot be {value}: {said[0].lower()}{said[1:]}", ""
+
+
+BOOLEAN = "YAML 1.2: `yes`, `no`, `on`, `off` are text"
+MAPPING = _wants("a mapping of keys and values")
+LIST = _wants("a list")
+NUMBER = _wants("a number")
+
+WORDINGS: dict[str, Wording] = {
+    "value_error": _value_error,
+    "literal_error": _literal,
+    "float_type": NUMBER,
+    "float_parsing": NUMBER,
+    "finite_number": _wants("a finite number"),
+    "int_type": _wants("a whole number"),
+    "int_from_float": _wants("a whole number"),
+    "int_parsing": _wants("a whole number"),
+    "int_parsing_size": _wants("a whole number of sensible size"),
+    "bool_type": _wants("true or false", BOOLEAN),
+    "bool_parsing": _wants("true or false", BOOLEAN),
+    "string_type": _text,
+    "string_too_short": _characters("at least", "min_length"),
+    "string_too_long": _characters("at most", "max_length"),
+    "dict_type": MAPPING,
+    "model_type": MAPPING,
+    "model_attributes_type": MAPPING,
+    "tuple_type": LIST,
+    "list_type": LIST,
+    "too_short": _length("at least", "min_length"),
+    "too_long": _length("at most", "max_length"),
+    "greater_than": _bound("more than", "gt"),
+    "greater_than_equal": _bound("at least", "ge"),
+    "less_than": _bound("less than", "lt"),
+    "less_than_equal": _bound("at most", "le"),
+}
