@@ -6,7 +6,7 @@ import importlib.util
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -57,7 +57,8 @@ def parse_xml(text: str, source: str) -> ET.Element:
 def parse_urdf(text: str, folder: Path, source: str) -> Urdf:
     """Read a URDF.
 
-    Soft limits of a `safety_controller` narrow the position limits, as MoveIt has it.
+    Soft limits of a `safety_controller` narrow the position limits, as MoveIt has it. Beyond URDF,
+    `<capsule radius length>` is known, and `package://x/y` is a file of the Python package x.
 
     Args:
         text: The document.
@@ -135,7 +136,8 @@ def write_urdf(name: str, links: Iterable[Link], joints: Iterable[Joint]) -> str
             _write_inertial(element, link.inertial)
         for tag, shapes in (("visual", link.visuals), ("collision", link.collisions)):
             for shape in shapes:
-                _write_shape(element, tag, shape)
+                for piece in _known_to_urdf(shape):
+                    _write_shape(element, tag, piece)
     for joint in joints:
         _write_joint(root, joint)
     ET.indent(root)
@@ -330,6 +332,18 @@ def _write_inertial(parent: ET.Element, inertial: Inertial) -> None:
     ET.SubElement(element, "inertia", tensor)
 
 
+def _known_to_urdf(shape: Shape) -> tuple[Shape, ...]:
+    """The shape, or the cylinder and two spheres that make up a capsule, which URDF lacks."""
+    if not isinstance(shape.geometry, Capsule):
+        return (shape,)
+    radius, length = shape.geometry.radius, shape.geometry.length
+    ends = (SE3.from_xyz_rpy((0.0, 0.0, side * length / 2)) for side in (-1, 1))
+    return (
+        replace(shape, geometry=Cylinder(radius, length)),
+        *(Shape(Sphere(radius), shape.pose @ end, shape.rgba) for end in ends),
+    )
+
+
 def _write_shape(parent: ET.Element, tag: str, shape: Shape) -> None:
     element = ET.SubElement(parent, tag, {"name": shape.name} if shape.name else {})
     _write_pose(element, shape.pose)
@@ -341,12 +355,10 @@ def _write_shape(parent: ET.Element, tag: str, shape: Shape) -> None:
             ET.SubElement(geometry, "cylinder", radius=repr(radius), length=repr(length))
         case Sphere(radius=radius):
             ET.SubElement(geometry, "sphere", radius=repr(radius))
-        case Capsule(radius=radius, length=length):
-            ET.SubElement(geometry, "capsule", radius=repr(radius), length=repr(length))
         case Mesh(path=path, scale=scale):
             ET.SubElement(geometry, "mesh", filename=_mesh_name(path), scale=_text(scale))
-        case Plane():
-            raise RobotError(f"link '{parent.get('name')}': a URDF has no planes")
+        case Plane() | Capsule():
+            raise RobotError(f"link '{parent.get('name')}': no such shape in a URDF")
     if tag == "visual":
         material = ET.SubElement(element, "material", name="")
         ET.SubElement(material, "color", rgba=_text(shape.rgba))
