@@ -16,7 +16,7 @@ from harness.core.world import Friction
 CONTACT_SOLREF = (0.006, 1.0)
 """Time constant [s] and damping ratio of a contact: three physics steps, critically damped."""
 
-CONTACT_SOLIMP = (0.95, 0.99, 0.001, 0.5, 2.0)
+CONTACT_SOLIMP = (0.99, 0.999, 0.001, 0.5, 2.0)
 """Impedance of a contact: at touch, when pressed, width of the change [m], its shape."""
 
 CONTACT_DIMENSIONS = 6

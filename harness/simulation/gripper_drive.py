@@ -41,7 +41,7 @@ class Servoed(Protocol):
     def follow(self, whole: SetPoints, begin: int, end: int) -> None: ...
     def command(self, positions: FloatArray) -> None: ...
     def hold_samples(self, count: int) -> None: ...
-    def limit_effort(self, actuator: int, effort: float) -> None: ...
+    def limit_grip(self, actuator: int, effort: float) -> None: ...
 
 
 class GripperDrive:
@@ -57,12 +57,11 @@ class GripperDrive:
         self._actuator = int(np.searchsorted(simulator.physics.actuated, self._joint))
         self._range = abs(gripper.closed_position - gripper.open_position)
         self._speed = joint_speed(simulator.description, gripper)
-        simulator.limit_effort(self._actuator, gripper.grip_effort)
+        simulator.limit_grip(self._actuator, gripper.grip_effort)
 
     def drive(self, position: float, max_effort: float, timeout: float) -> GripperResult:
         """Move to a position under an effort limit until it arrives, stalls or runs out of time."""
         simulator, timestep = self._simulator, self._recording.timestep
-        simulator.limit_effort(self._actuator, min(max_effort, self._gripper.max_effort))
         acceleration = simulator.description.movable_joints[self._joint].acceleration
         points = ramp(self._start(position), position, self._speed, acceleration, timestep)
         whole = simulator.whole(points, np.array([self._actuator]))
@@ -70,6 +69,7 @@ class GripperDrive:
         stall_samples = round(STALL_TIME / timestep)
         begin, reached, stalled = 0, False, False
         while (self._recording.count - first) * timestep < timeout and not (reached or stalled):
+            simulator.limit_grip(self._actuator, max_effort)
             if begin < len(whole) - 1:
                 end = min(begin + CHECK_EVERY, len(whole) - 1)
                 simulator.follow(whole, begin, end)

@@ -184,9 +184,13 @@ class MujocoSimulator:
             np.zeros(shape),
         )
 
-    def limit_effort(self, actuator: int, effort: float) -> None:
-        """Change the force limit of one servo from now on."""
-        self._model.actuator_forcerange[actuator] = -effort, effort
+    def limit_grip(self, actuator: int, effort: float) -> None:
+        """Let a gripper press with some effort, beside what now holds its own weight."""
+        largest = self.physics.servos.effort[actuator]
+        still = np.zeros((1, len(self.physics.qpos)))
+        weight = self._feed_forward(self.joint_positions()[None], still, still)[0, actuator]
+        limits = np.clip([weight - effort, weight + effort], -largest, largest)
+        self._model.actuator_forcerange[actuator] = limits
 
     def follow(self, whole: SetPoints, begin: int, end: int) -> None:
         """Advance along set points of all actuated joints from row `begin` to row `end`."""
