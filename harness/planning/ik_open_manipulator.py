@@ -120,6 +120,4 @@ def solve_planar(
 def _turned(vector: FloatArray, pitch: float) -> FloatArray:
     """A plane vector turned downwards by an angle about the plane's y axis."""
     cosine, sine = np.cos(pitch), np.sin(pitch)
-    return np.array(
-        [cosine * vector[0] + sine * vector[1], -sine * vector[0] + cosine * vector[1]]
-    )
+    return np.array([cosine * vector[0] + sine * vector[1], -sine * vector[0] + cosine * vector[1]])

@@ -1,0 +1,17 @@
+"""Makes the planning ports for a composed robot."""
+
+from __future__ import annotations
+
+from harness.planning.kinematics import PinocchioKinematics
+from harness.planning.motion_planner import VerifiedPlanner
+from harness.planning.scene import CoalScene
+from harness.robot.description import RobotDescription
+
+
+def make_planning(
+    description: RobotDescription,
+) -> tuple[CoalScene, PinocchioKinematics, VerifiedPlanner]:
+    """A fresh planning scene with nothing but the robot, its kinematics, and a planner over both."""
+    scene = CoalScene(description)
+    kinematics = PinocchioKinematics(description)
+    return scene, kinematics, VerifiedPlanner(scene, kinematics)

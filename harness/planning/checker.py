@@ -1,0 +1,170 @@
+"""Checks states and whole edges of a group's motion against the scene, and counts the checks."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from harness.core.errors import PlanningFailed
+from harness.core.types import FloatArray
+from harness.planning.robot_model import GroupSpace
+from harness.planning.scene import CoalScene
+from harness.ports import Touch
+
+DEEPEST_START = 0.002
+"""Penetration at the start of a motion above which it is refused [m]."""
+
+MARGIN_SLACK = 0.0005
+"""A pair that is too near at the start may come this much nearer during the motion [m]."""
+
+
+class MotionChecker:
+    """Answers whether a group's joint positions, and straight lines between them, are free.
+
+    Every pair keeps its margin: the padding between robot and objects, zero elsewhere. A pair
+    that is nearer than that at the start (an object resting on its table, a finger beside what it
+    will grasp) keeps its distance at the start less `MARGIN_SLACK` instead: it may leave, it may
+    slide along, it may not go deeper.
+
+    Attributes:
+        checks: States checked so far.
+        lowered: Pairs whose margin was lowered: `pair`, `start_distance`, `margin`.
+    """
+
+    def __init__(
+        self, scene: CoalScene, space: GroupSpace, start: FloatArray, padding: float
+    ) -> None:
+        """Take the scene as it is now.
+
+        Raises:
+            PlanningFailed: START_STATE_IN_COLLISION, deeper than `DEEPEST_START`.
+        """
+        self.scene = scene
+        self.space = space
+        self.padding = padding
+        self.checks = 0
+        self.lowered: list[Mapping[str, Any]] = []
+        model = scene.collision_model()
+        self._pairs = model.pairs
+        self._robot = model.robot.model
+        self._data = self._robot.createData()
+        geometry = model.geometry
+        self._geometry_data = geometry.createData()
+        self._margins = self._choose_margins(start)
+        requests = self._geometry_data.collisionRequests
+        for pair in model.pairs:
+            margin = self._margins[pair.first, pair.second]
+            for row in pair.pairs:
+                requests[row].security_margin = margin
+        self._manager = pin.BroadPhaseManager_DynamicAABBTreeCollisionManager(
+            self._robot, geometry, self._geometry_data
+        )
+
+    def _choose_margins(self, start: FloatArray) -> dict[tuple[str, str], float]:
+        distances = self.scene.distances(self.space.whole(start))
+        deep = [touch for touch, _ in distances if touch.distance < -DEEPEST_START]
+        if deep:
+            raise PlanningFailed(
+                "START_STATE_IN_COLLISION",
+                f"the robot starts in collision: {describe_touches(deep)}",
+                {"touches": touch_facts(deep)},
+            )
+        margins: dict[tuple[str, str], float] = {}
+        for touch, pair in distances:
+            margin = self.padding if pair.keeps_padding else 0.0
+            if touch.distance < margin + MARGIN_SLACK:
+                lowered = touch.distance - MARGIN_SLACK
+                self.lowered.append(
+                    {
+                        "pair": [touch.first, touch.second],
+                        "start_distance": touch.distance,
+                        "margin": lowered,
+                    }
+                )
+                margin = lowered
+            margins[touch.first, touch.second] = margin
+        return margins
+
+    def state_free(self, positions: FloatArray) -> bool:
+        """Whether every pair keeps its margin at group positions."""
+        self.checks += 1
+        configuration = self.space.robot.configuration(self.space.whole(positions))
+        return not pin.computeCollisions(
+            self._robot, self._data, self._manager, configuration, True
+        )
+
+    def edge_free(self, first: FloatArray, second: FloatArray, resolution: float) -> bool:
+        """Whether the straight line between two positions is free, its first end taken as checked.
+
+        Args:
+            first: Group positions, checked before.
+            second: Group positions.
+            resolution: Largest joint-space distance between checked states [rad].
+        """
+        span = second - first
+        count = max(1, int(np.ceil(self.space.distance(first, second) / resolution)))
+        return all(self.state_free(first + span * (step / count)) for step in coarse_to_fine(count))
+
+    def path_free(self, waypoints: FloatArray, resolution: float) -> bool:
+        """Whether all edges of a path are free, its first waypoint taken as checked."""
+        return all(
+            self.edge_free(first, second, resolution)
+            for first, second in zip(waypoints[:-1], waypoints[1:], strict=True)
+        )
+
+    def touches(self, positions: FloatArray) -> list[Touch]:
+        """Pairs nearer than their margin at group positions, nearest first."""
+        return [
+            touch
+            for touch, pair in self.scene.distances(self.space.whole(positions))
+            if touch.distance <= self._margins[pair.first, pair.second]
+        ]
+
+    def first_block(
+        self, first: FloatArray, second: FloatArray, resolution: float
+    ) -> tuple[float, list[Touch]] | None:
+        """Where along a straight line (0 to 1) the first check fails, and what touches there."""
+        span = second - first
+        count = max(1, int(np.ceil(self.space.distance(first, second) / resolution)))
+        for step in range(1, count + 1):
+            positions = first + span * (step / count)
+            if not self.state_free(positions):
+                return step / count, self.touches(positions)
+        return None
+
+
+def coarse_to_fine(count: int) -> Iterator[int]:
+    """The numbers 1 to `count`, the end first, then halves, quarters ...: collisions show early."""
+    step = 1
+    while step < count:
+        step *= 2
+    yield count
+    while step > 1:
+        half = step // 2
+        yield from range(half, count, step)
+        step = half
+
+
+def describe_touches(touches: list[Touch], most: int = 3) -> str:
+    """The nearest pairs in words: `forearm_link – Table (12.3 mm deep)`."""
+    parts = [
+        f"{touch.first} – {touch.second} "
+        + (
+            f"({-1000 * touch.distance:.1f} mm deep)"
+            if touch.distance < 0
+            else f"({1000 * touch.distance:.1f} mm apart)"
+        )
+        for touch in touches[:most]
+    ]
+    more = len(touches) - most
+    return ", ".join(parts) + (f" and {more} more" if more > 0 else "")
+
+
+def touch_facts(touches: list[Touch]) -> list[dict[str, Any]]:
+    """Touches as plain data."""
+    return [{"pair": [touch.first, touch.second], "distance": touch.distance} for touch in touches]

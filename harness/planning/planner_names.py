@@ -1,0 +1,75 @@
+"""Which OMPL planners a scenario may ask for, and under which names."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+
+DEFAULT_PLANNER = "RRTConnect"
+
+_CLASSES: Mapping[str, str] = {
+    "RRTConnect": "RRTConnect",
+    "RRT": "RRT",
+    "RRTstar": "RRTstar",
+    "InformedRRTstar": "InformedRRTstar",
+    "SORRTstar": "SORRTstar",
+    "KPIECE": "KPIECE1",
+    "BKPIECE": "BKPIECE1",
+    "LBKPIECE": "LBKPIECE1",
+    "BITstar": "BITstar",
+}
+"""Planner name -> class of the OMPL wheel."""
+
+_REFUSED: Mapping[str, str] = {
+    "PRM": "it grows its roadmap on two threads, so equal runs differ",
+    "PRMstar": "it grows its roadmap on two threads, so equal runs differ",
+    "FMT": "it checks a whole batch of samples before it heeds the budget",
+    "BFMT": "it checks a whole batch of samples before it heeds the budget",
+    "LazyPRM": "the OMPL wheel does not have it",
+    "LazyPRMstar": "the OMPL wheel does not have it",
+    "AORRTC": "it searches until the budget ends and its equal runs were not verified",
+    "EST": "the OMPL wheel does not have it",
+    "BiEST": "the OMPL wheel does not have it",
+    "ProjEST": "the OMPL wheel does not have it",
+    "SBL": "the OMPL wheel does not have it",
+    "TRRT": "the OMPL wheel does not have it",
+    "BiTRRT": "the OMPL wheel does not have it",
+    "LBTRRT": "the OMPL wheel does not have it",
+    "STRIDE": "the OMPL wheel does not have it",
+    "PDST": "the OMPL wheel does not have it",
+    "SPARS": "the OMPL wheel does not have it",
+    "SPARStwo": "the OMPL wheel does not have it",
+}
+
+
+def planner_names() -> tuple[str, ...]:
+    """Names that `planner_id` may have; MoveIt's endings and OMPL's prefix are accepted too."""
+    return tuple(_CLASSES)
+
+
+def resolve_planner_id(name: str) -> str:
+    """The OMPL class that a planner's name means.
+
+    `geometric::RRTConnect` (OMPL), `RRTConnectkConfigDefault` (MoveIt), `RRTConnect` and
+    `rrtconnect` are one planner.
+
+    Raises:
+        ValueError: The planner is unknown or refused; says why and what to write instead.
+    """
+    bare = _bare(name)
+    by_lower = {known.lower(): known for known in (*_CLASSES, *_REFUSED)}
+    by_lower |= {cls.lower(): known for known, cls in _CLASSES.items()}
+    known = by_lower.get(bare.lower())
+    usual = ", ".join(_CLASSES)
+    if known is None:
+        near = difflib.get_close_matches(bare.lower(), list(by_lower), n=1)
+        hint = f"did you mean '{by_lower[near[0]]}'? " if near else ""
+        raise ValueError(f"unknown planner '{name}'; {hint}planners: {usual}")
+    if known in _REFUSED:
+        raise ValueError(f"planner '{name}' is refused: {_REFUSED[known]}; planners: {usual}")
+    return _CLASSES[known]
+
+
+def _bare(name: str) -> str:
+    bare = name.strip().removeprefix("geometric::").removesuffix("kConfigDefault")
+    return bare.removesuffix("kConfig")

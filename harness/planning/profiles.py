@@ -1,0 +1,119 @@
+"""Motion along one parameter: trapezoids of velocity and point-to-point cubics."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.core.trajectory import JointTrajectory
+from harness.core.types import FloatArray
+
+GRID = 0.002
+"""Durations are whole multiples of this [s]: the physics' default timestep."""
+
+SAMPLE_PERIOD = 0.01
+"""Time between set points of a trajectory [s], five steps of the grid; the last one may be nearer."""
+
+Curve = Callable[[FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
+"""Positions, velocities and accelerations, (N, dof) each, at times (N,)."""
+
+
+@dataclass(frozen=True)
+class Trapezoid:
+    """From 0 to `length` at rest on both ends, under a velocity and an acceleration limit.
+
+    Attributes:
+        length: Of the parameter.
+        velocity: Reached in the middle part.
+        acceleration: At both ends.
+        duration: A whole multiple of `GRID` [s].
+    """
+
+    length: float
+    velocity: float
+    acceleration: float
+    duration: float
+
+    @classmethod
+    def fastest(cls, length: float, velocity: float, acceleration: float) -> Trapezoid:
+        """The quickest profile under the limits, stretched to the time grid."""
+        peak = min(velocity, float(np.sqrt(length * acceleration)))
+        duration = length / peak + peak / acceleration
+        stretch = on_grid(duration) / duration
+        return cls(length, peak / stretch, acceleration / stretch**2, duration * stretch)
+
+    def __call__(self, times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Parameter, its rate and its acceleration at times (N,)."""
+        ramp = self.velocity / self.acceleration
+        t = np.clip(times, 0.0, self.duration)
+        left = self.duration - t
+        rising, falling = t < ramp, left < ramp
+        s = np.where(
+            rising,
+            0.5 * self.acceleration * t**2,
+            np.where(
+                falling,
+                self.length - 0.5 * self.acceleration * left**2,
+                self.velocity * (t - 0.5 * ramp),
+            ),
+        )
+        rate = np.where(
+            rising,
+            self.acceleration * t,
+            np.where(falling, self.acceleration * left, self.velocity),
+        )
+        change = np.where(rising, self.acceleration, np.where(falling, -self.acceleration, 0.0))
+        return s, rate, change
+
+
+def on_grid(duration: float) -> float:
+    """The duration, lengthened to the next multiple of `GRID` [s]."""
+    return float(max(1, np.ceil(duration / GRID - 1e-9)) * GRID)
+
+
+def straight_curve(first: FloatArray, second: FloatArray, profile: Trapezoid) -> Curve:
+    """Along a straight joint-space line, `profile` running from 0 to 1."""
+    span = second - first
+
+    def curve(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        s, rate, change = profile(times)
+        return first + s[:, None] * span, rate[:, None] * span, change[:, None] * span
+
+    return curve
+
+
+def cubic_curve(first: FloatArray, second: FloatArray, duration: float) -> Curve:
+    """Point to point at rest on both ends, as a JointTrajectoryController interpolates two points."""
+    span = second - first
+
+    def curve(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        u = np.clip(times / duration, 0.0, 1.0)[:, None]
+        return (
+            first + (3 * u**2 - 2 * u**3) * span,
+            (6 * u - 6 * u**2) / duration * span,
+            (6 - 12 * u) / duration**2 * span,
+        )
+
+    return curve
+
+
+def sample(joint_names: tuple[str, ...], curve: Curve, duration: float) -> JointTrajectory:
+    """Set points of a curve every `SAMPLE_PERIOD`, its end included."""
+    count = int(np.floor(duration / SAMPLE_PERIOD + 1e-9))
+    times = np.arange(count + 1) * SAMPLE_PERIOD
+    if duration - times[-1] > 1e-9:
+        times = np.append(times, duration)
+    times[-1] = duration
+    positions, velocities, accelerations = curve(times)
+    velocities[[0, -1]] = 0.0
+    return JointTrajectory(joint_names, times, positions, velocities, accelerations)
+
+
+def resting(joint_names: tuple[str, ...], positions: FloatArray) -> JointTrajectory:
+    """The trajectory of a motion that has nowhere to go: one sample period at rest."""
+    still = np.zeros((2, len(positions)))
+    return JointTrajectory(
+        joint_names, np.array([0.0, SAMPLE_PERIOD]), np.vstack([positions] * 2), still, still.copy()
+    )

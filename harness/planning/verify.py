@@ -1,0 +1,116 @@
+"""The gate no trajectory skips: what will be commanded is checked as it is, finer than planned."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from harness.core.trajectory import JointTrajectory
+from harness.core.types import FloatArray
+from harness.planning.checker import MotionChecker, describe_touches, touch_facts
+from harness.planning.timing import Limits
+
+FINAL_RESOLUTION = 1 / 128
+"""Joint-space distance between states checked on the final trajectory [rad]."""
+
+END_TOLERANCE = 1e-6
+"""How far a trajectory may start or end from where it should [rad or m]."""
+
+LIMIT_TOLERANCE = 1e-3
+"""Share by which a sampled velocity or acceleration may exceed its limit."""
+
+_POSITION_SLACK = 1e-9  # [rad or m] rounding at a limit
+
+
+@dataclass(frozen=True)
+class Defect:
+    """What is wrong with a trajectory: in words, and as plain data."""
+
+    message: str
+    facts: Mapping[str, Any]
+
+
+def find_defect(
+    trajectory: JointTrajectory,
+    checker: MotionChecker,
+    start: FloatArray,
+    end: FloatArray,
+    limits: Limits,
+) -> Defect | None:
+    """The first thing that forbids a trajectory to be executed, or None.
+
+    Stamps must rise, the ends be where they should and at rest, positions be inside the joint
+    limits, velocities and accelerations inside the scaled ones, and every state on the way free.
+    """
+    return (
+        _stamps(trajectory)
+        or _ends(trajectory, start, end)
+        or _limits(trajectory, checker, limits)
+        or _collision(trajectory, checker)
+    )
+
+
+def _stamps(trajectory: JointTrajectory) -> Defect | None:
+    if trajectory.times[0] == 0.0 and bool(np.all(np.diff(trajectory.times) > 0)):
+        return None
+    return Defect("the time stamps do not rise from zero", {"broken": "stamps"})
+
+
+def _ends(trajectory: JointTrajectory, start: FloatArray, end: FloatArray) -> Defect | None:
+    for place, row, wanted in (("start", 0, start), ("end", -1, end)):
+        off = float(np.max(np.abs(trajectory.positions[row] - wanted)))
+        if not off <= END_TOLERANCE:
+            return Defect(
+                f"the trajectory's {place} is {off:.2g} rad away from where it should be",
+                {"broken": place, "distance": off},
+            )
+        speed = float(np.max(np.abs(trajectory.velocities[row])))
+        if not speed <= 1e-9:
+            return Defect(
+                f"the trajectory is not at rest at its {place}",
+                {"broken": f"rest at {place}", "speed": speed},
+            )
+    return None
+
+
+def _limits(trajectory: JointTrajectory, checker: MotionChecker, limits: Limits) -> Defect | None:
+    space = checker.space
+    outside = np.maximum(space.lower - trajectory.positions, trajectory.positions - space.upper)
+    share = 1 + LIMIT_TOLERANCE
+    for what, excess in (
+        ("position limit", outside - _POSITION_SLACK),
+        ("velocity limit", np.abs(trajectory.velocities) - limits.velocity * share),
+        ("acceleration limit", np.abs(trajectory.accelerations) - limits.acceleration * share),
+    ):
+        row, joint = np.unravel_index(int(np.argmax(excess)), excess.shape)
+        if not excess[row, joint] <= 0:
+            name, time = space.joint_names[joint], float(trajectory.times[row])
+            return Defect(
+                f"{name} is beyond its {what} by {excess[row, joint]:.3g} at {time:.3f} s",
+                {"broken": what, "joint": name, "excess": float(excess[row, joint]), "time": time},
+            )
+    return None
+
+
+def _collision(trajectory: JointTrajectory, checker: MotionChecker) -> Defect | None:
+    positions, metric = trajectory.positions, checker.space.metric
+    steps = np.linalg.norm(np.diff(positions, axis=0) * metric, axis=1)
+    travelled = np.concatenate([[0.0], np.cumsum(steps)])
+    count = max(1, int(np.ceil(travelled[-1] / FINAL_RESOLUTION)))
+    places = np.linspace(0.0, travelled[-1], count + 1)
+    moving = np.concatenate([[True], steps > 0])
+    dense = np.column_stack(
+        [np.interp(places, travelled[moving], column[moving]) for column in positions.T]
+    )
+    for place, state in zip(places, dense, strict=True):
+        if not checker.state_free(state):
+            touches = checker.touches(state)
+            time = float(np.interp(place, travelled[moving], trajectory.times[moving]))
+            return Defect(
+                f"at {time:.2f} s it would come too near: {describe_touches(touches)}",
+                {"broken": "collision", "time": time, "touches": touch_facts(touches)},
+            )
+    return None
