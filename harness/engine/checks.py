@@ -6,6 +6,7 @@ from pydantic import BaseModel
 
 from harness.engine.program import Loc
 from harness.engine.scope import Scope
+from harness.engine.summary import words
 from harness.spec.checks import (
     AnyExpectation,
     Between,
@@ -32,7 +33,7 @@ def check_expectation(
 ) -> None:
     """Report what is wrong with an expectation; names may be of steps and objects further down."""
     if type(spec) not in judged:
-        known = sorted(model.model_fields["check"].default for model in judged)
+        known = words(judged, "check")
         scope.problems.add(
             loc,
             f"the expectation `{spec.check}` is not yet available",

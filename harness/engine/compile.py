@@ -18,7 +18,7 @@ from harness.engine.program import Loc, Program, ProgramExpectation, ProgramStep
 from harness.engine.registry import execute
 from harness.engine.scope import Problems, Scope
 from harness.engine.steps import check_step
-from harness.engine.summary import summarize
+from harness.engine.summary import summarize, words
 from harness.ports import Kinematics, PlanningOptions
 from harness.robot.description import RobotDescription
 from harness.spec.checks import AnyExpectation
@@ -246,7 +246,7 @@ class _Compiler:
 
 
 def _available_steps() -> str:
-    return "available: " + ", ".join(sorted(model.model_fields["do"].default for model in execute))
+    return "available: " + ", ".join(words(execute, "do"))
 
 
 def _without_pose(spec: ObjectSpec) -> ObjectSpec:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from harness.engine.dry_run import DryPlanner, DrySimulator
 from harness.engine.execute import execute_program
-from harness.engine.program import Program
+from harness.engine.program import Program, ProgramStep
 from harness.ports import Kinematics, MotionPlanner, PlanningScene
 from harness.recording.run import StepRecord
 
@@ -19,10 +19,14 @@ def predict(
         kinematics,
         DryPlanner(planner, kinematics, program.description),
         DrySimulator(program),
-        on_step=lambda *_: None,
+        _unwatched,
         keep_going=True,
     )
     return execution.steps
+
+
+def _unwatched(kind: str, step: ProgramStep, record: StepRecord | None) -> None:
+    del kind, step, record
 
 
 def unexpected(record: StepRecord) -> bool:

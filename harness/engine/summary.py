@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
+from harness.spec.base import SpecModel
 from harness.spec.goals import GoalFields
 from harness.spec.steps import (
     AddObject,
@@ -15,6 +18,13 @@ from harness.spec.steps import (
     RemoveObject,
     Wait,
 )
+
+
+def words(models: Iterable[type], tag: str) -> list[str]:
+    """How files spell some models: `words(execute, "do")` is the verbs that are executed, sorted."""
+    return sorted(
+        str(model.model_fields[tag].default) for model in models if issubclass(model, SpecModel)
+    )
 
 
 def summarize(step: AnyStep) -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from harness.assertions.judge import EXECUTED
-from harness.core.errors import Problem, RobotError, SpecError
+from harness.core.errors import RobotError, SpecError
 from harness.engine.compile import Sources, compile_scenario
 from harness.engine.program import Program
 from harness.planning.backend import make_planning
@@ -15,7 +15,7 @@ from harness.planning.planner_names import STATE_CHECKS_PER_SECOND, resolve_plan
 from harness.ports import Kinematics, MotionPlanner, PlanningScene
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
-from harness.spec.load import LoadedScenario, load_scenario, load_world
+from harness.spec.load import LoadedScenario, LoadedWorld, load_scenario, load_world
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +40,7 @@ def prepare(
     loaded = load_scenario(path, overrides, seed)
     description = _robot(loaded)
     scene, kinematics, planner = make_planning(description)
-    world = load_world(loaded.scenario.world, loaded.path.parent, loaded.lines.problem)
+    world = _world(loaded)
     sources = Sources(
         scenario=loaded.scenario,
         lines=loaded.lines,
@@ -60,8 +60,17 @@ def _robot(loaded: LoadedScenario) -> RobotDescription:
     try:
         return load_robot(loaded.scenario.robot, loaded.path.parent)
     except RobotError as error:
-        raise SpecError([_robot_problem(loaded, str(error))]) from error
+        raise SpecError([loaded.lines.problem(("robot",), str(error))]) from error
 
 
-def _robot_problem(loaded: LoadedScenario, message: str) -> Problem:
-    return loaded.lines.problem(("robot",), message)
+def _world(loaded: LoadedScenario) -> LoadedWorld:
+    """The world; one that cannot be found is a mistake of the scenario's line."""
+    try:
+        return load_world(loaded.scenario.world, loaded.path.parent)
+    except SpecError as error:
+        raise SpecError(
+            problem
+            if problem.line
+            else loaded.lines.problem(("world",), problem.message, problem.hint)
+            for problem in error.problems
+        ) from error
