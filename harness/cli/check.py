@@ -25,7 +25,7 @@ def _run(arguments: argparse.Namespace) -> int:
     documents: list[object] = []
     for file in files:
         found = session.check_file(file, overrides=dict(arguments.overrides), seed=arguments.seed)
-        outcome = "invalid" if found.problems else "failed" if found.unexpected else "passed"
+        outcome = "invalid" if found.problems else "failed" if found.predicted else "passed"
         code = max(code, EXIT_CODES[outcome])
         documents.append({"file": str(file), "outcome": outcome, "problems": found.problems,
                           "predicted": found.predicted})  # fmt: skip

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import sys
+import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -37,6 +38,11 @@ def guarded(work: Callable[[], int]) -> int:
         return USAGE_EXIT_CODE
     except HarnessError as error:
         complain(f"harness: {error}")
+        return EXIT_CODES["error"]
+    except BrokenPipeError:
+        raise
+    except Exception:  # noqa: BLE001 - a defect of ours is an error, and no failed scenario
+        complain(traceback.format_exc().rstrip())
         return EXIT_CODES["error"]
 
 

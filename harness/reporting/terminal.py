@@ -87,6 +87,8 @@ def step_done(event: ProgressEvent, style: Style = PLAIN) -> str:
 
 def _count(event: ProgressEvent) -> str:
     width = len(str(event.total))
+    if event.index < 0:
+        return " " * (2 * width + 1)  # nested in the step above
     return f"{event.index + 1:>{width}}/{event.total}"
 
 
@@ -119,8 +121,9 @@ def failure(result: CaseResult, style: Style = PLAIN, *, again: str = "") -> str
         for verdict in result.verdicts
         if verdict.status != "passed"
     ]
-    causes += [result.message] if result.message else []
-    lines += [_indent(cause) for cause in causes or ["no cause was told"]]
+    if result.outcome == "error" or not causes:
+        causes.append(result.message or "no cause was told")
+    lines += [_indent(cause) for cause in causes]
     if result.report_dir:
         lines.append(f"  report: {result.report_dir}")
     if again:

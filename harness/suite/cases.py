@@ -163,8 +163,9 @@ def _result(case: _Running, ended: Ended, cap: float) -> CaseResult:
 def describe(event: ProgressEvent) -> str:
     """Where a case stood, in words."""
     if event.kind in {"step_started", "step_finished"}:
+        number = f" {event.index + 1}/{event.total}" if event.index >= 0 else ""
         after = "after " if event.kind == "step_finished" else ""
-        return f"{after}step {event.index + 1}/{event.total}: {event.step}"
+        return f"{after}step{number}: {event.step}"
     return {"compiled": "the first step", "judged": "the report", "written": "the end"}[event.kind]
 
 

@@ -1,0 +1,27 @@
+# Short names for those who have make; the README's commands need none.
+PYTHON ?= python3
+
+.PHONY: demo test lint sweep bench
+
+demo: .venv/.installed
+	.venv/bin/harness run scenarios/lessons/03_ur_sixteen_steps.scenario.yaml
+
+test: .venv/.installed
+	.venv/bin/python -m pytest
+
+lint: .venv/.installed
+	.venv/bin/ruff check .
+	.venv/bin/ruff format --check .
+	.venv/bin/pyright
+	.venv/bin/lint-imports
+
+sweep: .venv/.installed
+	.venv/bin/python -m pytest -m sweep
+
+bench: .venv/.installed
+	.venv/bin/python -m pytest -m benchmark -s
+
+.venv/.installed: pyproject.toml
+	$(PYTHON) -m venv .venv
+	.venv/bin/pip install -q -e '.[dev]'
+	touch $@

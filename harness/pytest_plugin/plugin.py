@@ -1,0 +1,55 @@
+"""pytest collects `*.scenario.yaml`: one item a scenario, run in a process of its own.
+
+Loaded in every pytest run of an environment, so it imports nothing of the harness until a
+scenario file is met.
+"""
+
+from __future__ import annotations
+
+from fnmatch import fnmatch
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from harness.pytest_plugin.item import ScenarioFile
+
+PATTERNS = ["*.scenario.yaml"]
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the options and ini keys."""
+    group = parser.getgroup("armharness", "scenarios of robot arms")
+    group.addoption(
+        "--harness-report-dir",
+        metavar="DIR",
+        default=None,
+        help="where reports of scenarios go (default: the ini key, or reports)",
+    )
+    group.addoption(
+        "--harness-no-report", action="store_true", default=False, help="write no reports"
+    )
+    group.addoption(
+        "--harness-in-process",
+        action="store_true",
+        default=False,
+        help="run scenarios in pytest's own process, for debuggers",
+    )
+    parser.addini(
+        "harness_files",
+        "names of scenario files; empty: none are collected",
+        type="args",
+        default=PATTERNS,
+    )
+    parser.addini("harness_report_dir", "where reports go, from the root folder", default="reports")
+    parser.addini("harness_hard_cap", "wall seconds after which a scenario is an error", default="")
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> ScenarioFile | None:
+    """Collect scenario files."""
+    if not any(fnmatch(file_path.name, name) for name in parent.config.getini("harness_files")):
+        return None
+    from harness.pytest_plugin.item import ScenarioFile
+
+    return ScenarioFile.from_parent(parent, path=file_path)
