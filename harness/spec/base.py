@@ -21,14 +21,17 @@ class SpecModel(BaseModel):
     short: ClassVar[str] = ""
     short_is_list: ClassVar[bool] = False
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True
+    )
 
     @model_validator(mode="before")
     @classmethod
     def _from_short_form(cls, value: Any) -> Any:
-        if not cls.short or isinstance(value, dict | BaseModel):
+        given: object = value
+        if not cls.short or isinstance(given, dict | BaseModel):
             return value
-        is_one = cls.short_is_list and not isinstance(value, list | tuple)
+        is_one = cls.short_is_list and not isinstance(given, list | tuple)
         return {cls.short: [value] if is_one else value}
 
 

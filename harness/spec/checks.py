@@ -39,14 +39,16 @@ class CheckFields(SpecModel):
     judged: ClassVar[Judged] = "at_end"
 
     for_: PositiveDuration | None = Field(
-        None, alias="for", description="Must hold this long without a break [s]."
+        default=None, alias="for", description="Must hold this long without a break [s]."
     )
     within: PositiveDuration | None = Field(
-        None, description="Must come true within this time of the window's start [s]."
+        default=None, description="Must come true within this time of the window's start [s]."
     )
-    during: Name | None = Field(None, description="Judged over the step with this id.")
-    points: Annotated[Number, Field(ge=0)] | None = Field(None, description="Of a graded scenario.")
-    name: str | None = Field(None, description="For people.")
+    during: Name | None = Field(default=None, description="Judged over the step with this id.")
+    points: Annotated[Number, Field(ge=0)] | None = Field(
+        default=None, description="Of a graded scenario."
+    )
+    name: str | None = Field(default=None, description="For people.")
 
 
 class ObjectCheck(CheckFields):
@@ -62,16 +64,18 @@ class Lifted(ObjectCheck):
 
     judged = "eventually"
     check: Literal["lifted"] = "lifted"
-    above: PositiveLength = Field(0.01, description="Above its own start height [m].")
+    above: PositiveLength = Field(default=0.01, description="Above its own start height [m].")
 
 
 class Grasped(ObjectCheck):
     """Both finger sides touch the object and it moves with the gripper."""
 
     check: Literal["grasped"] = "grasped"
-    min_force: Annotated[Force, Field(ge=0)] = Field(0.05, description="On each side [N].")
-    max_slip: PositiveLength = Field(0.005, description="In the hand since the grasp began [m].")
-    max_rotation: NonNegativeAngle = Field(0.1, description="In the hand since then [rad].")
+    min_force: Annotated[Force, Field(ge=0)] = Field(default=0.05, description="On each side [N].")
+    max_slip: PositiveLength = Field(
+        default=0.005, description="In the hand since the grasp began [m]."
+    )
+    max_rotation: NonNegativeAngle = Field(default=0.1, description="In the hand since then [rad].")
 
 
 class Released(ObjectCheck):
@@ -84,10 +88,12 @@ class Placed(ObjectCheck):
     """The object rests on a support, released and still, at a pose if one is given."""
 
     check: Literal["placed"] = "placed"
-    on: Name | None = Field(None, description="The supporting object; default: any but the robot.")
+    on: Name | None = Field(
+        default=None, description="The supporting object; default: any but the robot."
+    )
     pose: Pose | None = None
     tolerance: PoseTolerance | None = Field(
-        None, description="Of `pose`; default 1 cm, turns about the vertical free."
+        default=None, description="Of `pose`; default 1 cm, turns about the vertical free."
     )
     max_velocity: Annotated[LinearVelocity, Field(gt=0)] = 0.005
 
@@ -126,7 +132,9 @@ class Static(CheckFields):
     short = "object"
 
     check: Literal["static"] = "static"
-    object: Name | None = Field(None, description="Default: every dynamic object and the robot.")
+    object: Name | None = Field(
+        default=None, description="Default: every dynamic object and the robot."
+    )
     max_velocity: Annotated[LinearVelocity, Field(gt=0)] = 0.005
     max_angular_velocity: Annotated[AngularVelocity, Field(gt=0)] = 0.05
 
@@ -144,7 +152,7 @@ class InContact(Between):
 
     judged = "eventually"
     check: Literal["in_contact"] = "in_contact"
-    min_force: Annotated[Force, Field(ge=0)] = Field(0.0, description="[N]")
+    min_force: Annotated[Force, Field(ge=0)] = Field(default=0.0, description="[N]")
 
 
 class Collision(CheckFields):
@@ -155,7 +163,7 @@ class Collision(CheckFields):
     judged = "eventually"
     check: Literal["collision"] = "collision"
     between: tuple[Name, Name] | None = Field(
-        None, description="Default: the robot and anything, what it holds and anything."
+        default=None, description="Default: the robot and anything, what it holds and anything."
     )
 
 
@@ -167,7 +175,7 @@ class Clearance(CheckFields):
     judged = "always"
     check: Literal["clearance"] = "clearance"
     between: tuple[Name, Name] = Field(
-        ("robot", "any"), description="`robot`, a held object's name, an object, `any`."
+        default=("robot", "any"), description="`robot`, a held object's name, an object, `any`."
     )
     at_least: NonNegativeLength
 
@@ -178,7 +186,7 @@ class TcpPose(CheckFields):
     check: Literal["tcp_pose"] = "tcp_pose"
     pose: Pose
     link: Name | None = None
-    tolerance: PoseTolerance = Field(default_factory=PoseTolerance)
+    tolerance: PoseTolerance = PoseTolerance()
     position_only: Flag = False
 
 
@@ -236,7 +244,7 @@ class GripperState(CheckFields):
     position: JointValue | None = None
     width: NonNegativeLength | None = None
     tolerance: Annotated[JointValue, Field(gt=0)] = 0.02
-    stalled: Flag | None = Field(None, description="What the last gripper step reported.")
+    stalled: Flag | None = Field(default=None, description="What the last gripper step reported.")
 
     @model_validator(mode="after")
     def _one(self) -> GripperState:
@@ -257,7 +265,7 @@ class WithinLimits(CheckFields):
     check: Literal["within_limits"] = "within_limits"
     position: Flag = True
     velocity: Flag = True
-    acceleration: Flag = Field(False, description="Of the commanded trajectory.")
+    acceleration: Flag = Field(default=False, description="Of the commanded trajectory.")
     effort: Flag = True
 
 
@@ -334,7 +342,8 @@ class Slip(ObjectCheck):
     check: Literal["slip"] = "slip"
     max_distance: PositiveLength = 0.003
     max_rotation: Annotated[Angle, Field(gt=0)] = Field(
-        0.05235987755982988, description="Turns about the axis of a round object do not count."
+        default=0.05235987755982988,
+        description="Turns about the axis of a round object do not count.",
     )
 
 
@@ -371,11 +380,13 @@ Predicate = Annotated[AnyPredicate, Field(discriminator="check")]
 class TemporalFields(SpecModel):
     """Words that stand beside a temporal word."""
 
-    for_: PositiveDuration | None = Field(None, alias="for", description="Held this long [s].")
-    within: PositiveDuration | None = Field(
-        None, description="Deadline from the window's start [s]."
+    for_: PositiveDuration | None = Field(
+        default=None, alias="for", description="Held this long [s]."
     )
-    during: Name | None = Field(None, description="Judged over the step with this id.")
+    within: PositiveDuration | None = Field(
+        default=None, description="Deadline from the window's start [s]."
+    )
+    during: Name | None = Field(default=None, description="Judged over the step with this id.")
     points: Annotated[Number, Field(ge=0)] | None = None
     name: str | None = None
 

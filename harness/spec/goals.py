@@ -15,17 +15,22 @@ class GoalFields(SpecModel):
 
     short = "named_target"
 
-    named_target: Name | None = Field(None, description="An SRDF group state.")
+    named_target: Name | None = Field(default=None, description="An SRDF group state.")
     joints: dict[Name, JointValue] | None = Field(
-        None, description="Joint positions by name; the others stay.", min_length=1
+        default=None, description="Joint positions by name; the others stay.", min_length=1
     )
-    pose: Pose | None = Field(None, description="Where `link` shall stand.")
-    position: Position | None = Field(None, description="Where `link` shall be, turned as it may.")
+    pose: Pose | None = Field(default=None, description="Where `link` shall stand.")
+    position: Position | None = Field(
+        default=None, description="Where `link` shall be, turned as it may."
+    )
     pitch: Angle | None = Field(
-        None, description="With `position`: angle of the link's x axis below the horizontal."
+        default=None,
+        description="With `position`: angle of the link's x axis below the horizontal.",
     )
-    link: Name | None = Field(None, description="Of pose and position goals; default: the TCP.")
-    tolerance: PoseTolerance | None = Field(None, description="Of pose and position goals.")
+    link: Name | None = Field(
+        default=None, description="Of pose and position goals; default: the TCP."
+    )
+    tolerance: PoseTolerance | None = Field(default=None, description="Of pose and position goals.")
 
     @model_validator(mode="after")
     def _one_goal(self) -> GoalFields:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
+from typing import Any
 
 LONGEST_LIST = 40
+LONGEST_VALUE = 60  # characters of a value that are quoted
 
 
 class MistakeError(ValueError):
@@ -20,6 +22,20 @@ class MistakeError(ValueError):
         self.message = message
         self.hint = hint
         super().__init__(message)
+
+
+def describe(value: Any) -> str:
+    """A value as a person would speak of it: `` `x` ``, a list, nothing."""
+    if isinstance(value, dict):
+        return "a mapping"
+    if isinstance(value, list | tuple):
+        return "a list"
+    if value is None:
+        return "nothing"
+    text = str(value).lower() if isinstance(value, bool) else str(value)
+    if len(text) > LONGEST_VALUE:
+        text = text[: LONGEST_VALUE - 3] + "..."
+    return f"`{text}`" if text.isprintable() else f"`{text!r}`"
 
 
 def nearest(word: str, valid: Iterable[str]) -> str | None:

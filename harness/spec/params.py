@@ -6,10 +6,9 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 
 from harness.core.errors import Problem, SpecError
-from harness.spec.mistakes import did_you_mean
+from harness.spec.mistakes import describe, did_you_mean
 from harness.spec.short_forms import course_words
 from harness.spec.source import Entry, Located, Place, Source
-from harness.spec.units import describe
 from harness.spec.yaml_file import parse_value
 
 REFERENCE = re.compile(r"\$(?P<escape>\$?)\{(?P<name>[^{}]*)\}")

@@ -27,19 +27,22 @@ class Planning(SpecModel):
 
     pipeline: Literal["ompl", "pilz_industrial_motion_planner"] | None = None
     planner_id: Name | None = Field(
-        None, description="`RRTConnect`, or MoveIt's configuration name."
+        default=None, description="`RRTConnect`, or MoveIt's configuration name."
     )
     planning_time: Annotated[Duration, Field(gt=0)] | None = Field(
-        None, description="Converted to state checks at a fixed rate; never a wall clock."
+        default=None, description="Converted to state checks at a fixed rate; never a wall clock."
     )
     max_state_checks: Annotated[Count, Field(ge=1, le=10_000_000)] | None = None
     planning_attempts: Annotated[Count, Field(ge=1, le=100)] | None = None
     max_velocity_scaling_factor: Fraction | None = None
     max_acceleration_scaling_factor: Fraction | None = None
     padding: NonNegativeLength | None = Field(
-        None, description="Distance kept between the robot, what it holds, and every object [m]."
+        default=None,
+        description="Distance kept between the robot, what it holds, and every object [m].",
     )
-    parameters: dict[Name, Number] | None = Field(None, description="Of the planner: `range` ...")
+    parameters: dict[Name, Number] | None = Field(
+        default=None, description="Of the planner: `range` ..."
+    )
 
 
 class OrientationConstraint(SpecModel):

@@ -27,11 +27,13 @@ QUATERNION_NORM_TOLERANCE = 1e-2
 class Pose(SpecModel):
     """A position and at most one of `rpy`, `quat_xyzw`, `quat_wxyz`, in a frame."""
 
-    xyz: Xyz = Field((0.0, 0.0, 0.0), description="Position [m].")
-    rpy: Rpy | None = Field(None, description="Fixed-axis roll, pitch, yaw [rad], as in URDF.")
-    quat_xyzw: Quaternion | None = Field(None, description="Quaternion in ROS order.")
-    quat_wxyz: Quaternion | None = Field(None, description="Quaternion in MuJoCo's order.")
-    frame: Name = Field("world", description="`world`, a robot link, or an object's name.")
+    xyz: Xyz = Field(default=(0.0, 0.0, 0.0), description="Position [m].")
+    rpy: Rpy | None = Field(
+        default=None, description="Fixed-axis roll, pitch, yaw [rad], as in URDF."
+    )
+    quat_xyzw: Quaternion | None = Field(default=None, description="Quaternion in ROS order.")
+    quat_wxyz: Quaternion | None = Field(default=None, description="Quaternion in MuJoCo's order.")
+    frame: Name = Field(default="world", description="`world`, a robot link, or an object's name.")
 
     @field_validator("quat_xyzw", "quat_wxyz")
     @classmethod
@@ -74,14 +76,14 @@ class Position(SpecModel):
     short = "xyz"
 
     xyz: Xyz = Field(description="Position [m].")
-    frame: Name = Field("world", description="`world`, a robot link, or an object's name.")
+    frame: Name = Field(default="world", description="`world`, a robot link, or an object's name.")
 
 
 class Direction(SpecModel):
     """A direction of travel, or an axis to turn about; its length does not matter."""
 
     xyz: tuple[Number, Number, Number] = Field(description="Along x, y, z of the frame.")
-    frame: Name = Field("world", description="`world`, a robot link, or an object's name.")
+    frame: Name = Field(default="world", description="`world`, a robot link, or an object's name.")
 
     @field_validator("xyz")
     @classmethod
@@ -94,7 +96,7 @@ class Direction(SpecModel):
 class PoseTolerance(SpecModel):
     """How near is there: MoveIt's goal tolerances."""
 
-    position: PositiveLength = Field(1e-3, description="Radius around the target [m].")
+    position: PositiveLength = Field(default=1e-3, description="Radius around the target [m].")
     orientation: NonNegativeAngle = Field(
-        1e-2, description="Largest rotation about each axis [rad]."
+        default=1e-2, description="Largest rotation about each axis [rad]."
     )

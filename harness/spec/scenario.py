@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 from pydantic import Field, model_validator
 
@@ -49,15 +49,19 @@ class RobotSpec(SpecModel):
 
     short = "model"
 
-    model: str | None = Field(None, description="A name under robots/, or a path to such a folder.")
+    model: str | None = Field(
+        default=None, description="A name under robots/, or a path to such a folder."
+    )
     urdf: str | None = None
     xacro: str | None = None
     args: dict[Name, Any] = Field(default_factory=dict, description="Of the xacro file.")
     mjcf: str | None = None
     srdf: str | None = None
-    gripper: str | None = Field(None, description="A gripper's name, mounted on the arm's flange.")
-    base: Pose = Field(default_factory=Pose, description="Where the base stands in the world.")
-    kinematics: str | None = Field(None, description="A UR calibration file.")
+    gripper: str | None = Field(
+        default=None, description="A gripper's name, mounted on the arm's flange."
+    )
+    base: Pose = Field(default=Pose(), description="Where the base stands in the world.")
+    kinematics: str | None = Field(default=None, description="A UR calibration file.")
     joint_limits: dict[Name, JointLimits] = Field(default_factory=dict)
     named_states: dict[Name, dict[Name, dict[Name, JointValue]]] = Field(
         default_factory=dict, description="Extra group states: group -> state -> joint -> position."
@@ -67,9 +71,11 @@ class RobotSpec(SpecModel):
     @model_validator(mode="before")
     @classmethod
     def _course_word(cls, value: Any) -> Any:
-        if isinstance(value, dict) and "ur_type" in value and "model" not in value:
-            return {("model" if key == "ur_type" else key): item for key, item in value.items()}
-        return value
+        given: object = value
+        robot = cast("dict[str, Any]", given if isinstance(given, dict) else {})
+        if "ur_type" not in robot or "model" in robot:
+            return value
+        return {("model" if key == "ur_type" else key): item for key, item in robot.items()}
 
     @model_validator(mode="after")
     def _one_source(self) -> RobotSpec:
@@ -93,18 +99,22 @@ class Scenario(SpecModel):
 
     scenario: Annotated[str, Field(min_length=1, max_length=200)] = Field(description="Its title.")
     description: str = ""
-    tags: tuple[Name, ...] = Field((), description="pytest marks.")
+    tags: tuple[Name, ...] = Field(default=(), description="pytest marks.")
     points: Annotated[Number, Field(ge=0)] | None = None
-    verifies: tuple[str, ...] = Field((), description="Requirements.")
+    verifies: tuple[str, ...] = Field(default=(), description="Requirements.")
     robot: RobotSpec
-    world: str = Field("empty", description="A name under worlds/, a .yaml path, or an .sdf path.")
-    objects: tuple[ObjectSpec, ...] = Field((), description="Added to, or replacing, the world's.")
+    world: str = Field(
+        default="empty", description="A name under worlds/, a .yaml path, or an .sdf path."
+    )
+    objects: tuple[ObjectSpec, ...] = Field(
+        default=(), description="Added to, or replacing, the world's."
+    )
     seed: Annotated[Count, Field(ge=0, le=2**31 - 1)] = 0
     params: dict[Name, Any] = Field(default_factory=dict, description="For ${name} in the file.")
-    planning: Planning = Field(default_factory=Planning)
+    planning: Planning = Planning()
     deterministic: Flag = True
     steps: Annotated[tuple[Step, ...], Field(min_length=1)]
-    expect: tuple[Expectation, ...] = Field((), description="Judged over the whole run.")
+    expect: tuple[Expectation, ...] = Field(default=(), description="Judged over the whole run.")
     parametrize: dict[str, Any] | list[Any] | None = None
     randomize: dict[str, Any] | None = None
     samples: Annotated[Count, Field(ge=1, le=100_000)] | None = None

@@ -23,11 +23,10 @@ from harness.spec.language import (
     UNTIL,
     VERBS,
 )
-from harness.spec.mistakes import did_you_mean, nearest
+from harness.spec.mistakes import describe, did_you_mean, nearest
 from harness.spec.scenario import RobotSpec
 from harness.spec.source import Entry, Located, Place
 from harness.spec.steps import Step, StepFields
-from harness.spec.units import describe
 
 UNTIL_USAGE = "`- {always: A, until: B}`: A holds until B does"
 

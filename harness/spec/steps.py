@@ -40,22 +40,26 @@ GripperAction = Literal["friction", "weld"]
 class StepFields(SpecModel):
     """Words that stand beside the verb of any step."""
 
-    id: Name | None = Field(None, description="To speak of the step elsewhere; unique.")
-    name: str | None = Field(None, description="For people.")
-    group: Name | None = Field(None, description="SRDF planning group; default: the arm's.")
-    expect: tuple[Expectation, ...] = Field((), description="Judged over this step.")
+    id: Name | None = Field(default=None, description="To speak of the step elsewhere; unique.")
+    name: str | None = Field(default=None, description="For people.")
+    group: Name | None = Field(default=None, description="SRDF planning group; default: the arm's.")
+    expect: tuple[Expectation, ...] = Field(default=(), description="Judged over this step.")
     expect_error: ErrorCode | None = Field(
-        None, description="The step must fail with this moveit_msgs/MoveItErrorCodes name."
+        default=None, description="The step must fail with this moveit_msgs/MoveItErrorCodes name."
     )
-    timeout: PositiveDuration | None = Field(None, description="In simulated seconds.")
-    planning: Planning | None = Field(None, description="Overrides the scenario's `planning`.")
+    timeout: PositiveDuration | None = Field(default=None, description="In simulated seconds.")
+    planning: Planning | None = Field(
+        default=None, description="Overrides the scenario's `planning`."
+    )
 
 
 class MoveTo(GoalFields, StepFields):
     """Plan a collision-free motion to a goal, then execute it."""
 
     do: Literal["move_to"] = "move_to"
-    path_constraints: PathConstraints | None = Field(None, description="Held along the path.")
+    path_constraints: PathConstraints | None = Field(
+        default=None, description="Held along the path."
+    )
 
 
 class CartesianLimits(SpecModel):
@@ -71,7 +75,7 @@ class Ptp(GoalFields, StepFields):
 
     do: Literal["ptp"] = "ptp"
     duration: PositiveDuration | None = Field(
-        None, description="Of the motion: a JointTrajectory point's time_from_start [s]."
+        default=None, description="Of the motion: a JointTrajectory point's time_from_start [s]."
     )
 
 
@@ -88,8 +92,8 @@ class Circ(StepFields):
     do: Literal["circ"] = "circ"
     pose: Pose
     link: Name | None = None
-    interim: Pose | None = Field(None, description="A point on the arc.")
-    center: Pose | None = Field(None, description="The arc's centre.")
+    interim: Pose | None = Field(default=None, description="A point on the arc.")
+    center: Pose | None = Field(default=None, description="The arc's centre.")
     cartesian_limits: CartesianLimits | None = None
 
     @model_validator(mode="after")
@@ -103,13 +107,19 @@ class MoveRelative(StepFields):
     """Task Constructor's MoveRelative: a straight move, or a turn, by a distance."""
 
     do: Literal["move_relative"] = "move_relative"
-    direction: Direction | None = Field(None, description="Translate along this.")
-    rotation: Direction | None = Field(None, description="Turn about this axis through the link.")
-    distance: Annotated[Length, Field(gt=0)] | None = Field(None, description="Exactly so far [m].")
-    min_distance: PositiveLength | None = Field(None, description="At least so far [m].")
-    max_distance: PositiveLength | None = Field(None, description="At most so far [m].")
-    angle: Annotated[Angle, Field(gt=0)] | None = Field(None, description="With `rotation` [rad].")
-    link: Name | None = Field(None, description="Default: the TCP.")
+    direction: Direction | None = Field(default=None, description="Translate along this.")
+    rotation: Direction | None = Field(
+        default=None, description="Turn about this axis through the link."
+    )
+    distance: Annotated[Length, Field(gt=0)] | None = Field(
+        default=None, description="Exactly so far [m]."
+    )
+    min_distance: PositiveLength | None = Field(default=None, description="At least so far [m].")
+    max_distance: PositiveLength | None = Field(default=None, description="At most so far [m].")
+    angle: Annotated[Angle, Field(gt=0)] | None = Field(
+        default=None, description="With `rotation` [rad]."
+    )
+    link: Name | None = Field(default=None, description="Default: the TCP.")
 
     @model_validator(mode="after")
     def _one_amount(self) -> MoveRelative:
@@ -182,11 +192,13 @@ class Gripper(StepFields):
     short = "named_target"
 
     do: Literal["gripper"] = "gripper"
-    named_target: Name | None = Field(None, description="An SRDF group state of the gripper.")
-    position: JointValue | None = Field(None, description="Of the gripper's joint.")
-    width: NonNegativeLength | None = Field(None, description="Gap between the pads [m].")
+    named_target: Name | None = Field(
+        default=None, description="An SRDF group state of the gripper."
+    )
+    position: JointValue | None = Field(default=None, description="Of the gripper's joint.")
+    width: NonNegativeLength | None = Field(default=None, description="Gap between the pads [m].")
     max_effort: Annotated[JointEffort, Field(gt=0)] | None = Field(
-        None, description="Effort limit of the gripper's joint; default from the robot."
+        default=None, description="Effort limit of the gripper's joint; default from the robot."
     )
 
     @model_validator(mode="after")
@@ -204,9 +216,13 @@ class Grasp(StepFields):
 
     do: Literal["grasp"] = "grasp"
     object: Name
-    mode: GripperAction = Field("friction", description="`weld` fixes it in the physics too.")
+    mode: GripperAction = Field(
+        default="friction", description="`weld` fixes it in the physics too."
+    )
     max_effort: Annotated[JointEffort, Field(gt=0)] | None = None
-    position: JointValue | None = Field(None, description="Closes to here at most; default closed.")
+    position: JointValue | None = Field(
+        default=None, description="Closes to here at most; default closed."
+    )
 
 
 class Release(StepFields):
@@ -215,8 +231,10 @@ class Release(StepFields):
     short = "object"
 
     do: Literal["release"] = "release"
-    object: Name | None = Field(None, description="Default: what was grasped last.")
-    named_target: Name | None = Field(None, description="Default: the gripper's open position.")
+    object: Name | None = Field(default=None, description="Default: what was grasped last.")
+    named_target: Name | None = Field(
+        default=None, description="Default: the gripper's open position."
+    )
     position: JointValue | None = None
 
 
@@ -229,12 +247,12 @@ class AttachObject(StepFields):
     object: Annotated[
         Annotated[Name, Tag("one")] | Annotated[ObjectSpec, Tag("many")], Discriminator(kind_of)
     ] = Field(description="A name in the scene, or a new object.")
-    link: Name | None = Field(None, description="Default: the TCP link.")
+    link: Name | None = Field(default=None, description="Default: the TCP link.")
     touch_links: tuple[Name, ...] | None = Field(
-        None, description="Links that may touch it; default: the gripper's."
+        default=None, description="Links that may touch it; default: the gripper's."
     )
     represents: Name | None = Field(
-        None,
+        default=None,
         description="The physical object it stands for; leaves the planning scene until detached.",
     )
 
@@ -308,11 +326,13 @@ class Pick(StepFields):
     do: Literal["pick"] = "pick"
     object: Name
     grasp_pose: Pose | None = Field(
-        None, description="Of the TCP; default: from the object's shape."
+        default=None, description="Of the TCP; default: from the object's shape."
     )
-    pitch: Angle | None = Field(None, description="Of the gripper, for arms with fewer joints.")
-    approach: Travel | None = Field(None, description="Default: 10 cm along the gripper.")
-    lift: Travel | None = Field(None, description="Default: 10 cm up.")
+    pitch: Angle | None = Field(
+        default=None, description="Of the gripper, for arms with fewer joints."
+    )
+    approach: Travel | None = Field(default=None, description="Default: 10 cm along the gripper.")
+    lift: Travel | None = Field(default=None, description="Default: 10 cm up.")
     mode: GripperAction = "friction"
     max_effort: Annotated[JointEffort, Field(gt=0)] | None = None
 
@@ -321,7 +341,7 @@ class Place(StepFields):
     """Approach, lower, release, retreat; expands into the steps it is made of."""
 
     do: Literal["place"] = "place"
-    object: Name | None = Field(None, description="Default: what was picked last.")
+    object: Name | None = Field(default=None, description="Default: what was picked last.")
     pose: Pose = Field(description="Where the object shall stand.")
     approach: Travel | None = None
     retreat: Travel | None = None
@@ -353,7 +373,7 @@ class Settle(StepFields):
 
     do: Literal["settle"] = "settle"
     max_velocity: Annotated[LinearVelocity, Field(gt=0)] = Field(
-        1e-3, description="Of objects [m/s] and joints [rad/s]."
+        default=1e-3, description="Of objects [m/s] and joints [rad/s]."
     )
 
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import functools
+import importlib
 import re
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from harness.spec.mistakes import MistakeError, nearest
-
-if TYPE_CHECKING:
-    import pint
+from harness.spec.mistakes import MistakeError, describe, nearest
 
 DEFINITIONS = (
     "nano- = 1e-9 = n-",
@@ -107,7 +105,7 @@ def in_si(text: str, units: tuple[str, ...]) -> float:
     for target in units:
         wanted = _parsed(target)
         if wanted is not None and given.is_compatible_with(wanted):
-            return number * float(given.from_(1, strict=False).to(wanted).magnitude)
+            return number * float(_registry().Quantity(1.0, given).to(wanted).magnitude)
     raise MistakeError(f"`{text}` is {_measured(given)}; {expected(units)} is meant", usage(units))
 
 
@@ -126,19 +124,7 @@ def usage(units: tuple[str, ...]) -> str:
     return f"write a number in {' or '.join(units)}, or one with a unit: {written(units)}"
 
 
-def describe(value: Any) -> str:
-    """A value as a person would speak of it: `` `x` ``, a list, nothing."""
-    if isinstance(value, dict):
-        return "a mapping"
-    if isinstance(value, list | tuple):
-        return "a list"
-    if value is None:
-        return "nothing"
-    text = str(value).lower() if isinstance(value, bool) else str(value)
-    return f"`{text if len(text) <= LONGEST else text[: LONGEST - 3] + '...'}`"
-
-
-def _measured(unit: pint.Unit) -> str:
+def _measured(unit: Any) -> str:
     for target, (meaning, _) in MEANINGS.items():
         wanted = _parsed(target)
         if wanted is not None and unit.is_compatible_with(wanted):
@@ -147,22 +133,19 @@ def _measured(unit: pint.Unit) -> str:
 
 
 @functools.cache
-def _parsed(unit: str) -> pint.Unit | None:
+def _parsed(unit: str) -> Any | None:
     """Pint's unit, or None where it knows none; only plain products and powers are let through."""
     if UNIT.fullmatch(unit) is None:
         return None
-    import pint  # takes 0.1 s: only files that carry units pay for it
-
     try:
         return _registry().parse_units(unit)
-    except (pint.PintError, ValueError, TypeError, AttributeError, SyntaxError):
-        return None
+    except (ValueError, TypeError, AttributeError, ArithmeticError, SyntaxError):
+        return None  # pint's own errors are AttributeError, SyntaxError or ValueError as well
 
 
 @functools.cache
-def _registry() -> pint.UnitRegistry:
-    import pint
-
+def _registry() -> Any:
+    pint: Any = importlib.import_module("pint")  # 0.1 s: only files that carry units pay for it
     registry = pint.UnitRegistry(None)
     for definition in DEFINITIONS:
         registry.define(definition)

@@ -9,9 +9,8 @@ from typing import Any
 from pydantic_core import ErrorDetails
 
 from harness.core.errors import Problem
-from harness.spec.mistakes import MistakeError, did_you_mean
+from harness.spec.mistakes import MistakeError, describe, did_you_mean
 from harness.spec.source import Found, Loc, SourceMap
-from harness.spec.units import describe
 
 Wording = Callable[[ErrorDetails, dict[str, Any], str], tuple[str, str]]
 """Error, its context, the offending value as text -> message and hint."""

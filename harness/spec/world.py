@@ -66,9 +66,7 @@ class ShapeSpec(SpecModel):
     """Exactly one geometry, placed on its object."""
 
     name: Name | None = None
-    pose: Pose = Field(
-        default_factory=Pose, description="On the object; its frame word is ignored."
-    )
+    pose: Pose = Field(default=Pose(), description="On the object; its frame word is ignored.")
     color: Color | None = None
     box: BoxSpec | None = None
     cylinder: CylinderSpec | None = None
@@ -110,8 +108,8 @@ class ObjectSpec(SpecModel):
     """An object: one geometry beside its keys, or several under `shapes`."""
 
     name: Name
-    pose: Pose = Field(default_factory=Pose)
-    static: Flag = Field(False, description="Fixed in the world.")
+    pose: Pose = Pose()
+    static: Flag = Field(default=False, description="Fixed in the world.")
     box: BoxSpec | None = None
     cylinder: CylinderSpec | None = None
     sphere: SphereSpec | None = None
@@ -119,21 +117,27 @@ class ObjectSpec(SpecModel):
     plane: PlaneSpec | None = None
     mesh: MeshSpec | None = None
     shapes: tuple[ShapeSpec, ...] = ()
-    mass: Mass | None = Field(None, description="[kg]; default from the volume at 1000 kg/m^3.")
+    mass: Mass | None = Field(
+        default=None, description="[kg]; default from the volume at 1000 kg/m^3."
+    )
     center_of_mass: Xyz = (0.0, 0.0, 0.0)
-    inertia: InertiaSpec | None = Field(None, description="Default: of the solid shape.")
+    inertia: InertiaSpec | None = Field(default=None, description="Default: of the solid shape.")
     friction: (
         Annotated[
             Annotated[Number, Field(ge=0), Tag("one")] | Annotated[FrictionSpec, Tag("many")],
             Discriminator(kind_of),
         ]
         | None
-    ) = Field(None, description="Sliding friction alone, or all three.")
+    ) = Field(default=None, description="Sliding friction alone, or all three.")
     color: Color | None = None
     in_: Literal["planning", "simulation", "both"] = Field(
-        "both", alias="in", description="Who knows it: the planning scene, the physics, or both."
+        default="both",
+        alias="in",
+        description="Who knows it: the planning scene, the physics, or both.",
     )
-    replace: Flag = Field(False, description="In `objects`: replaces the world's object so named.")
+    replace: Flag = Field(
+        default=False, description="In `objects`: replaces the world's object so named."
+    )
 
     @model_validator(mode="after")
     def _some_shape(self) -> ObjectSpec:
@@ -166,4 +170,4 @@ class WorldSpec(SpecModel):
     description: str = ""
     objects: tuple[ObjectSpec, ...] = ()
     lights: tuple[LightSpec, ...] = ()
-    physics: PhysicsSpec = Field(default_factory=PhysicsSpec)
+    physics: PhysicsSpec = PhysicsSpec()

@@ -124,6 +124,12 @@ def parse_value(text: str, source: Source) -> Located:
     return Located(None, Place(source)) if root is None else root.moved(Place(source))
 
 
+def is_plain_text(text: str) -> bool:
+    """Whether a text without quotes is text: by the core schema no number, boolean or null."""
+    patterns = (INTEGER, FLOAT, BASED, NOT_FINITE)
+    return text not in CONSTANTS and not any(each.fullmatch(text) for each in patterns)
+
+
 class _Composer:
     """Composes events into located values; goes on after a mistake, collecting problems."""
 
@@ -135,7 +141,8 @@ class _Composer:
         self._count = 0
 
     def document(self, text: str) -> Located | None:
-        events: Iterator[Any] = yaml.parse(text, Loader=LOADER)
+        reader: Any = yaml
+        events: Iterator[Any] = reader.parse(text, Loader=LOADER)
         root: Located | None = None
         for event in events:
             if isinstance(event, yaml.DocumentStartEvent):
@@ -221,12 +228,12 @@ class _Composer:
         text = str(event.value)
         if not event.implicit[0] or event.style in ("'", '"', "|", ">"):
             return text
+        if is_plain_text(text):
+            return text
         if text in CONSTANTS:
             return CONSTANTS[text]
-        is_number = INTEGER.fullmatch(text) or FLOAT.fullmatch(text) or BASED.fullmatch(text)
-        if not is_number and not NOT_FINITE.fullmatch(text):
-            return text
-        number = _number(text) if is_number and len(text) <= LONGEST_NUMBER else math.inf
+        is_number = not NOT_FINITE.fullmatch(text) and len(text) <= LONGEST_NUMBER
+        number = _number(text) if is_number else math.inf
         if not math.isfinite(number):
             shown = text if len(text) <= 40 else text[:40] + "..."
             self.problems.append(place.problem(f"`{shown}` is not a finite number"))
