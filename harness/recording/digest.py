@@ -1,0 +1,79 @@
+"""The digest of a run: equal bytes of what was commanded, recorded and judged, equal digest."""
+
+from __future__ import annotations
+
+import hashlib
+import struct
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, cast
+
+import numpy as np
+
+from harness.recording.arrays import arrays_of
+from harness.recording.run import Run, Verdict
+
+VERSION = b"armharness-digest/1"
+
+
+def digest(run: Run, verdicts: Sequence[Verdict]) -> str:
+    """SHA-256 over commanded trajectories, recorded signals and verdicts, in hex.
+
+    Numbers enter bit by bit (little-endian float64 and int64; every NaN alike), each with its name
+    and shape, signals sorted by name. No wall clock, title, path, line or wording enters.
+    """
+    hasher = hashlib.sha256(VERSION)
+    for chunk in _chunks(run, verdicts):
+        hasher.update(struct.pack("<Q", len(chunk)))
+        hasher.update(chunk)
+    return hasher.hexdigest()
+
+
+def _chunks(run: Run, verdicts: Sequence[Verdict]) -> Iterator[bytes]:
+    for step in run.steps:
+        if step.trajectory is not None:
+            yield b"trajectory"
+            yield from _value(step.trajectory)
+    for name, array in sorted(arrays_of(run.signals).items()):
+        yield name.encode()
+        yield from _array(array)
+    yield from _array(np.array([run.signals.clearance_cutoff]))
+    for verdict in verdicts:
+        yield b"verdict"
+        yield verdict.status.encode()
+        yield verdict.unit.encode()
+        yield from _array(np.array([verdict.margin, verdict.time]))
+
+
+def _array(array: np.ndarray[Any, Any]) -> Iterator[bytes]:
+    if array.dtype.kind == "f":
+        canonical = np.ascontiguousarray(array, dtype="<f8")
+        missing = np.isnan(canonical)
+        if missing.any():
+            canonical = np.where(missing, np.nan, canonical)
+    else:
+        canonical = np.ascontiguousarray(array, dtype="<i8")
+    yield f"{canonical.dtype.str}{array.shape}".encode()
+    yield canonical.tobytes()
+
+
+def _value(value: Any) -> Iterator[bytes]:
+    """Plain data of a trajectory: mappings by sorted key, numbers as arrays."""
+    match value:
+        case Mapping():
+            mapping = cast("Mapping[str, Any]", value)
+            for key in sorted(mapping):
+                yield str(key).encode()
+                yield from _value(mapping[key])
+        case np.ndarray():
+            yield from _array(cast("np.ndarray[Any, Any]", value))
+        case list() | tuple() if _are_names(cast("Sequence[Any]", value)):
+            for name in cast("Sequence[str]", value):
+                yield name.encode()
+        case list() | tuple() | float() | int():
+            yield from _array(np.asarray(value, dtype=float))
+        case _:
+            yield str(value).encode()
+
+
+def _are_names(values: Sequence[Any]) -> bool:
+    return any(isinstance(item, str) for item in values)
