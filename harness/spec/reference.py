@@ -1,0 +1,159 @@
+"""The reference of steps and expectations as Markdown, made from the models."""
+
+from __future__ import annotations
+
+import types
+from collections.abc import Collection, Iterable, Mapping
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+from pydantic import BeforeValidator
+from pydantic.fields import FieldInfo
+
+from harness.spec.annotations import bare, is_model, keys_of
+from harness.spec.base import SpecModel
+from harness.spec.checks import CheckFields
+from harness.spec.language import BESIDE_CHECK, BESIDE_VERB, PREDICATES, TEMPORAL, VERBS
+from harness.spec.steps import Step, StepFields
+from harness.spec.units import MEANINGS
+
+JUDGED = {
+    "at_end": "Bare, judged at the last sample of its step or run.",
+    "always": "Bare, judged over every sample of its step or run.",
+    "eventually": "Bare, true if it is true at some sample of its step or run.",
+}
+NOT_YET = "*Not yet available.*"
+KINDS: dict[Any, str] = {str: "text", float: "number", int: "whole number", bool: "true or false"}
+
+
+def steps_reference(available: Collection[type] | None = None) -> str:
+    """Every verb: what it does, its keys with type, unit and default.
+
+    Args:
+        available: Models of the steps that can be executed; None leaves that out.
+    """
+    beside = _table((key, keys_of(StepFields)[key]) for key in BESIDE_VERB)
+    parts = ["# Steps", "Beside every verb may stand:", beside]
+    for verb, model in VERBS.items():
+        parts += _section(verb, model, BESIDE_VERB, available, ())
+    parts += _parts(VERBS.values())
+    return "\n\n".join(parts) + "\n"
+
+
+def expectations_reference(available: Collection[type] | None = None) -> str:
+    """Every temporal word and predicate, and when a bare one is judged.
+
+    Args:
+        available: Models of the predicates that can be judged; None leaves that out.
+    """
+    beside = _table((key, keys_of(CheckFields)[key]) for key in BESIDE_CHECK)
+    parts = ["# Expectations", "Inside or beside every word may stand:", beside]
+    parts += ["## Around predicates", _words({w: _sentence(m) for w, m in TEMPORAL.items()})]
+    parts.append("`{always: A, until: B}`: A holds until B does, and B does.")
+    for word, model in PREDICATES.items():
+        judged = model.judged if issubclass(model, CheckFields) else "at_end"
+        parts += _section(word, model, BESIDE_CHECK, available, (JUDGED[judged],))
+    parts += _parts(PREDICATES.values())
+    return "\n\n".join(parts) + "\n"
+
+
+def _section(
+    word: str,
+    model: type[SpecModel],
+    beside: Collection[str],
+    available: Collection[type] | None,
+    notes: Iterable[str],
+) -> list[str]:
+    fields = [(key, field) for key, field in keys_of(model).items() if key not in beside]
+    parts = [f"## `{word}`", _sentence(model)]
+    if available is not None and model not in available:
+        parts.append(NOT_YET)
+    parts += notes
+    if model.short and not any(f.is_required() for key, f in fields if key != model.short):
+        parts.append(f"`- {word}: x` is short for `- {word}: {{{model.short}: x}}`.")
+    if fields:
+        parts.append(_table(fields))
+    return parts
+
+
+def _parts(models: Iterable[type[SpecModel]]) -> list[str]:
+    """Sections of the models that the keys of these models hold, in alphabetical order."""
+    found: dict[str, type[SpecModel]] = {}
+    waiting = list(models)
+    while waiting:
+        for field in keys_of(waiting.pop()).values():
+            for part in _models_in(field.annotation):
+                if part.__name__ not in found:
+                    found[part.__name__] = part
+                    waiting.append(part)
+    lines = ["# Parts"] if found else []
+    for name in sorted(found):
+        fields = keys_of(found[name]).items()
+        lines += [f"## {name}", _sentence(found[name]), *([_table(fields)] if fields else [])]
+    return lines
+
+
+def _models_in(annotation: Any) -> list[type[SpecModel]]:
+    """The models that are no step and no expectation, anywhere in an annotation."""
+    if is_model(annotation):
+        is_word = "do" in annotation.model_fields or "check" in annotation.model_fields
+        return [] if is_word else [annotation]
+    return [model for each in get_args(annotation) for model in _models_in(each)]
+
+
+def _sentence(model: type[SpecModel]) -> str:
+    return " ".join((model.__doc__ or "").split())
+
+
+def _table(fields: Iterable[tuple[str, FieldInfo]]) -> str:
+    rows = ["| key | value | default | meaning |", "| --- | --- | --- | --- |"]
+    for key, field in fields:
+        cells = (f"`{key}`", _kind(field), _default(field), field.description or "")
+        rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+    return "\n".join(rows)
+
+
+def _words(meanings: Mapping[str, str]) -> str:
+    return "\n".join(f"- `{word}`: {meaning}" for word, meaning in meanings.items())
+
+
+def _kind(field: FieldInfo) -> str:
+    return _described(field.annotation, tuple(field.metadata))
+
+
+def _described(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
+    """What may be written, in words: `length [m]`, `list of text`, a model's keys."""
+    while get_origin(annotation) is Annotated:
+        annotation, *more = get_args(annotation)
+        metadata = (*more, *metadata)
+    for item in metadata:
+        units = getattr(item.func, "units", None) if isinstance(item, BeforeValidator) else None
+        if units is not None:
+            return " or ".join(f"{MEANINGS[unit][0]} [{unit}]" for unit in units)
+    if annotation == bare(Step):
+        return "step"
+    arguments = get_args(annotation)
+    if get_origin(annotation) in (Union, types.UnionType):
+        kinds = [_described(each) for each in arguments if each is not type(None)]
+        return " or ".join(dict.fromkeys(kinds)) if len(kinds) <= 4 else "expectation"
+    if get_origin(annotation) is Literal:
+        return ", ".join(f"`{each}`" for each in arguments) if len(arguments) < 8 else "error code"
+    if get_origin(annotation) in (tuple, list):
+        first = _described(arguments[0])
+        size = "" if arguments[-1] is ... or len(arguments) == 1 else f"{len(arguments)} x "
+        return f"list of {size}{first}"
+    if get_origin(annotation) is dict:
+        return f"mapping of name to {_described(arguments[1])}"
+    if is_model(annotation):
+        return f"[{annotation.__name__}](#{annotation.__name__.lower()})"
+    return KINDS.get(annotation, "any value")
+
+
+def _default(field: FieldInfo) -> str:
+    if field.is_required():
+        return "required"
+    value = field.get_default(call_default_factory=True)
+    if value is None or value == () or value == {} or isinstance(value, SpecModel):
+        return ""
+    if isinstance(value, bool):
+        return f"`{str(value).lower()}`"
+    return f"`{value:g}`" if isinstance(value, int | float) else f"`{value}`"

@@ -1,0 +1,266 @@
+"""JSON Schema of the scenario file as it is written: verbs as keys, short forms, units, `${name}`.
+
+Made from pydantic's schema of the models, so that a field said once is offered by every editor.
+Draft 7, which yaml-language-server completes from; `$defs` are plain references there.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from typing import Any, cast
+
+from pydantic.json_schema import GenerateJsonSchema
+from pydantic_core import core_schema
+
+from harness.spec.base import SpecModel
+from harness.spec.language import (
+    BESIDE_CHECK,
+    BESIDE_VERB,
+    EXPECTATIONS,
+    PREDICATES,
+    TEMPORAL,
+    UNTIL,
+    VERBS,
+)
+from harness.spec.scenario import Scenario
+from harness.spec.units import written
+from harness.spec.world import WorldSpec
+
+Schema = dict[str, Any]
+
+REFERENCE: Schema = {"type": "string", "pattern": r"^\$\{[^{}]+\}$"}
+QUANTITY = r"^\s*([-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[A-Za-zµμ°].*|.*\$\{[^{}]+\}.*)$"
+BOUNDS = {
+    "gt": "exclusiveMinimum",
+    "ge": "minimum",
+    "lt": "exclusiveMaximum",
+    "le": "maximum",
+    "min_length": "minItems",
+}
+"""pydantic's words on a validated value -> JSON Schema's."""
+
+DRAFT = "http://json-schema.org/draft-07/schema#"
+
+
+def schema_text() -> str:
+    """The scenario file's schema as text; the same for the same version of the program."""
+    return json.dumps(scenario_schema(), indent=1, ensure_ascii=False) + "\n"
+
+
+def scenario_schema() -> Schema:
+    """The scenario file's schema."""
+    return _schema_of(Scenario, "A scenario for a robot arm")
+
+
+def world_schema() -> Schema:
+    """The world file's schema."""
+    return _schema_of(WorldSpec, "A world of objects")
+
+
+def _schema_of(model: type[SpecModel], title: str) -> Schema:
+    plain = model.model_json_schema(by_alias=True, schema_generator=_WithUnits)
+    models = {each.__name__: each for each in _subclasses(SpecModel)}
+    definitions: dict[str, Schema] = plain.pop("$defs", {})
+    own: dict[str, Schema] = {}
+    for name, definition in definitions.items():
+        own[name] = _with_short_form(_written(definition), models[name])
+    if "RobotSpec" in own:
+        _accept_ur_type(own["RobotSpec"])
+    if model is Scenario:
+        own |= _language(own)
+    reached = _written(plain)
+    head: Schema = {"$schema": DRAFT, "title": title}
+    return {**head, **reached, "$defs": dict(sorted(_reachable(reached, own).items()))}
+
+
+class _WithUnits(GenerateJsonSchema):
+    """Keeps the units that a validator of numbers knows."""
+
+    def function_before_schema(self, schema: core_schema.BeforeValidatorFunctionSchema) -> Schema:
+        written_schema = super().function_before_schema(schema)
+        units = getattr(schema["function"]["function"], "units", None)
+        return written_schema if units is None else {**written_schema, "units": units}
+
+
+def _written(schema: Any) -> Any:
+    """A part of pydantic's schema as a file may write it."""
+    if isinstance(schema, list):
+        return [_written(part) for part in cast("list[Any]", schema)]
+    if not isinstance(schema, dict):
+        return schema
+    part = cast("Schema", schema)
+    tag = part.get("discriminator", {}).get("propertyName")
+    if tag is not None:
+        is_predicate = tag == "check" and "always" not in part["discriminator"]["mapping"]
+        name = "Step" if tag == "do" else "Predicate" if is_predicate else "Expectation"
+        return {"$ref": f"#/$defs/{name}"}
+    result: Schema = {
+        key: {name: _written(each) for name, each in cast("Schema", value).items()}
+        if key == "properties"
+        else _written(value)
+        for key, value in part.items()
+        if key not in ("title", "discriminator") and not (key == "default" and value is None)
+    }
+    if "properties" in part:
+        return result
+    return _with_references(_without_null(_draft_7(result)))
+
+
+def _draft_7(schema: Schema) -> Schema:
+    """Tuples of one kind as arrays of it; bounds in JSON Schema's words."""
+    items: list[Schema] = schema.pop("prefixItems", [])
+    if items:
+        schema["items"] = items[0]
+    for word, bound in BOUNDS.items():
+        if word in schema:
+            schema[bound] = schema.pop(word)
+    if "exclusiveMinimum" in schema:
+        schema.pop("minimum", None)
+    return schema
+
+
+def _without_null(schema: Schema) -> Schema:
+    branches: list[Schema] = schema.get("anyOf", [])
+    rest = [branch for branch in branches if branch != {"type": "null"}]
+    if len(rest) == len(branches):
+        return schema
+    around = {key: value for key, value in schema.items() if key != "anyOf"}
+    if len(rest) > 1:
+        return {**around, "anyOf": rest}
+    if "$ref" in rest[0] and around:
+        return {**around, "allOf": rest}
+    return {**rest[0], **around}
+
+
+def _with_references(schema: Schema) -> Schema:
+    """Where a number, list or word stands, `${name}` may; where a unit fits, text with one."""
+    units: tuple[str, ...] | None = schema.pop("units", None)
+    around = {key: schema.pop(key) for key in ("description", "default") if key in schema}
+    if units is not None:
+        unit = f"{' or '.join(units)} (as text: {written(units)})"
+        around["description"] = f"{around.get('description', '')} In {unit}.".strip()
+        return {**around, "anyOf": [schema, {"type": "string", "pattern": QUANTITY}]}
+    if schema.get("type") in ("number", "integer", "boolean", "array") or "enum" in schema:
+        return {**around, "anyOf": [schema, REFERENCE]}
+    return {**around, **schema}
+
+
+def _with_short_form(definition: Schema, model: type[SpecModel]) -> Schema:
+    """A model's schema without its tag, and the bare value that may stand for it."""
+    properties: dict[str, Schema] = definition.get("properties", {})
+    is_step, is_check = "do" in properties, "check" in properties
+    hidden = ("do", *BESIDE_VERB) if is_step else ("check",) if is_check else ()
+    kept = {key: value for key, value in properties.items() if key not in hidden}
+    mapping = {**definition, "properties": kept}
+    branches: list[Schema] = [mapping]
+    if model.short:
+        short = {**kept[model.short]}
+        short.pop("description", None)
+        short.pop("default", None)
+        branches.append(short)
+        if model.short_is_list:
+            array = short["anyOf"][0] if "anyOf" in short else short
+            branches.append(array["items"])
+    if (is_step or is_check) and not mapping.get("required"):
+        branches.append({"type": "null"})
+    if len(branches) == 1:
+        return mapping
+    description = mapping.pop("description", "")
+    return {"description": description, "anyOf": branches}
+
+
+def _accept_ur_type(robot: Schema) -> None:
+    properties = robot["anyOf"][0]["properties"]
+    properties["ur_type"] = {"type": "string", "description": "As `model`: the course's word."}
+
+
+def _language(definitions: Mapping[str, Schema]) -> dict[str, Schema]:
+    """Steps, predicates and expectations: one word, its content, and what may stand beside."""
+
+    def content(models: Mapping[str, type[SpecModel]]) -> dict[str, Schema]:
+        return {
+            word: {
+                "description": definitions[model.__name__].get("description", ""),
+                "allOf": [{"$ref": f"#/$defs/{model.__name__}"}],
+            }
+            for word, model in models.items()
+        }
+
+    plain_step = _properties(next(iter(VERBS.values())))
+    plain_check = _properties(next(iter(TEMPORAL.values())))
+    beside_verb = {key: _written(plain_step[key]) for key in BESIDE_VERB}
+    beside_check = {key: _written(plain_check[key]) for key in BESIDE_CHECK if key in plain_check}
+    predicates = content(PREDICATES)
+    predicate = _one_word(predicates, beside_check, PREDICATES)
+    temporal = {
+        word: {"description": model.__doc__ or "", "allOf": [{"$ref": "#/$defs/Predicate"}]}
+        for word, model in TEMPORAL.items()
+    }
+    formula = content({word: EXPECTATIONS[word] for word in ("formula",)})
+    until: Schema = {
+        UNTIL: {
+            "description": "Beside `always`: it must hold until this does.",
+            "allOf": [{"$ref": "#/$defs/Predicate"}],
+        }
+    }
+    words = predicates | temporal | formula
+    expectation = _one_word(words, beside_check | until, PREDICATES)
+    expectation["anyOf"][0]["dependencies"] = {UNTIL: ["always"]}
+    return {
+        "Step": _one_word(content(VERBS), beside_verb, VERBS),
+        "Predicate": predicate,
+        "Expectation": expectation,
+    }
+
+
+def _one_word(
+    words: Mapping[str, Schema], beside: Mapping[str, Schema], models: Mapping[str, type[SpecModel]]
+) -> Schema:
+    bare = [word for word, model in models.items() if not _required(model)]
+    mapping: Schema = {
+        "type": "object",
+        "properties": {**words, **beside},
+        "additionalProperties": False,
+        "oneOf": [{"required": [word]} for word in words],
+    }
+    return {"anyOf": [mapping, {"type": "string", "enum": bare}]}
+
+
+def _required(model: type[SpecModel]) -> list[str]:
+    return [name for name, field in model.model_fields.items() if field.is_required()]
+
+
+def _properties(model: type[SpecModel]) -> dict[str, Schema]:
+    plain = model.model_json_schema(by_alias=True, schema_generator=_WithUnits)
+    resolved = plain.get("$defs", {}).get(model.__name__, plain)
+    return cast("dict[str, Schema]", resolved["properties"])
+
+
+def _reachable(root: Schema, definitions: Mapping[str, Schema]) -> dict[str, Schema]:
+    found: dict[str, Schema] = {}
+    waiting = list(_references(root))
+    while waiting:
+        name = waiting.pop()
+        if name not in found:
+            found[name] = definitions[name]
+            waiting += _references(definitions[name])
+    return found
+
+
+def _references(schema: Any) -> Iterable[str]:
+    if isinstance(schema, dict):
+        for key, value in cast("Schema", schema).items():
+            if key == "$ref":
+                yield str(value).rsplit("/", 1)[-1]
+            else:
+                yield from _references(value)
+    elif isinstance(schema, list):
+        for value in cast("list[Any]", schema):
+            yield from _references(value)
+
+
+def _subclasses(model: type[SpecModel]) -> Iterable[type[SpecModel]]:
+    for child in model.__subclasses__():
+        yield child
+        yield from _subclasses(child)
