@@ -79,9 +79,9 @@ class GripperDrive:
                 simulator.hold_samples(CHECK_EVERY)
                 reached = self._miss(position) <= GOAL_TOLERANCE * self._range
             if not reached and self._recording.count - first >= stall_samples:
-                speeds = self._recording.joint_velocities(self._recording.count - stall_samples)
-                slow = np.abs(speeds[:, self._joint]) < STALL_SPEED * self._speed
-                stalled = bool(slow.all())
+                recent = self._recording.joint_positions(self._recording.count - stall_samples)
+                travel = float(np.ptp(recent[:, self._joint]))
+                stalled = travel < STALL_SPEED * self._speed * STALL_TIME
         simulator.command(whole.positions[-1])
         reached = self._miss(position) <= GOAL_TOLERANCE * self._range
         return GripperResult(

@@ -15,8 +15,11 @@ from harness.simulation.geoms import Surfaces, add_collision_geom
 LINK_FRICTION = Friction()
 """Surface of robot links other than the finger pads."""
 
-MIMIC_SOLREF = (0.004, 1.0)
-"""Time constant [s] and damping ratio of a mimic coupling: two physics steps, critically damped."""
+MIMIC_SOLREF = (0.01, 1.0)
+"""Time constant [s] and damping ratio of a mimic coupling.
+
+Slower than a contact: at two steps fingers that pressed on an object chattered from step to step.
+"""
 
 MIMIC_SOLIMP = (0.999, 0.9999, 0.001, 0.5, 2.0)
 """Impedance of a mimic coupling: nearly rigid, so that both fingers press with the same force."""

@@ -1,0 +1,101 @@
+"""MuJoCo's classic renderer on a graphics context that is made late and without a window."""
+
+# pyright: reportAttributeAccessIssue=false, reportMissingImports=false
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from harness.cameras.picture_model import PictureModel
+from harness.cameras.viewpoint import Viewpoint
+
+MAX_GEOMS = 4000
+
+
+def gl_contexts() -> tuple[tuple[str, Callable[[int, int], Any]], ...]:
+    """Names of the graphics libraries to try, best first, each with what makes its context."""
+    return ("egl", _egl_context), ("osmesa", _osmesa_context)
+
+
+def _egl_context(width: int, height: int) -> Any:
+    with _PyOpenGL("egl"):
+        from mujoco.egl import GLContext
+
+        return GLContext(width, height)
+
+
+def _osmesa_context(width: int, height: int) -> Any:
+    with _PyOpenGL("osmesa"):
+        from mujoco.osmesa import GLContext
+
+        return GLContext(width, height)
+
+
+class _PyOpenGL:
+    """Lets PyOpenGL load one platform; when that fails, nothing of it is left behind.
+
+    PyOpenGL chooses its library by an environment variable when it is first imported. MUJOCO_GL is
+    never touched: with it set, importing mujoco itself fails where the library is missing.
+    """
+
+    VARIABLE = "PYOPENGL_PLATFORM"
+
+    def __init__(self, platform: str) -> None:
+        self._platform = platform
+        self._before = os.environ.get(self.VARIABLE)
+
+    def __enter__(self) -> None:
+        os.environ.setdefault(self.VARIABLE, self._platform)
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        if self._before is None:
+            os.environ.pop(self.VARIABLE, None)
+        if kind is not None:
+            for name in [name for name in sys.modules if name.split(".")[0] == "OpenGL"]:
+                del sys.modules[name]
+
+
+class GLRenderer:
+    """Draws with shadows, transparency and antialiasing."""
+
+    def __init__(
+        self, picture: PictureModel, width: int, height: int, backend: str, context: Any
+    ) -> None:
+        self.backend = backend
+        self._picture = picture
+        self._gl = context
+        self._gl.make_current()
+        model = picture.model
+        self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
+        mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
+        self._scene = mujoco.MjvScene(model, MAX_GEOMS)
+        self._scene.flags[mujoco.mjtRndFlag.mjRND_HAZE] = True
+        self._option = mujoco.MjvOption()
+        self._viewport = mujoco.MjrRect(0, 0, width, height)
+
+    def render(self, viewpoint: Viewpoint) -> np.ndarray:
+        """What is seen from a viewpoint, RGB."""
+        model, data = self._picture.model, self._picture.data
+        camera = mujoco.MjvCamera()
+        camera.type = mujoco.mjtCamera.mjCAMERA_FREE
+        camera.lookat[:] = viewpoint.lookat
+        camera.distance = viewpoint.distance
+        camera.azimuth, camera.elevation = viewpoint.azimuth, viewpoint.elevation
+        model.vis.global_.fovy = viewpoint.field_of_view
+        everything = mujoco.mjtCatBit.mjCAT_ALL
+        mujoco.mjv_updateScene(model, data, self._option, None, camera, everything, self._scene)
+        mujoco.mjr_render(self._viewport, self._scene, self._context)
+        picture = np.empty((self._viewport.height, self._viewport.width, 3), dtype=np.uint8)
+        mujoco.mjr_readPixels(picture, None, self._viewport, self._context)
+        return np.ascontiguousarray(picture[::-1])
+
+    def close(self) -> None:
+        """Free the graphics context."""
+        self._context.free()
+        self._gl.free()

@@ -1,0 +1,136 @@
+"""A camera that needs no graphics library: one ray a pixel, cast by MuJoCo on the processor."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+
+from harness.cameras.picture_model import (
+    FLOOR_COLOUR,
+    FLOOR_LINES,
+    HORIZON,
+    LIGHT_DIRECTION,
+    SKY_TOP,
+    SOLID_GROUP,
+    PictureModel,
+)
+from harness.cameras.viewpoint import Viewpoint
+
+LIGHT_DISTANCE = 30.0
+"""How far the sun stands [m]; its shadows are cast from a point."""
+
+FLOOR_SPACING, LINE_WIDTH = 0.5, 0.006
+"""Of the floor's lines [m]."""
+
+FADE = 9.0
+"""Distance over which the floor fades into the horizon [m]."""
+
+AMBIENT, HEAD, SUN = 0.48, 0.25, 0.42
+"""Light from everywhere, from the camera, and from the sun."""
+
+
+_SOLID = np.eye(6, dtype=np.uint8)[SOLID_GROUP].copy()
+
+
+class RayRenderer:
+    """Draws with hard shadows; with oversampling, edges are averaged over smaller pixels."""
+
+    backend = "rays"
+
+    def __init__(
+        self, picture: PictureModel, width: int, height: int, oversampling: int = 1
+    ) -> None:
+        self._picture = picture
+        self._oversampling = oversampling
+        self._size = height * oversampling, width * oversampling
+
+    def render(self, viewpoint: Viewpoint) -> np.ndarray:
+        """What is seen from a viewpoint, RGB."""
+        model = self._picture.model
+        origin, rays = self._rays(viewpoint)
+        colour, geoms = self._colour(origin, rays, None)
+        behind = geoms >= 0
+        behind[behind] = model.geom_group[geoms[behind]] != SOLID_GROUP
+        if behind.any():
+            alpha = model.geom_rgba[geoms[behind], 3, None]
+            through, _ = self._colour(origin, rays[behind], _SOLID)
+            colour[behind] = alpha * colour[behind] + (1 - alpha) * through
+        height, width = self._size
+        step = self._oversampling
+        blocks = colour.reshape(height // step, step, width // step, step, 3)
+        return np.clip(255 * blocks.mean(axis=(1, 3)), 0, 255).astype(np.uint8)
+
+    def close(self) -> None:
+        """Nothing is held."""
+
+    def _rays(self, viewpoint: Viewpoint) -> tuple[np.ndarray, np.ndarray]:
+        height, width = self._size
+        focal = 0.5 * height / np.tan(np.radians(viewpoint.field_of_view) / 2)
+        u, v = np.meshgrid(
+            (np.arange(width) + 0.5 - width / 2) / focal,
+            (height / 2 - np.arange(height) - 0.5) / focal,
+        )
+        local = np.stack([u, v, -np.ones_like(u)], axis=-1).reshape(-1, 3)
+        local /= np.linalg.norm(local, axis=1, keepdims=True)
+        pose = viewpoint.pose
+        return pose.translation, local @ pose.rotation.T
+
+    def _cast(
+        self, origin: np.ndarray, rays: np.ndarray, groups: np.ndarray | None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Geom (-1: none), distance in ray lengths and surface normal of each ray's first hit."""
+        count = len(rays)
+        geoms, distances = np.empty(count, dtype=np.int32), np.empty(count)
+        normals = np.empty(3 * count)
+        mujoco.mj_multiRay(
+            self._picture.model,
+            self._picture.data,
+            origin,
+            np.ascontiguousarray(rays).ravel(),
+            groups,
+            True,
+            -1,
+            geoms,
+            distances,
+            normals,
+            count,
+            1e10,
+        )
+        return geoms, distances, normals.reshape(-1, 3)
+
+    def _colour(
+        self, origin: np.ndarray, rays: np.ndarray, groups: np.ndarray | None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Colour, shape (N, 3) in 0..1, and geom of each ray's first hit."""
+        geoms, distances, normals = self._cast(origin, rays, groups)
+        rise = np.clip(rays[:, 2:], 0, 1)
+        colour = (1 - rise) * np.array(HORIZON) + rise * np.array(SKY_TOP)
+        hit = np.flatnonzero(geoms >= 0)
+        points = origin + rays[hit] * distances[hit, None]
+        base = self._picture.model.geom_rgba[geoms[hit], :3].copy()
+        floor = geoms[hit] == 0
+        base[floor] = _floor_colour(points[floor])
+        facing = np.abs(np.einsum("ij,ij->i", normals[hit], rays[hit]))
+        towards_sun = -np.array(LIGHT_DIRECTION) / np.linalg.norm(LIGHT_DIRECTION)
+        turned = np.where(np.einsum("ij,ij->i", normals[hit], rays[hit]) > 0, -1.0, 1.0)
+        sun = np.clip(turned * (normals[hit] @ towards_sun), 0, 1) * self._lit(points, towards_sun)
+        shade = AMBIENT + HEAD * facing + SUN * sun
+        drawn = np.clip(base * shade[:, None], 0, 1)
+        fade = np.where(floor, np.clip(distances[hit] / FADE - 0.3, 0, 1), 0)[:, None]
+        colour[hit] = (1 - fade) * drawn + fade * np.array(HORIZON)
+        return colour, geoms
+
+    def _lit(self, points: np.ndarray, towards_sun: np.ndarray) -> np.ndarray:
+        """0 in shadow, 1 in the sun, for each point."""
+        sun = LIGHT_DISTANCE * towards_sun
+        to_points = points - sun
+        _, distances, _ = self._cast(sun, to_points, _SOLID)
+        return (distances < 0) | (distances > 1 - 0.003 / LIGHT_DISTANCE)
+
+
+def _floor_colour(points: np.ndarray) -> np.ndarray:
+    across = np.abs(points[:, :2] / FLOOR_SPACING - np.round(points[:, :2] / FLOOR_SPACING))
+    on_line = across.min(axis=1, keepdims=True) < 0.5 * LINE_WIDTH / FLOOR_SPACING
+    return np.where(on_line, FLOOR_LINES, FLOOR_COLOUR)

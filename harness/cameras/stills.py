@@ -1,0 +1,154 @@
+"""One picture of every executed step, drawn from the recorded state at its end."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from harness.cameras.picture_model import build_picture_model
+from harness.cameras.recorded_scene import poses_at
+from harness.cameras.renderer import Renderer, make_renderer
+from harness.cameras.robot_poses import link_poses
+from harness.cameras.viewpoint import Viewpoint, fit_viewpoint
+from harness.core.geometry import Plane, bounding_radius
+from harness.core.world import WorldObject
+from harness.recording.run import Run, StepRecord
+from harness.robot.description import RobotDescription
+
+WIDTH, HEIGHT = 640, 480
+STATES = 40
+"""Recorded states that the viewpoint is fitted to."""
+
+ON_THE_FLOOR_TOO = 1.3
+"""Objects farther from the base than this [m] do not widen the view."""
+
+INK = {"passed": (60, 130, 40), "expected_error": (60, 130, 40), "failed": (50, 40, 200)}
+"""Colour of a caption's status, BGR."""
+
+
+@dataclass(frozen=True)
+class StillsReport:
+    """What was drawn.
+
+    Attributes:
+        backend: `egl`, `osmesa` or `rays`; empty when no step was executed.
+        files: In order of the steps.
+        note: One line for a person when the best backend was not there; else empty.
+    """
+
+    backend: str
+    files: tuple[Path, ...]
+    note: str
+
+
+def save_stills(
+    description: RobotDescription,
+    world_objects: Sequence[WorldObject],
+    run: Run,
+    folder: Path,
+    *,
+    backend: str = "auto",
+) -> StillsReport:
+    """Write a JPEG of every executed step, 640 x 480, as things stood at its end.
+
+    Objects of the planning scene alone are translucent, attached ones where the planner believes
+    them.
+
+    Args:
+        description: The robot, with its visuals.
+        world_objects: Everything that took part.
+        run: What happened.
+        folder: Made if needed; files are numbered in order of the steps.
+        backend: `auto`, `egl`, `osmesa` or `rays`.
+    """
+    steps = [step for step in run.steps if step.status != "not_reached"]
+    if not steps or not len(run.signals.times):
+        return StillsReport("", (), "")
+    picture = build_picture_model(
+        description,
+        world_objects,
+        floor_height=_floor_height(description, world_objects),
+        width=WIDTH,
+        height=HEIGHT,
+    )
+    viewpoint = overview(description, world_objects, run)
+    renderer = make_renderer(picture, WIDTH, HEIGHT, backend)
+    folder.mkdir(parents=True, exist_ok=True)
+    files: list[Path] = []
+    try:
+        for number, step in enumerate(steps, start=1):
+            sample = min(max(step.end_index - 1, 0), len(run.signals.times) - 1)
+            picture.pose(poses_at(description, world_objects, run, sample, step.end_time))
+            files.append(folder / f"{number:02d}-{_slug(step.id)}.jpg")
+            _write(files[-1], renderer, viewpoint, step, f"{number}/{len(steps)}")
+    finally:
+        renderer.close()
+    note = ""
+    if renderer.backend == "rays" and backend == "auto":
+        note = "pictures by the ray camera: this machine has neither EGL nor OSMesa"
+    return StillsReport(renderer.backend, tuple(files), note)
+
+
+def overview(
+    description: RobotDescription, world_objects: Sequence[WorldObject], run: Run
+) -> Viewpoint:
+    """A view that holds the robot in all its poses and the objects around it."""
+    last = len(run.signals.times) - 1
+    points: list[np.ndarray] = []
+    radii: list[float] = []
+    link_sizes = {
+        link.name: max((bounding_radius(shape) for shape in link.collisions), default=0.03)
+        for link in description.links
+    }
+    samples = np.unique(np.linspace(0, last, STATES).astype(int))
+    for sample in samples:
+        poses = link_poses(description, run.signals.joint_positions[sample])
+        for name, size in link_sizes.items():
+            if name != "world":
+                points.append(poses[name].translation)
+                radii.append(min(size, 0.15))
+    base = link_poses(description, run.signals.joint_positions[0])[description.base_link]
+    for sample in (0, last):
+        scene = poses_at(description, world_objects, run, int(sample), None)
+        for obj in world_objects:
+            size = max((bounding_radius(shape) for shape in obj.shapes), default=0.0)
+            pose = scene.get(obj.name)
+            if pose is None or not size < 0.6:
+                continue
+            if np.linalg.norm(pose.translation - base.translation) < ON_THE_FLOOR_TOO:
+                points.append(pose.translation)
+                radii.append(size)
+    return fit_viewpoint(np.array(points), np.array(radii), WIDTH, HEIGHT)
+
+
+def _floor_height(description: RobotDescription, world_objects: Sequence[WorldObject]) -> float:
+    for obj in world_objects:
+        for shape in obj.shapes:
+            if isinstance(shape.geometry, Plane):
+                return float((obj.pose @ shape.pose).translation[2])
+    base = link_poses(description, description.start_positions())[description.base_link]
+    return min(0.0, float(base.translation[2]))
+
+
+def _slug(text: str) -> str:
+    return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:48] or "step"
+
+
+def _write(
+    file: Path, renderer: Renderer, viewpoint: Viewpoint, step: StepRecord, number: str
+) -> None:
+    picture = np.ascontiguousarray(renderer.render(viewpoint)[:, :, ::-1])
+    font, line = cv2.FONT_HERSHEY_SIMPLEX, cv2.LINE_AA
+    picture[-26:] = (0.25 * picture[-26:] + 0.75 * 255).astype(np.uint8)
+    text = f"{number}  {step.summary or step.verb}"[:62]
+    ink = INK.get(step.status, (60, 60, 60))
+    cv2.putText(picture, text, (10, HEIGHT - 9), font, 0.45, (50, 45, 40), 1, line)
+    right = f"{step.end_time:.2f} s  {step.status.replace('_', ' ')}"
+    (wide, _), _ = cv2.getTextSize(right, font, 0.45, 1)
+    cv2.putText(picture, right, (WIDTH - 10 - wide, HEIGHT - 9), font, 0.45, ink, 1, line)
+    cv2.imwrite(str(file), picture, [cv2.IMWRITE_JPEG_QUALITY, 92])
