@@ -12,6 +12,7 @@ from pathlib import Path
 
 from harness.reporting.result import CaseResult, ProgressEvent
 from harness.suite.environment import use_one_thread
+from harness.suite.leftovers import clean_leftovers
 from harness.suite.warm import Ended, Heard, WarmServer
 
 HARD_CAP_SECONDS = 600.0
@@ -103,26 +104,42 @@ def run_isolated(
     cap = hard_cap_seconds() if hard_cap is None else hard_cap
     waiting = list(enumerate(jobs))[::-1]
     running: dict[int, _Running] = {}
-    server.open()
-    while waiting or running:
-        while waiting and len(running) < workers:
-            index, job = waiting.pop()
-            number = server.start(function, job)
-            running[number] = _Running(index, job, time.monotonic() + cap)
-        patience = min(case.deadline for case in running.values()) - time.monotonic()
-        for event in server.wait(min(max(0.0, patience), LONGEST_WAIT)):
-            case = running[event.job]
-            match event:
-                case Heard(message=message):
-                    case.last = message
-                    watch(case.index, message)
-                case Ended():
-                    del running[event.job]
-                    yield case.index, _result(case, event, cap)
-        for number, case in running.items():
-            if time.monotonic() >= case.deadline and not case.is_over_cap:
-                case.is_over_cap, case.deadline = True, float("inf")
-                server.kill(number)
+    try:
+        while waiting or running:
+            while waiting and len(running) < workers:
+                index, job = waiting.pop()
+                _clean(job)
+                number = server.start(function, job)
+                running[number] = _Running(index, job, time.monotonic() + cap)
+            for event in server.wait(_patience(running)):
+                case = running[event.job]
+                match event:
+                    case Heard(message=message):
+                        case.last = message
+                        watch(case.index, message)
+                    case Ended():
+                        del running[event.job]
+                        _clean(case.job)
+                        yield case.index, _result(case, event, cap)
+            for number, case in running.items():
+                if time.monotonic() >= case.deadline and not case.is_over_cap:
+                    case.is_over_cap, case.deadline = True, float("inf")
+                    server.kill(number)
+    except BaseException:  # Ctrl-C above all, perhaps in the middle of a message
+        server.close()
+        for case in running.values():
+            _clean(case.job)
+        raise
+
+
+def _patience(running: Mapping[int, _Running]) -> float:
+    nearest = min(case.deadline for case in running.values())
+    return min(max(0.0, nearest - time.monotonic()), LONGEST_WAIT)
+
+
+def _clean(job: CaseJob) -> None:
+    if job.report_dir is not None:
+        clean_leftovers(job.report_dir)
 
 
 def hard_cap_seconds() -> float:

@@ -119,6 +119,8 @@ class Server:
         finally:
             for pid in self._jobs:
                 _kill_group(pid)
+            for pid in self._jobs:  # so that the caller finds none alive, nor half dead
+                os.waitpid(pid, 0)
             os._exit(0)  # no interpreter's end: native libraries print about leaks there
 
     def _obey(self) -> None:
