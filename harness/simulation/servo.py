@@ -28,8 +28,8 @@ An estimate, as data sheets give neither rotor nor gear inertia: at full effort 
 accelerate its own rotor faster than 1000 rad/s^2.
 """
 
-GRIPPER_SATURATION = 0.005
-"""Part of its range by which a gripper's joint may lag when it already presses with full effort."""
+GRIPPER_SATURATION = 0.0025
+"""Part of its range by which a gripper's joint lags when it presses with its usual grip effort."""
 
 GRIPPER_BANDWIDTH_PER_STEP = 0.5
 """As BANDWIDTH_PER_STEP; a gripper's stiffness is given by its saturation, so its rotor follows."""
@@ -84,7 +84,7 @@ def design_servos(description: RobotDescription, timestep: float) -> Servos:
         index = [joint.name for joint in actuated].index(gripper.joint)
         play = GRIPPER_SATURATION * abs(gripper.closed_position - gripper.open_position)
         frequency[index] = GRIPPER_BANDWIDTH_PER_STEP / timestep
-        needed = gripper.max_effort / play / frequency[index] ** 2
+        needed = gripper.grip_effort / play / frequency[index] ** 2
         rotor[index] = max(rotor[index], needed - inertia[index])
         effort[index] = gripper.max_effort
     total = inertia + rotor
