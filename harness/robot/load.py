@@ -18,9 +18,10 @@ from harness.robot.compose import Part, compose
 from harness.robot.description import Joint, NamedState, RobotDescription
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml
 from harness.robot.srdf import parse_srdf, write_srdf
-from harness.robot.urdf import Urdf, parse_urdf, write_urdf
+from harness.robot.urdf import Urdf, parse_urdf, parse_xml, write_urdf
 from harness.spec.scenario import JointLimits, RobotSpec, StartState
 
+XACRO_ARG = "{http://www.ros.org/wiki/xacro}arg"
 LATER = ("urdf", "xacro", "mjcf", "kinematics")
 
 
@@ -132,6 +133,13 @@ def _rendered(path: Path, xacro_file: XacroFile, variant: str, args: Mapping[str
     """The URDF text of a xacro file."""
     import xacro  # here: parsing plain URDFs does not need it
 
+    declared = {item.get("name") for item in parse_xml(_text(path), str(path)).iter(XACRO_ARG)}
+    for key in args:
+        if key not in declared or key == xacro_file.variant_arg:
+            known = ", ".join(sorted(filter(None, declared - {xacro_file.variant_arg})))
+            raise RobotError(
+                f"robot.args: {path.name} takes no argument '{key}'; known are {known}"
+            )
     mappings = {key: str(value) for key, value in args.items()}
     if xacro_file.variant_arg and variant:
         mappings[xacro_file.variant_arg] = variant
