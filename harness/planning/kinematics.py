@@ -159,7 +159,7 @@ class PinocchioKinematics:
                 outside.append(turned)
             elif all(space.distance(turned, other) > 1e-6 for other in inside):
                 inside.append(turned)
-        inside.sort(key=lambda q: (round(space.distance(reference, q), 9), tuple(q)))
+        inside.sort(key=lambda q: (round(space.effort(reference, q), 9), tuple(q)))
         return inside, outside
 
     def _ur(

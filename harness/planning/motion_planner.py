@@ -223,9 +223,9 @@ class VerifiedPlanner:
     ) -> tuple[FloatArray, JointTrajectory] | None:
         """A verified straight motion to the first goal that has one, or None."""
         space, checker = task.space, task.checker
-        nearest = space.distance(task.start, goals[0])
+        nearest = space.effort(task.start, goals[0])
         for end in goals:
-            if space.distance(task.start, end) > LONGEST_DETOUR * nearest + 1e-9:
+            if space.effort(task.start, end) > LONGEST_DETOUR * nearest + 1e-9:
                 break
             if checker.edge_free(task.start, end, FINAL_RESOLUTION):
                 trajectory = time_straight(space.joint_names, task.start, end, task.limits)

@@ -96,6 +96,7 @@ class GroupSpace:
         velocity: Limits, shape (dof,).
         acceleration: Limits, shape (dof,).
         metric: Weights of joint-space distances, shape (dof,).
+        leverage: Share of the arm's reach that each joint moves, 0.1 to 1, shape (dof,).
         wraps: Which joints turn, so that a whole turn more is the same place, shape (dof,).
     """
 
@@ -111,6 +112,7 @@ class GroupSpace:
         self.acceleration: FloatArray = np.array([joint.acceleration for joint in joints], float)
         self.wraps: BoolArray = np.array([joint.kind != "prismatic" for joint in joints], bool)
         self.metric: FloatArray = np.where(self.wraps, 1.0, METRES_TO_RADIANS)
+        self.leverage: FloatArray = _leverage(description, self.joint_names)
         self.indices = list(description.group_indices(group))
         self.offset, self.matrix = self._embedding(np.asarray(reference, dtype=float))
 
@@ -143,3 +145,29 @@ class GroupSpace:
     def distance(self, first: FloatArray, second: FloatArray) -> float:
         """Joint-space distance, metres weighted [rad]."""
         return float(np.linalg.norm((second - first) * self.metric))
+
+    def effort(self, first: FloatArray, second: FloatArray) -> float:
+        """How much of the arm moves between two positions: turns weighted by the reach behind them."""
+        return float(np.linalg.norm((second - first) * self.metric * self.leverage))
+
+
+def _leverage(description: RobotDescription, joint_names: tuple[str, ...]) -> FloatArray:
+    """Length of the chain behind each joint over the longest, so that a wrist's turn counts less."""
+    before = {joint.child: joint for joint in description.joints}
+    last = description.joint_by_name[joint_names[-1]].child
+    tips = [group.tip_link for group in description.groups.values() if group.tip_link]
+    chains = []
+    for tip in (*tips, last):
+        chain, link = [], tip
+        while link in before:
+            chain.append(before[link])
+            link = before[link].parent
+        if all(description.joint_by_name[name] in chain for name in joint_names):
+            chains.append(chain)
+    if not chains:
+        return np.ones(len(joint_names))
+    chain = max(chains, key=len)
+    lengths = [float(np.linalg.norm(joint.pose.translation)) for joint in chain]
+    behind = {joint.name: sum(lengths[:index]) for index, joint in enumerate(chain)}
+    reach = np.array([behind[name] for name in joint_names])
+    return np.maximum(reach / max(float(reach.max()), 1e-9), 0.1)

@@ -1,0 +1,193 @@
+"""Distances along a recorded run: robot to objects and itself, held objects to other objects."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from harness.core.types import BoolArray, FloatArray, IntArray
+from harness.planning.body_tracks import (
+    Track,
+    TrackedShape,
+    carried_track,
+    link_track,
+    links_with_shapes,
+    object_track,
+    relative,
+    tracked_shapes,
+)
+from harness.planning.forward_kinematics import LinkPoses
+from harness.planning.nearest import ShapePair, pairs_between, smallest_distances
+from harness.planning.robot_model import RobotModel
+from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
+from harness.robot.description import RobotDescription
+
+ROBOT = "robot"
+
+
+@dataclass(eq=False)
+class _Clearances:
+    """What is being filled in."""
+
+    count: int
+    distances: dict[tuple[str, str], FloatArray] = field(default_factory=dict)
+    links: dict[tuple[str, str], IntArray] = field(default_factory=dict)
+
+    def put(
+        self,
+        key: tuple[str, str],
+        samples: BoolArray,
+        distances: FloatArray,
+        links: IntArray | None,
+    ) -> None:
+        """Set a pair's distances at some samples; NaN elsewhere until set."""
+        if key not in self.distances:
+            self.distances[key] = np.full(self.count, np.nan)
+        self.distances[key][samples] = distances
+        if links is not None:
+            if key not in self.links:
+                self.links[key] = np.full(self.count, -1, dtype=np.int64)
+            self.links[key][samples] = links
+
+
+class CoalClearance:
+    """The port `ClearanceObserver` for a composed robot."""
+
+    def __init__(self, description: RobotDescription) -> None:
+        self.description = description
+        self._robot = RobotModel(description)
+        self._shapes = links_with_shapes({link.name: link.collisions for link in description.links})
+        self._index = {name: index for index, name in enumerate(description.link_names)}
+
+    def observe(
+        self,
+        signals: Signals,
+        objects: Sequence[ObjectRecord],
+        attachments: Sequence[AttachmentRecord],
+        cutoff: float,
+    ) -> Signals:
+        """The same signals with `clearances` and `clearance_links` filled in."""
+        found = _Clearances(len(signals.times))
+        if found.count:
+            links = LinkPoses(self.description, signals.joint_positions)
+            tracks = {
+                record.name: object_track(record, attachments, signals, links) for record in objects
+            }
+            shapes = {record.name: tracked_shapes(record.name, record.shapes) for record in objects}
+            self._robot_to_itself(found, links, cutoff)
+            for record in objects:
+                there = tracks[record.name].present & ~_held(record.name, attachments, signals)
+                self._robot_to_object(
+                    found, links, record, tracks[record.name], shapes[record.name], there, cutoff
+                )
+            for attachment in attachments:
+                self._held_to_objects(
+                    found, links, attachment, objects, tracks, shapes, signals, cutoff
+                )
+        return replace(
+            signals,
+            clearances=found.distances,
+            clearance_links=found.links,
+            clearance_cutoff=cutoff,
+        )
+
+    def _robot_to_itself(self, found: _Clearances, links: LinkPoses, cutoff: float) -> None:
+        names = list(self._shapes)
+        pairs: list[ShapePair] = []
+        for later, second in enumerate(names):
+            for first in names[:later]:
+                if self._is_self_pair(first, second):
+                    seen = relative(link_track(links, first), link_track(links, second))
+                    pairs += pairs_between(self._shapes[first], self._shapes[second], seen)
+        if pairs:
+            everywhere = np.ones(found.count, dtype=bool)
+            self._measure(found, (ROBOT, ROBOT), everywhere, pairs, cutoff)
+
+    def _robot_to_object(
+        self,
+        found: _Clearances,
+        links: LinkPoses,
+        record: ObjectRecord,
+        track: Track,
+        shapes: Sequence[TrackedShape],
+        there: BoolArray,
+        cutoff: float,
+    ) -> None:
+        if not there.any() or not shapes:
+            return
+        standing = self.description.static_links if record.is_static else frozenset()
+        pairs: list[ShapePair] = []
+        for link, link_shapes in self._shapes.items():
+            if link not in standing:
+                seen = relative(link_track(links, link).part(there), track.part(there))
+                pairs += pairs_between(link_shapes, shapes, seen)
+        if pairs:
+            self._measure(found, (ROBOT, record.name), there, pairs, cutoff)
+
+    def _held_to_objects(
+        self,
+        found: _Clearances,
+        links: LinkPoses,
+        attachment: AttachmentRecord,
+        objects: Sequence[ObjectRecord],
+        tracks: Mapping[str, Track],
+        shapes: Mapping[str, Sequence[TrackedShape]],
+        signals: Signals,
+        cutoff: float,
+    ) -> None:
+        """Distances of what is held, as the physics has it and, under its own name, as believed."""
+        times = signals.times
+        during = (times >= attachment.start_time) & (times <= attachment.end_time)
+        believed = carried_track(link_track(links, attachment.link), attachment.pose_in_link)
+        held: dict[str, Track] = {attachment.object: believed}
+        for name in (attachment.object, attachment.represents):
+            if name in signals.object_poses and name in tracks:
+                held[name] = tracks[name]
+        same = {attachment.object, attachment.represents}
+        for name, track in held.items():
+            for record in objects:
+                other = tracks[record.name]
+                there = during & track.present & other.present
+                there &= ~_held(record.name, (attachment,), signals)
+                if record.name in same or not there.any():
+                    continue
+                seen = relative(track.part(there), other.part(there))
+                pairs = pairs_between(shapes.get(name, ()), shapes[record.name], seen)
+                if pairs:
+                    distances, _ = smallest_distances(pairs, cutoff)
+                    found.put((name, record.name), there, distances, None)
+
+    def _measure(
+        self,
+        found: _Clearances,
+        key: tuple[str, str],
+        there: BoolArray,
+        pairs: Sequence[ShapePair],
+        cutoff: float,
+    ) -> None:
+        distances, which = smallest_distances(pairs, cutoff)
+        of_pair = np.array([self._index[pair.first.body] for pair in pairs] + [-1])
+        found.put(key, there, distances, of_pair[which])
+
+    def _is_self_pair(self, first: str, second: str) -> bool:
+        robot = self._robot
+        if robot.parent_joint(first) == robot.parent_joint(second):
+            return False
+        key = (first, second) if first <= second else (second, first)
+        if key in self.description.allowed_collisions:
+            return False
+        return not any(
+            {joint.parent, joint.child} == {first, second} for joint in self.description.joints
+        )
+
+
+def _held(name: str, attachments: Sequence[AttachmentRecord], signals: Signals) -> BoolArray:
+    """Samples in which an object, or what represents it, is attached."""
+    times = signals.times
+    held = np.zeros(len(times), dtype=bool)
+    for attachment in attachments:
+        if name in (attachment.object, attachment.represents):
+            held |= (times >= attachment.start_time) & (times <= attachment.end_time)
+    return held
