@@ -3,6 +3,7 @@
 A contact of two bodies is no collision where
 - the pair is allowed for the run, or by the `allow_collisions` step it happens in;
 - a link that cannot move stands on an object that cannot;
+- the fingers of the gripper meet, closing on nothing;
 - fingers or palm grip an object: see `_gripping`;
 - two objects touch, none of them in the hand (a box that stands on a table);
 - an object in the hand still touches what it touched when it was gripped, until it leaves that, or
@@ -62,7 +63,7 @@ def collision(check: Collision, window: Window) -> MarginSignal:
     distance, name = _distance(window, check, pairs)
     if distance is None:
         values = np.full(len(window.times), -1.0)
-        return MarginSignal(values, "1", lambda _: Evidence("no collision"))
+        return MarginSignal(values, "1", lambda _: Evidence("no collision", is_moment=False))
     spoken = np.nan_to_num(distance, nan=np.inf)
 
     def evidence(index: int) -> Evidence:
@@ -99,7 +100,7 @@ def _collided(window: Window, forces: dict[Pair, FloatArray]) -> MarginSignal:
         if total[index] <= 0:
             return Evidence("no collision at this moment", tuple(measures))
         more = f"; and {len(texts) - 2} more pairs" if len(texts) > 2 else ""
-        return Evidence("; ".join(texts[:2]) + more, tuple(measures[:4]))
+        return Evidence("; ".join(texts[:2]) + more, tuple(measures[:4]), is_moment=False)
 
     return MarginSignal(values, "N", evidence)
 
@@ -145,7 +146,9 @@ def colliding(run: Run, pair: Pair) -> BoolArray:
     links = frozenset(run.robot.link_names)
     moving = [name for name in pair if name in links]
     if len(moving) == 2:
-        return touching
+        gripper = run.robot.gripper
+        fingers_meet = gripper is not None and set(pair) <= finger_links(gripper)
+        return np.zeros_like(touching) if fingers_meet else touching
     if not moving:
         return touching & (_hits_from_hand(run, *pair) | _hits_from_hand(run, *pair[::-1]))
     (link,) = moving

@@ -136,10 +136,7 @@ def slip(check: Slip, window: Window) -> MarginSignal:
             " carries it"
         )
 
-    signal_ = all_of(window, parts, text)
-    applies = window.cut(held)
-    values = np.where(applies, signal_.values, np.nan)
-    return MarginSignal(values, signal_.unit, signal_.evidence, applies=applies)
+    return all_of(window, parts, text, applies=window.cut(held))
 
 
 def _drift(run: Run, name: str) -> tuple[str, FloatArray, FloatArray, BoolArray]:

@@ -130,24 +130,21 @@ def _decide(terms: _Terms, window: Window, margins: MarginSignal) -> Verdict:
     except TooShort:
         return _too_short(terms, times[chosen])
     index = int(chosen[decision.index])
-    evidence = margins.evidence(index)
-    margin = decision.value + 0.0
-    unit = margins.unit
-    if not math.isfinite(margin):
+    time = window.time(index)
+    status: VerdictStatus = "passed" if decision.holds else "failed"
+    if not math.isfinite(decision.value):
         if decision.holds:
             raise NotReached("what it is about was not there for that long")
-        margin = float("nan")
-        reason = f"not known, or not there, at t={window.time(index):.3f} s"
-    else:
-        if evidence.margin is not None:
-            margin = (-evidence.margin if terms.word == "never" else evidence.margin) + 0.0
-            unit = evidence.unit
-        reason = f"{evidence.text} at t={window.time(index):.3f} s"
-    status: VerdictStatus = "passed" if decision.holds else "failed"
+        return Verdict("", status, time=time, reason=f"not known, or not there, at t={time:.3f} s")
+    evidence = margins.evidence(index)
+    margin, unit = decision.value, margins.unit
+    if evidence.margin is not None:
+        margin = -evidence.margin if terms.word == "never" else evidence.margin
+        unit = evidence.unit
+    reason = evidence.text + (f" at t={time:.3f} s" if evidence.is_moment else "")
     reason += _held(terms, values, times, decision)
-    return Verdict(
-        "", status, margin, unit, window.time(index), reason=reason, measures=evidence.measures
-    )
+    measures = evidence.measures
+    return Verdict("", status, margin + 0.0, unit, time, reason=reason, measures=measures)
 
 
 def _reduce(

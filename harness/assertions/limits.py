@@ -119,7 +119,7 @@ def tracking_error(check: TrackingError, window: Window) -> MarginSignal:
     def text(_: int, measure: Measure) -> str:
         return f"{measure.detail} is {amount(measure.value, measure.unit)} from its command"
 
-    return all_of(window, parts, text, present=some, shown=3)
+    return all_of(window, parts, text, applies=some, shown=3)
 
 
 @signal.handles(Effort)

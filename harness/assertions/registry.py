@@ -24,12 +24,14 @@ class Evidence:
         measures: The tightest first.
         margin: In `unit`, where it says more than the signal's value; else None.
         unit: Of `margin`.
+        is_moment: Whether the text speaks of the sample, rather than of all the time judged.
     """
 
     text: str
     measures: tuple[Measure, ...] = ()
     margin: float | None = None
     unit: str = ""
+    is_moment: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +104,9 @@ def all_of(
     text: Callable[[int, Measure], str],
     *,
     present: BoolArray | None = None,
+    applies: BoolArray | None = None,
     shown: int = 4,
+    is_moment: bool = True,
 ) -> MarginSignal:
     """The signal of a predicate that holds where all of its parts do.
 
@@ -114,19 +118,19 @@ def all_of(
         parts: At least one.
         text: What to say of a sample, given its index and its tightest measure.
         present: Samples at which there is something to judge; NaN elsewhere.
+        applies: Samples of which it speaks, as in `MarginSignal`.
         shown: How many measures a verdict shows.
+        is_moment: Whether the text speaks of the sample.
     """
     rows: FloatArray = np.stack([part.shares() for part in parts])
     values: FloatArray = rows.min(axis=0)  # NaN in any part is NaN
     if len(parts) == 1 and parts[0].relevant is None:
         values = parts[0].margins()
-    if present is not None:
-        values = np.where(present, values, np.nan)
+    for mask in (present, applies):
+        values = values if mask is None else np.where(mask, values, np.nan)
 
     def evidence(index: int) -> Evidence:
-        shares = [
-            float(share) for share in np.nan_to_num(rows[:, index], nan=-np.inf, posinf=np.inf)
-        ]
+        shares = [float(share) for share in rows[:, index]]
         order = sorted(range(len(parts)), key=shares.__getitem__)
         chosen = [parts[place] for place in order if shares[place] != math.inf][:shown]
         measures = tuple(
@@ -143,6 +147,7 @@ def all_of(
         )
         unit = "1" if chosen[0].comparison == "==" else chosen[0].unit
         margin = float(chosen[0].margins()[index])
-        return Evidence(text(index, measures[0]), measures, margin, unit)
+        return Evidence(text(index, measures[0]), measures, margin, unit, is_moment)
 
-    return MarginSignal(values, parts[0].unit if len(parts) == 1 else "1", evidence)
+    unit = parts[0].unit if len(parts) == 1 else "1"
+    return MarginSignal(values, unit, evidence, applies)

@@ -21,6 +21,7 @@ def tcp_pose(check: TcpPose, window: Window) -> MarginSignal:
     """
     run = window.run
     link = check.link or run.robot.tcp_link
+    what = "TCP" if link == run.robot.tcp_link else link
     target = window.cut(frame_poses(run, check.pose.frame))
     target = compose(target, check.pose.se3().as_vector())
     actual = window.cut(link_poses(run, link))
@@ -29,16 +30,16 @@ def tcp_pose(check: TcpPose, window: Window) -> MarginSignal:
         axis=1
     )
     tolerance = check.tolerance
-    parts = [Part(f"{link} position error", distance, tolerance.position, "<=", "m")]
+    parts = [Part(f"{what} position error", distance, tolerance.position, "<=", "m")]
     if not check.position_only:
-        parts.append(Part(f"{link} orientation error", turn, tolerance.orientation, "<=", "rad"))
+        parts.append(Part(f"{what} orientation error", turn, tolerance.orientation, "<=", "rad"))
 
     def text(index: int, _: Measure) -> str:
         errors = " and ".join(
             f"{amount(float(part.values[index]), part.unit)} of {amount(part.limit, part.unit)}"
             for part in parts
         )
-        return f"{link} is off its target by {errors}"
+        return f"{what} is off its target by {errors}"
 
     return all_of(window, parts, text)
 

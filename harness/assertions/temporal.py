@@ -92,7 +92,8 @@ def eventually(
         times: Of the samples [s], shape (n,).
         hold: Must be held so long without a break [s].
         within: Latest beginning after the first sample [s].
-        progress: Chooses the deciding sample among equal margins, shape (n,).
+        progress: Chooses the deciding sample among equal margins, shape (n,); among spans of equal
+            margins the one with most samples that hold is chosen.
 
     Raises:
         TooShort: No sample that may begin it has `hold` seconds behind it.
@@ -109,7 +110,8 @@ def eventually(
     if len(starts) == 0:
         raise TooShort
     minima = range_min(values, starts, ends)
-    best = _best(minima, None if progress is None else progress[starts])
+    holding = np.concatenate([[0], np.cumsum(values >= 0)])
+    best = _best(minima, (holding[ends + 1] - holding[starts]).astype(float))
     index = int(starts[best] + np.argmin(values[starts[best] : ends[best] + 1]))
     return Decision(float(minima[best]), index, bool(minima[best] >= 0))
 

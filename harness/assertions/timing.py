@@ -38,4 +38,4 @@ def duration(check: DurationCheck, window: Window) -> MarginSignal:
         bound = "at most" if measure.comparison == "<=" else "at least"
         return f"took {measure.value:.3f} s, {bound} {measure.limit:.3f} s"
 
-    return all_of(window, parts, text)
+    return all_of(window, parts, text, is_moment=False)

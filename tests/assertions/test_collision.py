@@ -1,0 +1,192 @@
+"""Which contacts are collisions, and what a collision's verdict says."""
+
+import numpy as np
+import pytest
+
+from harness.core.geometry import Box
+from harness.spec.checks import Collision, Eventually, Never
+from tests.assertions.synthetic_run import (
+    BOX,
+    TABLE,
+    attachment,
+    changed,
+    force,
+    lift_run,
+    make_run,
+    step,
+    thing,
+    verdict,
+)
+
+NEVER = Never(predicate=Collision())
+WALL = thing("wall", Box((0.02, 1, 1)), static=True, pose=(1, 0, 0.5, 1, 0, 0, 0))
+
+
+def collides(run, spec=NEVER, step_id=""):
+    return {"passed": False, "failed": True}[verdict(run, spec, step_id).status]
+
+
+def touching(a, b, *spans, run=None, value=1.0, **changes):
+    """A run with one more contact."""
+    base = run or make_run(objects=(TABLE, BOX, WALL), **changes)
+    n = len(base.signals.times)
+    forces = {**base.signals.contact_forces, (a, b): force(n, *spans, value=value)}
+    return changed(base, contact_forces=forces)
+
+
+def test_a_link_that_hits_a_wall_is_told_with_pair_force_first_time_and_duration():
+    run = touching("arm_link", "wall", (30, 41), (60, 62), value=12.0)
+    answer = verdict(run, NEVER)
+    assert answer.status == "failed"
+    assert (answer.margin, answer.unit, answer.time) == (-12.0, "N", pytest.approx(0.3))
+    assert answer.reason == (
+        "arm_link and wall collide from t=0.300 s for 0.1 s, with up to 12.0 N"
+    )
+    assert answer.measures[0].detail == "arm_link and wall"
+    assert verdict(run, Collision(between=("robot", "wall"))).status == "passed"
+
+
+def test_the_least_force_between_robot_and_wall_is_a_collision():
+    assert collides(touching("arm_link", "wall", (30, 31), value=1e-9))
+    assert not collides(touching("arm_link", "wall"))
+
+
+def test_between_picks_the_pair():
+    run = touching("arm_link", "wall", (30, 41))
+    for pair, expected in (
+        (("robot", "wall"), True),
+        (("wall", "any"), True),
+        (("arm_link", "wall"), True),
+        (("gripper", "wall"), False),
+        (("robot", "Table"), False),
+    ):
+        assert collides(run, Never(predicate=Collision(between=pair))) is expected
+    unknown = verdict(run, Never(predicate=Collision(between=("robot", "ghost"))))
+    assert unknown.status == "not observable"
+
+
+def test_no_collision_reports_the_distance_that_was_left():
+    wall = np.full(200, 0.15)
+    wall[80] = 0.03
+    run = make_run(
+        objects=(TABLE, BOX, WALL),
+        clearances={("robot", "wall"): wall, ("robot", "robot"): np.full(200, 0.05)},
+    )
+    answer = verdict(run, Never(predicate=Collision(between=("robot", "wall"))))
+    assert (answer.status, answer.margin, answer.unit) == ("passed", 0.03, "m")
+    assert answer.time == pytest.approx(0.8)
+    assert verdict(make_run(), NEVER).unit == "1", "nothing was measured"
+    eventually = verdict(run, Eventually(predicate=Collision(between=("robot", "wall"))))
+    assert (eventually.status, eventually.margin) == ("failed", -0.03)
+
+
+def test_a_distance_of_zero_without_contact_is_no_collision():
+    run = make_run(objects=(WALL,), clearances={("robot", "wall"): np.zeros(200)})
+    assert not collides(run)
+
+
+def test_pairs_that_touch_by_design_are_no_collision():
+    assert collides(touching("arm_link", "palm", (0, 200)))
+    allowed = make_run(allowed_contacts=(("palm", "arm_link"),))
+    assert not collides(touching("arm_link", "palm", (0, 200), run=allowed))
+    assert not collides(touching("base_link", "Table", (0, 200)))
+    assert not collides(touching("left_finger", "right_finger", (50, 80)))
+
+
+def test_allow_collisions_holds_for_its_steps_only():
+    steps = (
+        step("free", 0, 50),
+        step(
+            "allowed",
+            50,
+            100,
+            "allow_collisions",
+            result={"allowed_collisions": [["robot", "wall"]]},
+        ),
+        step("later", 100, 200),
+    )
+    assert not collides(touching("arm_link", "wall", (60, 90), steps=steps))
+    assert collides(touching("arm_link", "wall", (90, 105), steps=steps))
+
+
+def test_a_pick_and_a_lift_are_no_collision():
+    assert not collides(lift_run())
+
+
+def test_a_finger_that_knocks_against_the_box_on_its_way_is_a_collision():
+    run = lift_run()
+    knocked = touching("left_finger", "box", (20, 25), (50, 200), run=run)
+    assert collides(knocked)
+    assert verdict(knocked, NEVER).time == pytest.approx(0.2)
+    assert not collides(knocked, NEVER, "lift")
+
+
+def test_the_arm_s_own_link_against_the_box_is_a_collision_even_while_it_is_gripped():
+    assert collides(touching("arm_link", "box", (120, 121), run=lift_run()))
+
+
+def test_a_finger_that_drags_the_box_after_letting_go_is_a_collision():
+    steps = (
+        step("close", 40, 80, "gripper"),
+        step("open", 80, 100, "gripper"),
+        step("rest", 100, 120, "wait"),
+        step("away", 120, 200),
+    )
+    both = force(200, (50, 85))
+    for until, expected in ((115, False), (125, True)):
+        run = make_run(
+            steps=steps,
+            contact_forces={
+                ("left_finger", "box"): force(200, (50, until)),
+                ("right_finger", "box"): both,
+                ("Table", "box"): force(200, (0, 200)),
+            },
+        )
+        assert collides(run) is expected
+
+
+def test_what_is_attached_may_be_touched_by_the_gripper():
+    steps = (step("move", 0, 200),)
+    attached = make_run(steps=steps, attachments=[attachment("box", 20, 200)])
+    assert not collides(touching("left_finger", "box", (30, 60), run=attached))
+    assert collides(touching("left_finger", "box", (10, 15), run=attached))
+
+
+def test_a_box_in_the_hand_that_hits_a_wall_is_a_collision_and_one_that_falls_is_not():
+    held = lift_run(objects=(TABLE, BOX, WALL))
+    assert collides(touching("box", "wall", (150, 155), run=held))
+    let_go = lift_run(objects=(TABLE, BOX, WALL), grip=(50, 140))
+    assert not collides(touching("box", "wall", (150, 155), run=let_go))
+    assert not collides(touching("box", "wall", (30, 35), run=held)), "before it was gripped"
+
+
+def test_setting_down_and_letting_go_is_no_collision_but_dragging_it_over_the_table_is():
+    def lowered(let_go):
+        z = np.full(200, 0.12)
+        z[:100] = 0.02
+        z[150:] = 0.02
+        base = lift_run(grip=(50, let_go))
+        poses = base.signals.object_poses["box"].copy()
+        poses[:, 2] = z
+        run = changed(base, object_poses={**base.signals.object_poses, "box": poses})
+        return touching("Table", "box", (0, 100), (150, 200), run=run)
+
+    assert not collides(lowered(180))
+    assert collides(lowered(200)), "still held at the end: it was never put down"
+
+
+def test_leaving_the_support_and_bumping_into_it_again_is_a_collision():
+    run = touching("Table", "box", (0, 100), (130, 135), run=lift_run())
+    assert collides(run)
+    within_a_tenth_of_a_second = touching("Table", "box", (0, 100), (105, 107), run=lift_run())
+    assert not collides(within_a_tenth_of_a_second)
+
+
+def test_objects_that_nobody_holds_may_touch():
+    assert not collides(touching("Table", "box", (0, 200)))
+    assert not collides(touching("box", "wall", (0, 200)))
+
+
+def test_a_step_that_was_not_reached_has_no_collisions_to_be_proud_of():
+    run = make_run(steps=(step("later", 200, 200, status="not_reached"),))
+    assert verdict(run, NEVER, "later").status == "not reached"

@@ -1,0 +1,124 @@
+"""What is executed, how an expectation is worded, what must be recorded."""
+
+import subprocess
+import sys
+from typing import get_args
+
+import pytest
+
+from harness.assertions.judge import EXECUTED, TEMPORAL, judge
+from harness.assertions.observations import observations
+from harness.assertions.placed import PlacedExpectation
+from harness.assertions.registry import signal
+from harness.assertions.wording import describe
+from harness.spec.checks import (
+    Always,
+    AnyExpectation,
+    AnyPredicate,
+    Clearance,
+    Collision,
+    Formula,
+    FractionCheck,
+    In,
+    Lifted,
+    Never,
+    Placed,
+    Sees,
+    Static,
+    TcpPath,
+    TcpPose,
+    Until,
+    WithinLimits,
+)
+from harness.spec.poses import Pose
+from tests.assertions.synthetic_run import lift_run, make_run, verdict
+
+REFUSED = {TcpPath, In, FractionCheck, Sees, Until, Formula}
+
+
+def test_every_model_is_executed_or_refused_and_none_is_silently_accepted():
+    models = set(get_args(AnyExpectation)) | set(get_args(AnyPredicate))
+    assert models == EXECUTED | REFUSED
+    assert not EXECUTED & REFUSED
+    assert set(signal) | set(TEMPORAL) == EXECUTED
+
+
+@pytest.mark.parametrize(
+    "spec",
+    [
+        In(object="box", container="bin"),
+        Always(predicate=Sees(camera="wrist")),
+        Until(predicate=Static(), until=Static()),
+        Formula(formula="G (x > 0)"),
+    ],
+)
+def test_a_refused_model_that_slips_through_is_not_observable(spec):
+    answer = verdict(make_run(), spec)
+    assert answer.status == "not observable"
+    assert "not yet available" in answer.reason
+
+
+@pytest.mark.parametrize(
+    ("spec", "text"),
+    [
+        (
+            Never(predicate=Collision(between=("robot", "Table"))),
+            "never: collision between robot and Table",
+        ),
+        (Always(predicate=WithinLimits()), "always: within_limits"),
+        (
+            Lifted(object="box", above="5 cm", **{"for": "1 s"}),
+            "lifted box, for 1.0 s, above 50.0 mm",
+        ),
+        (Clearance(at_least=0.01), "clearance between robot and any, at least 10.0 mm"),
+        (
+            TcpPose(pose=Pose(xyz=(0.1, 0, 0)), name="there"),
+            "there (tcp_pose, pose (xyz [0.1, 0, 0], frame world))",
+        ),
+        (Until(predicate=Static(), until=Static(object="box")), "until: static until static box"),
+    ],
+)
+def test_an_expectation_reads_like_the_file(spec, text):
+    assert describe(spec) == text
+
+
+def test_every_model_can_be_worded():
+    specs = [
+        In(object="box", container="bin"),
+        Sees(camera="wrist", color=(1, 0, 0, 1)),
+        FractionCheck(at_least=0.5),
+    ]
+    assert all("None" not in describe(spec) for spec in specs)
+
+
+def test_verdicts_keep_order_line_step_points_and_text():
+    placed = [
+        PlacedExpectation(Static(points=2), "", 12, "stands still"),
+        PlacedExpectation(Lifted(object="box"), "lift", 9),
+    ]
+    first, second = judge(lift_run(), placed)
+    assert (first.line, first.step, first.points, first.expectation) == (12, "", 2, "stands still")
+    assert (second.line, second.step, second.expectation) == (9, "lift", "lifted box")
+
+
+def test_observations_name_frames_and_a_sufficient_cutoff():
+    needed = observations(
+        [
+            TcpPose(link="wrist_3_link", pose=Pose(frame="base_link")),
+            Always(predicate=Clearance(at_least=0.3)),
+            Placed(object="box", pose=Pose(frame="Table")),
+        ]
+    )
+    assert needed.frames == ("Table", "base_link", "wrist_3_link")
+    assert needed.clearance_cutoff == pytest.approx(0.35)
+    assert observations([Clearance(at_least=0.01)]).clearance_cutoff == 0.15
+
+
+def test_judging_needs_neither_planner_nor_physics():
+    code = (
+        "import sys, harness.assertions.judge, harness.recording.store, harness.recording.digest;"
+        "heavy = {'mujoco', 'pinocchio', 'coal', 'ompl', 'toppra', 'scipy', 'cv2'};"
+        "sys.exit(', '.join(heavy & set(sys.modules)) or 0)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

@@ -1,0 +1,236 @@
+"""A run's folder: whole or not there, and read back equal."""
+
+import errno
+import json
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from harness.assertions.judge import judge
+from harness.assertions.placed import PlacedExpectation
+from harness.core.errors import HarnessError
+from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
+from harness.core.spatial import SE3
+from harness.recording.arrays import arrays_of
+from harness.recording.digest import digest
+from harness.recording.plain import to_plain
+from harness.recording.run import Finding
+from harness.recording.store import FORMAT, read_run, write_run
+from harness.spec.checks import Clearance, Grasped, Lifted, Static
+from tests.assertions.synthetic_run import ROBOT, attachment, lift_run, thing
+
+EXPECTED = [
+    PlacedExpectation(Lifted(object="box", above=0.05), "", 3),
+    PlacedExpectation(Lifted(object="box", above=0.5), "lift", 4),
+    PlacedExpectation(Grasped(object="box"), "", 5),
+    PlacedExpectation(Clearance(at_least=0.01), "", 6),
+    PlacedExpectation(Static(), "unknown", 7),
+]
+
+
+def full_run():
+    """A run with something in every field."""
+    run = lift_run(attachments=[attachment("box", 60, 200)])
+    shapes = (Cylinder(0.1, 0.2), Sphere(0.1), Capsule(0.1, 0.3), Plane(), Mesh(Path("a/b.stl")))
+    pose = SE3.from_xyz_rpy((0.1, 0.2, 0.3), (0.4, 0.5, 0.6))
+    odd = replace(
+        thing("ödd|na%me", Box((1, 2, 3))),
+        shapes=tuple(Shape(geometry, pose, name="part") for geometry in shapes),
+    )
+    first, *others = run.steps
+    times = np.array([0.0, 0.1])
+    first = replace(
+        first,
+        trajectory={
+            "joint_names": ["shoulder"],
+            "times": times,
+            "positions": np.array([[0.1], [1 / 3]]),
+        },
+        planner={"checks": 12, "length": float("inf"), "note": None},
+        explanation={"solutions": [{"positions": [0.1, float("nan")], "pair": ["a", "b"]}]},
+        result={"stalled": True},
+        expected_error="GOAL_IN_COLLISION",
+    )
+    signals = replace(
+        run.signals,
+        frames={"arm_link": run.signals.tcp_pose},
+        clearances={("robot", "ödd|na%me"): np.where(run.signals.times < 1, np.nan, 0.02)},
+        clearance_links={("robot", "ödd|na%me"): np.arange(200) % 4 - 1},
+        clearance_cutoff=0.2,
+    )
+    return replace(
+        run,
+        robot=replace(ROBOT, link_visuals={"palm": odd.shapes}, urdf="<robot/>"),
+        objects=(*run.objects, odd),
+        steps=(first, *others),
+        signals=signals,
+        allowed_contacts=(("palm", "arm_link"),),
+        findings=(Finding("note", "ran without a renderer", values={"tried": ["egl"]}),),
+        source="scenario: by hand\n",
+        resolved="scenario: by hand\r\nseed: 0 # ü\n",
+        versions={"mujoco": "4.0.0"},
+        ended_early="because",
+    )
+
+
+def written(folder, run=None, **options):
+    run = run or full_run()
+    verdicts = judge(run, EXPECTED)
+    write_run(folder, run, verdicts, "failed", digest(run, verdicts), {"plan": 0.25}, **options)
+    return run, verdicts
+
+
+def names_in(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def assert_equal_runs(a, b):
+    left, right = (to_plain(replace(run, signals=None, steps=())) for run in (a, b))
+    assert left == right
+    for one, other in zip(a.steps, b.steps, strict=True):
+        assert to_plain(replace(one, trajectory=None)) == to_plain(replace(other, trajectory=None))
+        assert (one.trajectory is None) == (other.trajectory is None)
+        for key, value in (one.trajectory or {}).items():
+            assert type(other.trajectory[key]) is type(value)
+            np.testing.assert_array_equal(other.trajectory[key], value)
+    arrays, others = arrays_of(a.signals), arrays_of(b.signals)
+    assert arrays.keys() == others.keys()
+    for name, array in arrays.items():
+        assert array.dtype == others[name].dtype
+        np.testing.assert_array_equal(array, others[name])
+    assert a.signals.clearance_cutoff == b.signals.clearance_cutoff
+
+
+def test_a_run_read_back_is_equal_and_judged_equally(tmp_path):
+    run, verdicts = written(tmp_path / "run")
+    stored = read_run(tmp_path / "run")
+    assert_equal_runs(run, stored.run)
+    assert type(stored.run.objects[2].shapes[4].geometry) is Mesh
+    assert stored.run.objects[2].shapes[0].pose.rotation.dtype == float
+    assert to_plain(stored.verdicts) == to_plain(verdicts)
+    assert to_plain(judge(stored.run, EXPECTED)) == to_plain(verdicts)
+    assert {verdict.status for verdict in verdicts} == {"passed", "failed", "not reached"}
+    assert stored.digest == digest(stored.run, stored.verdicts)
+    assert (stored.outcome, stored.wall_times) == ("failed", {"plan": 0.25})
+
+
+def test_run_json_has_the_keys_that_tools_read(tmp_path):
+    written(tmp_path / "run")
+    document = json.loads((tmp_path / "run" / "run.json").read_text())
+    keys = ["format", "scenario", "file", "case", "outcome", "digest", "seed", "steps", "verdicts"]
+    assert list(document)[:12] == [*keys, "findings", "versions", "wall_times"]
+    assert document["format"] == FORMAT
+    assert list(document["steps"][0])[:5] == ["id", "step", "status", "error_code", "sim_time"]
+    assert document["steps"][1]["sim_time"] == pytest.approx(0.4)
+    assert document["verdicts"][4]["margin"] == "NaN"
+    assert document["steps"][0]["planner"]["length"] == "Infinity"
+    resolved = (tmp_path / "run" / "scenario.resolved.yaml").read_bytes()
+    assert resolved.decode() == full_run().resolved
+
+
+def test_the_signals_are_the_same_bytes_every_time_and_plain_numpy(tmp_path):
+    written(tmp_path / "a")
+    written(tmp_path / "b")
+    names = ["signals.npz", "run.json"]
+    for name in names:
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+    with np.load(tmp_path / "a" / "signals.npz") as archive:
+        assert archive["contact_forces/Table|box"].shape == (200,)
+        assert archive["trajectories/0/positions"].tolist() == [[0.1], [1 / 3]]
+    with zipfile.ZipFile(tmp_path / "a" / "signals.npz") as archive:
+        assert {entry.date_time for entry in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+
+
+def test_a_newer_run_replaces_an_older_one_with_nothing_left_beside(tmp_path):
+    written(tmp_path / "run")
+    (tmp_path / "run" / "images").mkdir()
+    written(tmp_path / "run", replace(full_run(), seed=5))
+    assert read_run(tmp_path / "run").run.seed == 5
+    assert not (tmp_path / "run" / "images").exists()
+    assert names_in(tmp_path) == ["run"]
+
+
+def test_extra_files_are_there_when_the_folder_appears_and_notes_come_back(tmp_path):
+    folder = tmp_path / "deep" / "run"
+
+    def draw(target):
+        assert not folder.exists()
+        (target / "images").mkdir()
+        (target / "images" / "a.png").write_bytes(b"x")
+        return ("no GL",)
+
+    run = full_run()
+    assert write_run(folder, run, (), "passed", "", {}, extra=draw) == ("no GL",)
+    assert (folder / "images" / "a.png").read_bytes() == b"x"
+
+
+@pytest.mark.parametrize(
+    "trouble", [OSError(errno.ENOSPC, "No space left on device"), KeyboardInterrupt()]
+)
+def test_when_writing_breaks_off_the_older_run_stays_and_nothing_half_written(tmp_path, trouble):
+    written(tmp_path / "run")
+
+    def breaks(target):
+        (target / "half").write_text("x")
+        raise trouble
+
+    expected = HarnessError if isinstance(trouble, OSError) else KeyboardInterrupt
+    with pytest.raises(expected) as caught:
+        write_run(tmp_path / "run", full_run(), (), "passed", "", {}, extra=breaks)
+    if expected is HarnessError:
+        assert "No space left on device" in str(caught.value)
+        assert "--report-dir" in str(caught.value)
+    assert names_in(tmp_path) == ["run"]
+    assert read_run(tmp_path / "run").outcome == "failed"
+
+
+def test_a_place_that_cannot_be_made_is_told(tmp_path):
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(HarnessError, match=r"cannot be written to .*file"):
+        write_run(tmp_path / "file" / "run", full_run(), (), "passed", "", {})
+    with pytest.raises(HarnessError, match="is a file"):
+        write_run(tmp_path / "file", full_run(), (), "passed", "", {})
+
+
+def test_a_folder_with_other_files_is_never_replaced(tmp_path):
+    precious = tmp_path / "home" / "thesis.tex"
+    precious.parent.mkdir()
+    precious.write_text("years of work")
+    with pytest.raises(HarnessError, match="holds other files"):
+        write_run(precious.parent, full_run(), (), "passed", "", {})
+    assert precious.read_text() == "years of work"
+    assert names_in(tmp_path) == ["home"]
+
+
+def test_what_is_no_run_or_a_damaged_one_is_told(tmp_path):
+    with pytest.raises(HarnessError, match=r"is no run: it has no run\.json"):
+        read_run(tmp_path)
+    folder = tmp_path / "run"
+    written(folder)
+    text = (folder / "run.json").read_text()
+    for damage, said in (
+        (text.replace(FORMAT, "armharness-run/9"), "armharness-run/9"),
+        (text[:500], "damaged"),
+        ("[]", "damaged"),
+        (text.replace('"status": "passed"', '"status": "perfect"'), "damaged"),
+    ):
+        (folder / "run.json").write_text(damage)
+        with pytest.raises(HarnessError, match=said):
+            read_run(folder)
+    (folder / "run.json").write_text(text)
+    (folder / "signals.npz").write_bytes(b"no zip")
+    with pytest.raises(HarnessError, match="damaged"):
+        read_run(folder)
+    (folder / "signals.npz").unlink()
+    with pytest.raises(HarnessError, match="damaged"):
+        read_run(folder)
+
+
+def test_a_pickle_in_the_signals_is_not_opened(tmp_path):
+    written(tmp_path / "run")
+    np.savez(tmp_path / "run" / "signals.npz", times=np.array([{"a": 1}], dtype=object))
+    with pytest.raises(HarnessError, match="damaged"):
+        read_run(tmp_path / "run")
