@@ -11,7 +11,7 @@ from harness.robot.description import RobotDescription
 def make_planning(
     description: RobotDescription,
 ) -> tuple[CoalScene, PinocchioKinematics, VerifiedPlanner]:
-    """A fresh planning scene with nothing but the robot, its kinematics, and a planner over both."""
+    """A planning scene with nothing but the robot, its kinematics, and a planner over both."""
     scene = CoalScene(description)
     kinematics = PinocchioKinematics(description)
     return scene, kinematics, VerifiedPlanner(scene, kinematics)

@@ -10,7 +10,7 @@ _LARGEST_SHARE = 0.45  # of a segment that one blend may take
 
 
 class BlendedPath:
-    """Straight segments joined by parabolic blends: continuous in direction, on the lines elsewhere.
+    """Straight segments joined by parabolic blends; on the lines elsewhere.
 
     Within `reach` of a corner (measured along both segments) the path is the parabola tangent to
     both; it leaves the corner by at most a quarter of `reach` times the change of direction.

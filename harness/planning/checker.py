@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -113,8 +114,7 @@ class MotionChecker:
     def path_free(self, waypoints: FloatArray, resolution: float) -> bool:
         """Whether all edges of a path are free, its first waypoint taken as checked."""
         return all(
-            self.edge_free(first, second, resolution)
-            for first, second in zip(waypoints[:-1], waypoints[1:], strict=True)
+            self.edge_free(first, second, resolution) for first, second in pairwise(waypoints)
         )
 
     def touches(self, positions: FloatArray) -> list[Touch]:
@@ -151,9 +151,9 @@ def coarse_to_fine(count: int) -> Iterator[int]:
 
 
 def describe_touches(touches: list[Touch], most: int = 3) -> str:
-    """The nearest pairs in words: `forearm_link – Table (12.3 mm deep)`."""
+    """The nearest pairs in words: `forearm_link and Table (12.3 mm deep)`."""
     parts = [
-        f"{touch.first} – {touch.second} "
+        f"{touch.first} and {touch.second} "
         + (
             f"({-1000 * touch.distance:.1f} mm deep)"
             if touch.distance < 0

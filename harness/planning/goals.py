@@ -55,7 +55,7 @@ def find_goals(
     space = checker.space
     answer = kinematics.analyse(space, goal, start, seed)
     if not answer.solutions:
-        raise _no_solution(kinematics, space, answer, start, goal, seed)
+        raise _no_solution(space, answer, start, goal, seed)
     reference = space.part(start)
     free: list[FloatArray] = []
     facts: list[dict[str, Any]] = []
@@ -126,7 +126,6 @@ def _joint_goal(checker: MotionChecker, goal: JointGoal) -> GoalCandidates:
 
 
 def _no_solution(
-    kinematics: PinocchioKinematics,
     space: GroupSpace,
     answer: IkAnswer,
     start: FloatArray,

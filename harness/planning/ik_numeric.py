@@ -43,7 +43,7 @@ class LinkTask:
         return self._robot.link_pose(self.space.whole(positions), self.goal.link)
 
     def evaluate(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Error (m,) and Jacobian (m, dof) at group positions; a step `pinv(J) @ error` closes in."""
+        """Error (m,) and Jacobian (m, dof) at positions; a step `pinv(J) @ error` closes in."""
         model, data = self._robot.model, self._robot.data
         configuration = self._robot.configuration(self.space.whole(positions))
         pin.computeJointJacobians(model, data, configuration)

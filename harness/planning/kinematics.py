@@ -1,4 +1,4 @@
-"""Forward and inverse kinematics of a composed robot: analytic where the arm has it, else numeric."""
+"""Kinematics of a composed robot: analytic inverse where the arm has one, else numeric."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ class PinocchioKinematics:
         return self.robot.link_pose(np.asarray(joint_positions, dtype=float), link)
 
     def link_poses(self, joint_positions: FloatArray, links: Sequence[str]) -> FloatArray:
-        """T_world_link of many samples and links: (N, n) -> (N, len(links), 7) as xyz, quat wxyz."""
+        """T_world_link of many samples: (N, n) -> (N, len(links), 7), xyz and quat wxyz."""
         poses = LinkPoses(self.description, joint_positions, links)
         return np.stack(
             [
@@ -223,7 +223,7 @@ class PinocchioKinematics:
 def into_limits(
     space: GroupSpace, positions: FloatArray, reference: FloatArray
 ) -> FloatArray | LimitedSolution:
-    """The copy, by whole turns, of a solution that is inside the limits and nearest to a reference."""
+    """A solution turned by whole turns: inside the limits, nearest to a reference."""
     turned = np.array(positions, dtype=float)
     worst: tuple[float, int, float] | None = None  # excess, joint, limit
     turn = 2 * np.pi

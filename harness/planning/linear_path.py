@@ -1,4 +1,4 @@
-"""Straight lines of a link in space, as joint motions: Pilz's LIN and Task Constructor's MoveRelative."""
+"""Straight lines of a link in space, as joint motions: LIN and MoveRelative."""
 
 # pyright: reportAttributeAccessIssue=false
 

@@ -31,7 +31,7 @@ from harness.planning.scene import CoalScene
 from harness.planning.shortening import shorten
 from harness.planning.timing import (
     Limits,
-    TimingFailed,
+    TimingError,
     time_blended,
     time_stopping,
     time_straight,
@@ -111,7 +111,7 @@ class VerifiedPlanner:
         options: PlanningOptions,
         duration: float | None = None,
     ) -> MotionPlan:
-        """Plan Pilz's PTP: all joints together, straight in joint space, in `duration` seconds if given.
+        """Plan Pilz's PTP: all joints together, straight in joint space.
 
         A given duration is exact to the physics' time grid, as a cubic from rest to rest, under
         the joints' whole limits; without one it is the fastest under the scaled limits.
@@ -175,7 +175,8 @@ class VerifiedPlanner:
             unit, scale = ("mm", 1000.0) if np.any(twist[:3]) else ("°", float(np.degrees(1.0)))
             raise PlanningFailed(
                 "PLANNING_FAILED",
-                f"{link} gets {scale * reached:.1f} of {scale * least:.1f} {unit} far: {traced.stop}",
+                f"{link} gets {scale * reached:.1f} of {scale * least:.1f} {unit} far: "
+                f"{traced.stop}",
                 {"reached": reached, "least": least, "reason": traced.reason, **traced.facts},
             )
         explanation = {
@@ -193,7 +194,7 @@ class VerifiedPlanner:
     def check_goal(
         self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
     ) -> Mapping[str, Any]:
-        """What can be said of a goal without planning to it: IK solutions and what became of each."""
+        """What can be said of a goal without planning to it: each IK solution's fate."""
         task = self._task(group, start, options)
         return find_goals(
             self.kinematics, task.checker, np.asarray(start), goal, options.seed
@@ -291,7 +292,7 @@ class VerifiedPlanner:
         for blend in BLEND_DEVIATIONS:
             try:
                 trajectory = time_blended(names, waypoints, task.limits, blend)
-            except TimingFailed:
+            except TimingError:
                 continue
             if task.defect(trajectory, end) is None:
                 return trajectory
@@ -310,7 +311,8 @@ class VerifiedPlanner:
         if defect is not None:
             return PlanningFailed(
                 "INVALID_MOTION_PLAN",
-                f"paths were found, but none that holds when it is checked finely: {defect.message}",
+                "paths were found, but none that holds when it is checked finely: "
+                + defect.message,
                 {**explanation, **defect.facts},
             )
         options = task.options

@@ -83,7 +83,7 @@ def smallest_distances(pairs: Sequence[ShapePair], cutoff: float) -> tuple[Float
     near = np.flatnonzero(first - total < cutoff)
     if not len(near):
         return nearest, which
-    kept = [pairs[index] for index in near]
+    kept = [pairs[int(index)] for index in near]
     travelled = np.column_stack([pair.travel for pair in kept])  # (N, K)
     known = first[near].copy()  # the distance last measured
     at = np.zeros(len(kept), dtype=np.int64)  # and the sample
@@ -103,7 +103,7 @@ def smallest_distances(pairs: Sequence[ShapePair], cutoff: float) -> tuple[Float
             best, best_pair = float(known[previous]), previous
         bound = key - travelled[sample]
         rivals = np.flatnonzero(bound < best)
-        for index in rivals[np.argsort(bound[rivals], kind="stable")].tolist():
+        for index in map(int, rivals[np.argsort(bound[rivals], kind="stable")]):
             if bound[index] >= best:
                 break
             if measured(index) < best:

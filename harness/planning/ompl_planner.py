@@ -1,6 +1,6 @@
 """Asks OMPL for a path between positions of a group, with our edge checks and a counted budget."""
 
-# pyright: reportAttributeAccessIssue=false
+# pyright: reportAttributeAccessIssue=false, reportIndexIssue=false
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from harness.planning.planner_names import resolve_planner_id
 from harness.planning.robot_model import GroupSpace
 
 DEFAULT_RANGE = 1.5
-"""Longest edge that a tree grows at once [rad]; OMPL's own choice is a fifth of the space's extent."""
+"""Longest edge that a tree grows at once [rad]; OMPL takes a fifth of the space's extent."""
 
 _BEYOND = np.pi  # [rad] how far a continuous joint may leave the range of start and goals
 
@@ -115,7 +115,7 @@ def search(
 
 
 def _seed_ompl(seed: int) -> None:
-    """Seed every generator OMPL makes from now on; it logs about seeding twice, so it is silenced."""
+    """Seed every generator made from now on; OMPL logs about seeding twice: silence it."""
     ou.noOutputHandler()
     ou.RNG.setSeed(seed % (2**31 - 1) + 1)
 

@@ -14,7 +14,7 @@ GRID = 0.002
 """Durations are whole multiples of this [s]: the physics' default timestep."""
 
 SAMPLE_PERIOD = 0.01
-"""Time between set points of a trajectory [s], five steps of the grid; the last one may be nearer."""
+"""Time between set points [s]: five steps of the grid; the last one may be nearer."""
 
 Curve = Callable[[FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
 """Positions, velocities and accelerations, (N, dof) each, at times (N,)."""
@@ -85,7 +85,7 @@ def straight_curve(first: FloatArray, second: FloatArray, profile: Trapezoid) ->
 
 
 def cubic_curve(first: FloatArray, second: FloatArray, duration: float) -> Curve:
-    """Point to point at rest on both ends, as a JointTrajectoryController interpolates two points."""
+    """Point to point at rest on both ends, as a JointTrajectoryController does it."""
     span = second - first
 
     def curve(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -102,9 +102,9 @@ def cubic_curve(first: FloatArray, second: FloatArray, duration: float) -> Curve
 def sample(joint_names: tuple[str, ...], curve: Curve, duration: float) -> JointTrajectory:
     """Set points of a curve every `SAMPLE_PERIOD`, its end included."""
     count = int(np.floor(duration / SAMPLE_PERIOD + 1e-9))
-    times = np.arange(count + 1) * SAMPLE_PERIOD
+    times: FloatArray = np.arange(count + 1, dtype=np.float64) * SAMPLE_PERIOD
     if duration - times[-1] > 1e-9:
-        times = np.append(times, duration)
+        times = np.concatenate([times, [duration]])
     times[-1] = duration
     positions, velocities, accelerations = curve(times)
     velocities[[0, -1]] = 0.0

@@ -147,12 +147,12 @@ class GroupSpace:
         return float(np.linalg.norm((second - first) * self.metric))
 
     def effort(self, first: FloatArray, second: FloatArray) -> float:
-        """How much of the arm moves between two positions: turns weighted by the reach behind them."""
+        """How much of the arm moves: turns weighted by the reach behind each joint."""
         return float(np.linalg.norm((second - first) * self.metric * self.leverage))
 
 
 def _leverage(description: RobotDescription, joint_names: tuple[str, ...]) -> FloatArray:
-    """Length of the chain behind each joint over the longest, so that a wrist's turn counts less."""
+    """Length of the chain behind each joint over the longest: a wrist's turn counts less."""
     before = {joint.child: joint for joint in description.joints}
     last = description.joint_by_name[joint_names[-1]].child
     tips = [group.tip_link for group in description.groups.values() if group.tip_link]

@@ -152,7 +152,7 @@ class CoalScene:
         return pose
 
     def set_allowed(self, pairs: Sequence[tuple[str, str]], *, allowed: bool) -> None:
-        """Allow (or check again) collisions of pairs of links, objects, or `robot` for all links."""
+        """Allow (or check again) collisions of pairs of links or objects; `robot`: all links."""
         for pair in pairs:
             key = _sorted(*pair)
             if allowed:

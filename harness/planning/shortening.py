@@ -1,4 +1,4 @@
-"""Shortens a path by straight lines that the same edge check accepts; no clock, no luck unseeded."""
+"""Shortens a path by straight lines that the same edge check accepts; seeded, no clock."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Gives a joint path its times: trapezoids on a straight line, TOPP-RA through several waypoints."""
+"""Gives a path its times: a trapezoid on a straight line, TOPP-RA through waypoints."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -7,6 +7,7 @@ from __future__ import annotations
 import logging
 import warnings
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,7 @@ GRID_POINTS_PER_PIECE = 20
 _STILL = 1e-9  # [rad] paths shorter than this have nowhere to go
 
 
-class TimingFailed(Exception):
+class TimingError(Exception):
     """TOPP-RA found no times for a path."""
 
 
@@ -50,7 +51,7 @@ class Limits:
         return cls(bounded * velocity_scaling, acceleration * accel)
 
     def excess(self, velocities: FloatArray, accelerations: FloatArray) -> float:
-        """How many times slower a motion (N, dof) must be to keep both limits; below 1 when it does."""
+        """How many times slower a motion (N, dof) must be; below 1 when it keeps both."""
         fast = float(np.max(np.abs(velocities) / self.velocity))
         hard = float(np.sqrt(np.max(np.abs(accelerations) / self.acceleration)))
         return max(fast, hard)
@@ -75,8 +76,7 @@ def time_stopping(
 ) -> JointTrajectory:
     """Move along a polyline exactly, at rest at every waypoint."""
     pieces = [
-        time_straight(joint_names, first, second, limits)
-        for first, second in zip(waypoints[:-1], waypoints[1:], strict=True)
+        time_straight(joint_names, first, second, limits) for first, second in pairwise(waypoints)
     ]
     times, offset = [pieces[0].times], pieces[0].duration
     for piece in pieces[1:]:
@@ -104,7 +104,7 @@ def time_blended(
         deviation: Largest joint-space distance from a corner [rad].
 
     Raises:
-        TimingFailed: TOPP-RA has no solution.
+        TimingError: TOPP-RA has no solution.
 
     References:
         H. Pham, Q.-C. Pham, "A New Approach to Time-Optimal Path Parameterization Based on
@@ -181,7 +181,7 @@ def _toppra(path: BlendedPath, limits: Limits) -> tuple[Curve, float]:
     result = solver.compute_trajectory(0, 0)
     del ta
     if result is None:
-        raise TimingFailed("TOPP-RA found no times under the limits")
+        raise TimingError("TOPP-RA found no times under the limits")
 
     def timed(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         return result(times, 0), result(times, 1), result(times, 2)
