@@ -20,7 +20,8 @@ from harness.robot.description import (
 )
 from harness.robot.robot_yaml import GripperFacts, Mount, RobotYaml
 from harness.robot.srdf import EndEffector, Srdf, link_pair, planning_groups, write_srdf
-from harness.robot.urdf import Urdf, in_tree_order, write_urdf
+from harness.robot.urdf import Urdf, in_tree_order
+from harness.robot.write_urdf import write_urdf
 
 WORLD = "world"
 

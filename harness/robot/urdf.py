@@ -1,4 +1,4 @@
-"""URDF as links and joints, read from text and written back without losing digits."""
+"""URDF text as links and joints."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import importlib.util
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from harness.core.errors import RobotError
-from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Rgba, Shape, Sphere
-from harness.core.spatial import SE3, rotation_from_rpy
+from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Rgba, Shape, Sphere
+from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.robot.description import Inertial, Joint, JointKind, Link, Mimic
 
@@ -125,42 +125,6 @@ def in_tree_order(
         lost = sorted(set(by_name) - {link.name for link in ordered_links})
         raise RobotError(f"{source}: joints run in a circle around {', '.join(lost)}")
     return tuple(ordered_links), tuple(ordered_joints)
-
-
-def write_urdf(name: str, links: Iterable[Link], joints: Iterable[Joint]) -> str:
-    """A URDF of the links and joints, every number with all its digits."""
-    root = ET.Element("robot", name=name)
-    for link in links:
-        element = ET.SubElement(root, "link", name=link.name)
-        if link.inertial is not None:
-            _write_inertial(element, link.inertial)
-        for tag, shapes in (("visual", link.visuals), ("collision", link.collisions)):
-            for shape in shapes:
-                for piece in _known_to_urdf(shape):
-                    _write_shape(element, tag, piece)
-    for joint in joints:
-        _write_joint(root, joint)
-    ET.indent(root)
-    return '<?xml version="1.0"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
-
-
-def rpy_from_rotation(rotation: FloatArray) -> FloatArray:
-    """Fixed-axis roll, pitch, yaw of a rotation, stable at pitch ±π/2, shape (3,).
-
-    Roll is taken from the axes turned back by yaw, so that what yaw loses near the singularity,
-    roll makes up for.
-    """
-    yaw = float(np.arctan2(rotation[1, 0], rotation[0, 0]))
-    sine, cosine = np.sin(yaw), np.cos(yaw)
-    pitch = np.arctan2(-rotation[2, 0], cosine * rotation[0, 0] + sine * rotation[1, 0])
-    roll = np.arctan2(
-        sine * rotation[0, 2] - cosine * rotation[1, 2],
-        cosine * rotation[1, 1] - sine * rotation[0, 1],
-    )
-    return np.array([roll, pitch, yaw])
-
-
-# -- reading ----------------------------------------------------------------------------------
 
 
 def _numbers(text: str, count: int) -> FloatArray:
@@ -301,95 +265,3 @@ def _joint(element: ET.Element) -> Joint:
             float(mimic.get("offset", "0")),
         ),
     )
-
-
-# -- writing ----------------------------------------------------------------------------------
-
-
-def _text(values: Iterable[float]) -> str:
-    return " ".join(repr(float(value)) for value in values)
-
-
-def _write_pose(parent: ET.Element, pose: SE3) -> None:
-    rpy = rpy_from_rotation(pose.rotation)
-    if not np.array_equal(rotation_from_rpy(rpy), np.eye(3)) or np.any(pose.translation):
-        ET.SubElement(parent, "origin", xyz=_text(pose.translation), rpy=_text(rpy))
-
-
-def _write_inertial(parent: ET.Element, inertial: Inertial) -> None:
-    element = ET.SubElement(parent, "inertial")
-    ET.SubElement(element, "origin", xyz=_text(inertial.center_of_mass))
-    ET.SubElement(element, "mass", value=repr(float(inertial.mass)))
-    entries = {
-        "ixx": (0, 0),
-        "ixy": (0, 1),
-        "ixz": (0, 2),
-        "iyy": (1, 1),
-        "iyz": (1, 2),
-        "izz": (2, 2),
-    }
-    tensor = {key: repr(float(inertial.inertia[place])) for key, place in entries.items()}
-    ET.SubElement(element, "inertia", tensor)
-
-
-def _known_to_urdf(shape: Shape) -> tuple[Shape, ...]:
-    """The shape, or the cylinder and two spheres that make up a capsule, which URDF lacks."""
-    if not isinstance(shape.geometry, Capsule):
-        return (shape,)
-    radius, length = shape.geometry.radius, shape.geometry.length
-    ends = (SE3.from_xyz_rpy((0.0, 0.0, side * length / 2)) for side in (-1, 1))
-    return (
-        replace(shape, geometry=Cylinder(radius, length)),
-        *(Shape(Sphere(radius), shape.pose @ end, shape.rgba) for end in ends),
-    )
-
-
-def _write_shape(parent: ET.Element, tag: str, shape: Shape) -> None:
-    element = ET.SubElement(parent, tag, {"name": shape.name} if shape.name else {})
-    _write_pose(element, shape.pose)
-    geometry = ET.SubElement(element, "geometry")
-    match shape.geometry:
-        case Box(size=size):
-            ET.SubElement(geometry, "box", size=_text(size))
-        case Cylinder(radius=radius, length=length):
-            ET.SubElement(geometry, "cylinder", radius=repr(radius), length=repr(length))
-        case Sphere(radius=radius):
-            ET.SubElement(geometry, "sphere", radius=repr(radius))
-        case Mesh(path=path, scale=scale):
-            ET.SubElement(geometry, "mesh", filename=_mesh_name(path), scale=_text(scale))
-        case Plane() | Capsule():
-            raise RobotError(f"link '{parent.get('name')}': no such shape in a URDF")
-    if tag == "visual":
-        material = ET.SubElement(element, "material", name="")
-        ET.SubElement(material, "color", rgba=_text(shape.rgba))
-
-
-def _mesh_name(path: Path) -> str:
-    """`package://` name of a file inside a Python package, else its path."""
-    for folder in path.parents:
-        if (folder / "__init__.py").is_file():
-            return f"package://{folder.name}/{path.relative_to(folder).as_posix()}"
-    return str(path)
-
-
-def _write_joint(parent: ET.Element, joint: Joint) -> None:
-    element = ET.SubElement(parent, "joint", name=joint.name, type=joint.kind)
-    _write_pose(element, joint.pose)
-    ET.SubElement(element, "parent", link=joint.parent)
-    ET.SubElement(element, "child", link=joint.child)
-    if not joint.is_movable:
-        return
-    ET.SubElement(element, "axis", xyz=_text(joint.axis))
-    limit = {"effort": repr(float(joint.effort)), "velocity": repr(float(joint.velocity))}
-    if joint.kind != "continuous":
-        limit = {"lower": repr(float(joint.lower)), "upper": repr(float(joint.upper)), **limit}
-    ET.SubElement(element, "limit", limit)
-    dynamics = {"damping": repr(float(joint.damping)), "friction": repr(float(joint.friction))}
-    ET.SubElement(element, "dynamics", dynamics)
-    if joint.mimic is not None:
-        mimic = {
-            "joint": joint.mimic.joint,
-            "multiplier": repr(float(joint.mimic.multiplier)),
-            "offset": repr(float(joint.mimic.offset)),
-        }
-        ET.SubElement(element, "mimic", mimic)

@@ -1,0 +1,130 @@
+"""What a scenario changes about a robot: tighter limits, more states, another start."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import replace
+
+import numpy as np
+
+from harness.core.errors import RobotError
+from harness.robot.description import Joint, NamedState, RobotDescription
+from harness.robot.srdf import parse_srdf, write_srdf
+from harness.robot.write_urdf import write_urdf
+from harness.spec.scenario import JointLimits, RobotSpec, StartState
+
+
+def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescription:
+    """The robot under a scenario's joint limits, with its extra states and start.
+
+    Raises:
+        RobotError: An option names something that the robot has not, or leaves its limits.
+    """
+    joints = description.joints
+    if spec.joint_limits:
+        for name in spec.joint_limits:
+            _movable(description, name, "joint_limits")
+        joints = tuple(
+            _narrowed(joint, spec.joint_limits[joint.name])
+            if joint.name in spec.joint_limits
+            else joint
+            for joint in joints
+        )
+        urdf = write_urdf(description.name, description.links, joints)
+        description = replace(description, joints=joints, urdf=urdf)
+    if spec.named_states:
+        states = _with_states(description, spec)
+        srdf = replace(parse_srdf(description.srdf, description.name), states=states)
+        text = write_srdf(description.name, srdf)
+        description = replace(description, named_states=states, srdf=text)
+    if spec.start_state is not None:
+        start = {**description.start_state, **_start(description, spec.start_state)}
+        description = replace(description, start_state=start)
+    for name, position in description.start_state.items():
+        _within(description, name, position, "start_state")
+    return description
+
+
+def _movable(description: RobotDescription, name: str, where: str) -> Joint:
+    if name not in description.joint_index:
+        near = difflib.get_close_matches(name, description.joint_names, 1)
+        hint = f"did you mean '{near[0]}'? " if near else ""
+        raise RobotError(
+            f"robot.{where}: '{description.name}' has no joint '{name}'; {hint}"
+            f"joints: {', '.join(description.joint_names)}"
+        )
+    return description.joint_by_name[name]
+
+
+def _within(description: RobotDescription, name: str, position: float, where: str) -> None:
+    joint = _movable(description, name, where)
+    if not joint.lower <= position <= joint.upper:
+        raise RobotError(
+            f"robot.{where}: joint '{name}' at {position:.6g} is outside its limits "
+            f"[{joint.lower:.6g}, {joint.upper:.6g}]"
+        )
+
+
+def _narrowed(joint: Joint, limits: JointLimits) -> Joint:
+    """A joint under tighter limits; its acceleration, which no URDF says, may be any."""
+    for key, value, widest in (
+        ("max_position", limits.max_position, joint.upper),
+        ("max_velocity", limits.max_velocity, joint.velocity),
+        ("max_effort", limits.max_effort, joint.effort),
+    ):
+        if value is not None and value > widest:
+            raise RobotError(
+                f"robot.joint_limits.{joint.name}.{key}: {value:.6g} is more than the robot's "
+                f"{widest:.6g}; limits can be narrowed only"
+            )
+    if limits.min_position is not None and limits.min_position < joint.lower:
+        raise RobotError(
+            f"robot.joint_limits.{joint.name}.min_position: {limits.min_position:.6g} is less than "
+            f"the robot's {joint.lower:.6g}; limits can be narrowed only"
+        )
+    lower = joint.lower if limits.min_position is None else limits.min_position
+    upper = joint.upper if limits.max_position is None else limits.max_position
+    if lower >= upper:
+        raise RobotError(f"robot.joint_limits.{joint.name}: nothing is between {lower} and {upper}")
+    bounded = joint.kind == "continuous" and np.isfinite([lower, upper]).all()
+    return replace(
+        joint,
+        kind="revolute" if bounded else joint.kind,
+        lower=lower,
+        upper=upper,
+        velocity=limits.max_velocity or joint.velocity,
+        acceleration=limits.max_acceleration or joint.acceleration,
+        effort=limits.max_effort or joint.effort,
+        effort_source="the scenario" if limits.max_effort else joint.effort_source,
+    )
+
+
+def _with_states(description: RobotDescription, spec: RobotSpec) -> tuple[NamedState, ...]:
+    """The robot's states and the scenario's; one so named before is replaced."""
+    states = {(state.group, state.name): state for state in description.named_states}
+    for group, named in spec.named_states.items():
+        if group not in description.groups:
+            raise RobotError(
+                f"robot.named_states: '{description.name}' has no group '{group}'; "
+                f"groups: {', '.join(description.groups)}"
+            )
+        for name, positions in named.items():
+            for joint, position in positions.items():
+                _within(description, joint, position, f"named_states.{group}.{name}")
+            states[group, name] = NamedState(name, group, dict(positions))
+    return tuple(states.values())
+
+
+def _start(description: RobotDescription, start: StartState) -> dict[str, float]:
+    positions: dict[str, float] = {}
+    if start.named_target is not None:
+        found = [s for s in description.named_states if s.name == start.named_target]
+        if not found:
+            names = ", ".join(state.name for state in description.named_states)
+            raise RobotError(
+                f"robot.start_state: '{description.name}' has no state '{start.named_target}'; "
+                f"states: {names}"
+            )
+        preferred = [state for state in found if state.group == description.arm_group]
+        positions |= (preferred or found)[0].positions
+    return positions | dict(start.joints or {})
