@@ -53,10 +53,8 @@ def add_collision_geom(
     shape: Shape,
     friction: Friction,
     surfaces: Surfaces,
-    *,
-    collides: bool = True,
 ) -> None:
-    """Put a massless contact geom on a body; without `collides` it touches nothing yet."""
+    """Put a massless contact geom on a body."""
     kind, size = geom_kind_and_size(shape.geometry)
     geom = body.add_geom(type=kind, size=size)
     geom.pos = shape.pose.translation
@@ -70,7 +68,7 @@ def add_collision_geom(
     geom.condim = CONTACT_DIMENSIONS
     geom.solref = CONTACT_SOLREF
     geom.solimp = CONTACT_SOLIMP
-    geom.contype = geom.conaffinity = int(collides)
+    geom.contype = geom.conaffinity = 1
 
 
 def geom_kind_and_size(geometry: Geometry) -> tuple[mujoco.mjtGeom, list[float]]:

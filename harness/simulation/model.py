@@ -109,7 +109,7 @@ def build_model(
     for index, obj in enumerate(simulated):
         is_present = obj.name in present
         pose = obj.pose if is_present else parking_pose(index)
-        add_object(spec, obj, pose, surfaces, is_present=is_present)
+        add_object(spec, obj, pose, surfaces)
     for frame in (description.tcp_link, *frames):
         _add_frame_sensors(spec, frame)
     for joint in description.movable_joints:
@@ -120,10 +120,18 @@ def build_model(
                 objname=joint.name,
             )
     model = spec.compile()
-    for obj in simulated:
-        if not obj.is_static and obj.name in present:
-            model.body_gravcomp[model.body(obj.name).id] = 0.0
-    return _places(model, description, servos, simulated, tuple(frames))
+    physics = _places(model, description, servos, simulated, tuple(frames))
+    for name, place in physics.objects.items():
+        set_presence(model, place, present=name in present)
+    return physics
+
+
+def set_presence(model: mujoco.MjModel, place: ObjectPlace, *, present: bool) -> None:
+    """Give an object contacts and weight, or neither."""
+    model.geom_contype[place.geoms] = int(present)
+    model.geom_conaffinity[place.geoms] = int(present)
+    if not place.obj.is_static:
+        model.body_gravcomp[place.body] = 0.0 if present else 1.0
 
 
 def _add_frame_sensors(spec: mujoco.MjSpec, link: str) -> None:

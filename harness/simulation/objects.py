@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.simulation.model import ObjectPlace, PhysicsModel
+from harness.simulation.model import ObjectPlace, PhysicsModel, set_presence
 from harness.simulation.recording import Recording, refresh
 from harness.simulation.world_mjcf import weld_name
 
@@ -27,9 +27,8 @@ class Objects:
         self._physics = physics
         self._data = data
         self._recording = recording
-        self._present = {name: name in present for name in physics.objects}
         self._log: dict[str, list[tuple[int, FloatArray | None]]] = {
-            name: [(0, self._pose(place) if self._present[name] else None)]
+            name: [(0, self._pose(place) if name in present else None)]
             for name, place in physics.objects.items()
         }
 
@@ -39,13 +38,13 @@ class Objects:
 
     def add(self, name: str, pose: SE3) -> None:
         """Let a parked object appear, at rest."""
-        self._set_presence(name, present=True)
+        set_presence(self._physics.model, self._physics.objects[name], present=True)
         self.move(name, pose)
 
     def remove(self, name: str) -> None:
         """Park an object without contacts and weight."""
         self.unweld(name)
-        self._set_presence(name, present=False)
+        set_presence(self._physics.model, self._physics.objects[name], present=False)
         self._place(name, self._physics.objects[name].parking)
         self._log[name].append((self._recording.count, None))
 
@@ -94,14 +93,6 @@ class Objects:
             return self._data.qpos[place.qpos : place.qpos + 7].copy()
         model = self._physics.model
         return np.concatenate([model.body_pos[place.body], model.body_quat[place.body]])
-
-    def _set_presence(self, name: str, *, present: bool) -> None:
-        model, place = self._physics.model, self._physics.objects[name]
-        self._present[name] = present
-        model.geom_contype[place.geoms] = int(present)
-        model.geom_conaffinity[place.geoms] = int(present)
-        if not place.obj.is_static:
-            model.body_gravcomp[place.body] = 0.0 if present else 1.0
 
     def _place(self, name: str, pose: FloatArray) -> None:
         place = self._physics.objects[name]

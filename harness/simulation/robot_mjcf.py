@@ -21,7 +21,7 @@ MIMIC_SOLREF = (0.01, 1.0)
 Slower than a contact: at two steps fingers that pressed on an object chattered from step to step.
 """
 
-MIMIC_SOLIMP = (0.999, 0.9999, 0.001, 0.5, 2.0)
+MIMIC_SOLIMP = (0.9999, 0.99999, 0.001, 0.5, 2.0)
 """Impedance of a mimic coupling: nearly rigid, so that both fingers press with the same force."""
 
 

@@ -26,19 +26,18 @@ def weld_name(name: str) -> str:
     return f"weld {name}"
 
 
-def add_object(
-    spec: mujoco.MjSpec, obj: WorldObject, pose: SE3, surfaces: Surfaces, *, is_present: bool
-) -> None:
+def add_object(spec: mujoco.MjSpec, obj: WorldObject, pose: SE3, surfaces: Surfaces) -> None:
     """Add an object as a body of its name, fixed if static, else free.
 
-    Free bodies carry a gravity compensation that is switched on while they are parked, and a weld
-    that is switched on while they are held by one.
+    Free bodies carry a gravity compensation that counts while they are parked, and a weld that
+    counts while they are held by one. All geoms collide when compiled, as MuJoCo prepares contacts
+    for those alone; the caller switches them off.
     """
     body = spec.worldbody.add_body(name=obj.name)
     body.pos = pose.translation
     body.quat = pose.quat_wxyz
     for shape in obj.shapes:
-        add_collision_geom(spec, body, shape, obj.friction, surfaces, collides=is_present)
+        add_collision_geom(spec, body, shape, obj.friction, surfaces)
     if obj.is_static:
         return
     body.add_freejoint(name=obj.name)
