@@ -16,10 +16,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace) -> int:
+    files = discover(arguments.paths)
     from harness import session
     from harness.reporting.terminal import Style
 
-    files = discover(arguments.paths)
     style = Style.of(sys.stdout)
     code = 0
     documents: list[object] = []

@@ -14,9 +14,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace) -> int:
+    files = discover(arguments.paths)
     from harness import session
 
-    for file in discover(arguments.paths):
+    for file in files:
         overrides = dict(arguments.overrides)
         say(session.explain_file(file, overrides=overrides, seed=arguments.seed).rstrip())
     return 0

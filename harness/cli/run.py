@@ -141,12 +141,17 @@ def _tell(
     seconds: float,
 ) -> None:
     from harness.reporting.terminal import Style, failure, repeats, summary
+    from harness.suite.header import source_lines
 
     style = Style.of(sys.stdout)
     for index, result in results.items():
         is_repetition = index % arguments.repeat > 0 and result.outcome != "error"
         if result.outcome != "passed" and not is_repetition:
-            say(f"\n{failure(result, style, again=_command(arguments, jobs[index]))}")
+            again, source = _command(arguments, jobs[index]), source_lines(jobs[index].file)
+            say(f"\n{failure(result, style, again=again, source=source)}")
+            folder = jobs[index].report_dir
+            if folder and not result.report_dir and (folder / "run.json").is_file():
+                say(f"  no report was written; {folder} is of an earlier run")
     say("")
     if arguments.repeat > 1:
         for runs in _repeats(arguments, results):

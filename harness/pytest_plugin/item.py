@@ -12,7 +12,7 @@ from harness.reporting.result import CaseResult
 from harness.reporting.terminal import failure
 from harness.suite.cases import CaseJob, run_here, run_isolated
 from harness.suite.folders import report_folders
-from harness.suite.header import Header, read_header
+from harness.suite.header import Header, read_header, source_lines
 from harness.suite.warm import ServerStartError, WarmServer
 
 SERVER = pytest.StashKey[WarmServer]()
@@ -28,7 +28,7 @@ class ScenarioNotPassed(Exception):  # noqa: N818 - what pytest shows is the tex
 
     def __init__(self, result: CaseResult) -> None:
         self.result = result
-        super().__init__(failure(result))
+        super().__init__(failure(result, source=source_lines(Path(result.file))))
 
 
 class ScenarioFile(pytest.File):
@@ -59,9 +59,7 @@ class ScenarioItem(pytest.Item):
         if result.outcome != "passed":
             raise ScenarioNotPassed(result)
 
-    def repr_failure(
-        self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None
-    ) -> Any:
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         if isinstance(excinfo.value, ScenarioNotPassed | ServerStartError):
             return str(excinfo.value)
         return super().repr_failure(excinfo, style)

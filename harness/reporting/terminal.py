@@ -104,20 +104,25 @@ def case_line(result: CaseResult, style: Style = PLAIN) -> str:
     return "  ".join(parts)
 
 
-def failure(result: CaseResult, style: Style = PLAIN, *, again: str = "") -> str:
+def failure(
+    result: CaseResult, style: Style = PLAIN, *, again: str = "", source: Sequence[str] = ()
+) -> str:
     """Why a case did not pass: every cause with its line and numbers, and where the report is.
 
     Args:
         result: Of the case.
         style: Of the terminal.
         again: The command that runs exactly this case; empty to leave it out.
+        source: Lines of the scenario file, to show those that are spoken of.
     """
     name = f"{result.file} [{result.case}]" if result.case else result.file
     lines = [f"{style.outcome(result.outcome, result.outcome.upper())} {name}: {result.title}"]
     causes = [str(problem) for problem in result.problems]
-    causes += [step_failure(result.file, step) for step in result.steps if step.status == "failed"]
     causes += [
-        verdict_failure(result.file, verdict)
+        step_failure(result.file, step, source) for step in result.steps if step.status == "failed"
+    ]
+    causes += [
+        verdict_failure(result.file, verdict, source)
         for verdict in result.verdicts
         if verdict.status != "passed"
     ]
@@ -131,20 +136,25 @@ def failure(result: CaseResult, style: Style = PLAIN, *, again: str = "") -> str
     return "\n".join(lines)
 
 
-def step_failure(file: str, step: StepLine) -> str:
-    """Place, step, error code and message."""
+def step_failure(file: str, step: StepLine, source: Sequence[str] = ()) -> str:
+    """Place, step, error code, message and source line."""
     place = f"{file}:{step.line}" if step.line else file
     said = step.message.removeprefix(f"{step.error_code}: ")
     why = ": ".join(part for part in (step.error_code, said) if part)
-    return f"{place}: {step.summary}: {why}"
+    return "\n".join([f"{place}: {step.summary}: {why}", *_excerpt(source, step.line)])
 
 
-def verdict_failure(file: str, verdict: Verdict) -> str:
-    """Place, expectation, status, why, and everything measured."""
+def verdict_failure(file: str, verdict: Verdict, source: Sequence[str] = ()) -> str:
+    """Place, expectation, status, why, source line, and everything measured."""
     place = f"{file}:{verdict.line}" if verdict.line else file
     lines = [f"{place}: {verdict.expectation}: {verdict_line(verdict)}"]
+    lines += _excerpt(source, verdict.line)
     lines += [f"    {measure_text(measure)}" for measure in verdict.measures]
     return "\n".join(lines)
+
+
+def _excerpt(source: Sequence[str], number: int) -> list[str]:
+    return [f"{number:>5} | {source[number - 1]}"] if 0 < number <= len(source) else []
 
 
 def verdict_line(verdict: Verdict) -> str:

@@ -24,6 +24,14 @@ class Header:
     line: int = 1
 
 
+def source_lines(file: Path) -> list[str]:
+    """Lines of a file, to quote from; none of one that cannot be read."""
+    try:
+        return file.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError):
+        return []
+
+
 def read_header(file: Path) -> Header:
     """Read a file's header; of a broken file, which tells its problems later, the name."""
     from harness.spec.source import Source

@@ -72,7 +72,7 @@ def test_a_report_is_never_inside_another_files_report(folder):
     assert folders == [Path("r/b"), Path("r/sub/a"), Path("r/sub.scenario")]
 
 
-def test_reports_of_bundled_and_of_far_files_stay_below_the_report_folder(folder, tmp_path_factory):
+def test_reports_of_bundled_and_of_far_files_stay_below_the_report_folder(tmp_path_factory):
     far = tmp_path_factory.mktemp("far") / "f.scenario.yaml"
     [bundled, other] = report_folders([*discover(["lessons/03_ur_sixteen_steps"]), far], Path("r"))
     assert bundled == Path("r/lessons/03_ur_sixteen_steps")

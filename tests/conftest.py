@@ -1,0 +1,3 @@
+"""Fixtures and plugins for every test."""
+
+pytest_plugins = ["pytester"]

@@ -1,0 +1,154 @@
+import subprocess
+import sys
+
+import pytest
+
+# pytester forgets modules that are new in its runs, and native ones come once only
+import harness.pytest_plugin.item
+import harness.spec.yaml_file  # noqa: F401
+
+HOLDS = """\
+# a comment before the title
+scenario: Hold still
+tags: [lesson, pick-and-place, xfail]
+robot: open_manipulator_x
+steps:
+  - wait: 0.1 s
+expect:
+  - duration: {at_most: 0.2 s}
+"""
+FAILS = """\
+scenario: Too short
+tags: [ur]
+robot: open_manipulator_x
+steps:
+  - wait: 0.1 s
+    id: pause
+expect:
+  - duration: {at_least: 1 s}
+  - duration: {at_least: 2 s}
+  - always: within_limits
+"""
+INVALID = """\
+scenario: Wrong in two places
+robot: open_manipulator_y
+steps:
+  - wait: 3 parsecs
+"""
+
+
+@pytest.fixture
+def write(pytester):
+    def write(**texts):
+        for name, text in texts.items():
+            (pytester.path / f"{name}.scenario.yaml").write_text(text)
+
+    return write
+
+
+def run(pytester, *arguments):
+    return pytester.runpytest("-p", "no:cacheprovider", *arguments)
+
+
+def selected(pytester, *arguments):
+    """Names of the items that these arguments leave."""
+    lines = run(pytester, "--collect-only", "-q", *arguments).outlines
+    return [line.split("::")[1] for line in lines if "::" in line]
+
+
+def test_a_scenario_is_an_item_with_file_line_and_title(pytester, write):
+    write(holds=HOLDS)
+    items, _recorder = pytester.inline_genitems("--strict-markers")
+    [item] = items
+    assert item.nodeid == "holds.scenario.yaml::Hold still"
+    assert item.reportinfo() == (pytester.path / "holds.scenario.yaml", 1, "Hold still")
+
+
+def test_tags_are_marks_and_never_change_what_a_verdict_means(pytester, write):
+    write(holds=HOLDS, fails=FAILS)
+    items, _recorder = pytester.inline_genitems("--strict-markers")
+    marks = {item.name: {mark.name for mark in item.iter_markers()} for item in items}
+    assert marks == {"Hold still": {"lesson", "pick-and-place"}, "Too short": {"ur"}}
+    assert selected(pytester, "-m", "lesson") == ["Hold still"]
+    assert selected(pytester, "-m", "not pick-and-place") == ["Too short"]
+
+
+@pytest.mark.parametrize("words", ["still", "holds", "lesson and not short"])
+def test_k_knows_titles_files_and_tags(pytester, write, words):
+    write(holds=HOLDS, fails=FAILS)
+    assert selected(pytester, "-k", words) == ["Hold still"]
+
+
+def test_other_yaml_files_and_switched_off_names_are_left_alone(pytester, write):
+    write(holds=HOLDS)
+    pytester.makefile(".yaml", other="scenario: Not one of ours")
+    items, _recorder = pytester.inline_genitems("-o", "harness_files=")
+    assert items == []
+    items, _recorder = pytester.inline_genitems("-o", "harness_files=other.yaml")
+    assert [item.name for item in items] == ["Not one of ours"]
+    result = run(pytester, "-p", "no:armharness")
+    result.assert_outcomes()
+
+
+def test_outcomes_are_reported_with_lines_and_numbers(pytester, write):
+    write(holds=HOLDS, fails=FAILS, invalid=INVALID)
+    result = run(pytester, "-v", "--junitxml=junit.xml")
+    result.assert_outcomes(passed=1, failed=2)
+    text = result.stdout.str()
+    assert "FAILED fails.scenario.yaml: Too short" in text
+    assert "fails.scenario.yaml:8: " in text
+    assert "fails.scenario.yaml:9: " in text
+    assert "0.1 s" in text
+    assert "    8 |   - duration: {at_least: 1 s}" in text
+    assert "report: " in text
+    assert "invalid.scenario.yaml:2:8: " in text
+    assert "invalid.scenario.yaml:4:11: " in text
+    assert "Traceback" not in text
+    assert (pytester.path / "reports/holds/run.json").is_file()
+    assert (pytester.path / "reports/fails/run.json").is_file()
+    assert not (pytester.path / "reports/invalid").exists()
+    junit = (pytester.path / "junit.xml").read_text()
+    assert 'property name="digest" value="' in junit
+
+
+def test_reports_go_where_they_are_asked_to(pytester, write):
+    write(holds=HOLDS)
+    run(pytester, "--harness-report-dir", "elsewhere").assert_outcomes(passed=1)
+    assert (pytester.path / "elsewhere/holds/run.json").is_file()
+    run(pytester, "-o", "harness_report_dir=by_ini").assert_outcomes(passed=1)
+    assert (pytester.path / "by_ini/holds/run.json").is_file()
+    run(pytester, "--harness-no-report").assert_outcomes(passed=1)
+    assert not (pytester.path / "reports").exists()
+
+
+def test_xdist_and_this_process_give_the_same_digest(pytester, write):
+    write(holds=HOLDS, again=HOLDS)
+    digests = set()
+    for number, options in enumerate((["-n2"], ["--harness-in-process"], [])):
+        file = f"{number}.xml"
+        result = pytester.runpytest_subprocess(
+            *options, "--harness-no-report", f"--junitxml={file}"
+        )
+        result.assert_outcomes(passed=2)
+        lines = (pytester.path / file).read_text().split("<property ")
+        digests |= {line for line in lines if 'name="digest"' in line}
+    assert len(digests) == 1
+
+
+def test_a_run_without_scenarios_imports_nothing_of_the_harness_but_the_plugin(pytester):
+    pytester.makepyfile("""
+        import sys
+
+        def test_modules():
+            ours = {name for name in sys.modules if name.split(".")[0] == "harness"}
+            assert ours == {"harness", "harness.pytest_plugin", "harness.pytest_plugin.plugin"}
+            assert not {"numpy", "pydantic", "yaml"} & set(sys.modules)
+    """)
+    result = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "no:hypothesispytest"],
+        cwd=pytester.path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert "1 passed" in result.stdout, result.stdout
