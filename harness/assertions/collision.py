@@ -117,9 +117,13 @@ def _pairs(run: Run, check: Collision) -> list[Pair]:
 
 
 def _distance(window: Window, check: Collision, pairs: list[Pair]) -> tuple[FloatArray | None, str]:
-    """The smallest recorded distance that the expectation speaks of and nothing excuses."""
+    """The smallest recorded distance that the expectation speaks of and nothing excuses.
+
+    Only distances to what is in the physics count: nothing can collide with a belief.
+    """
     run = window.run
     links = bodies(run, "robot")
+    real = {"robot", *(record.name for record in run.objects if record.in_simulation)}
     if check.between is None:
         first, second = links, bodies(run, "any")
     else:
@@ -131,10 +135,12 @@ def _distance(window: Window, check: Collision, pairs: list[Pair]) -> tuple[Floa
         sets = [links if word == "robot" else frozenset({word}) for word in (a, b)]
         meant = any(x <= first and y <= second for x, y in (sets, sets[::-1]))
         cut = window.cut(values)
-        if not meant or frozenset((a, b)) in excused or np.isnan(cut).all():
+        if not meant or not {a, b} <= real or frozenset((a, b)) in excused:
+            continue
+        if np.isnan(cut).all():
             continue
         if float(np.nanmin(cut)) < lowest:
-            lowest, name = float(np.nanmin(cut)), f"{a} and {b}"
+            lowest, name = float(np.nanmin(cut)), f"{a} and {'itself' if a == b else b}"
         best = cut if best is None else np.fmin(best, cut)
     return best, name
 

@@ -27,7 +27,7 @@ def duration(check: DurationCheck, window: Window) -> MarginSignal:
             raise NotReached(f"the run ended early: {run.ended_early}")
         first = min([window.time(0), *(step.start_time for step in run.steps)])
         seconds = window.time(len(window.times) - 1) - first
-    values = np.full(len(window.times), seconds)
+    values = np.full(len(window.times), round(seconds, 9))  # times are multiples of the time step
     parts: list[Part] = []
     if check.at_most is not None:
         parts.append(Part("duration", values, check.at_most, "<=", "s"))

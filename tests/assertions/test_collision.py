@@ -80,6 +80,14 @@ def test_no_collision_reports_the_distance_that_was_left():
     assert (eventually.status, eventually.margin) == ("failed", -0.03)
 
 
+def test_the_distance_to_what_the_planner_alone_knows_is_left_out():
+    belief = thing("belief", physics=False)
+    key = ("robot", "belief")
+    run = make_run(objects=(belief,), clearances={key: np.full(200, -0.01)})
+    answer = verdict(run, NEVER)
+    assert (answer.status, answer.unit) == ("passed", "1")
+
+
 def test_a_distance_of_zero_without_contact_is_no_collision():
     run = make_run(objects=(WALL,), clearances={("robot", "wall"): np.zeros(200)})
     assert not collides(run)
