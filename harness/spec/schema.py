@@ -10,6 +10,7 @@ import json
 from collections.abc import Iterable, Mapping
 from typing import Any, cast
 
+from pydantic import ValidationError
 from pydantic.json_schema import GenerateJsonSchema
 from pydantic_core import core_schema
 
@@ -162,8 +163,10 @@ def _with_short_form(definition: Schema, model: type[SpecModel]) -> Schema:
         if model.short_is_list:
             array = short["anyOf"][0] if "anyOf" in short else short
             branches.append(array["items"])
-    if (is_step or is_check) and not mapping.get("required"):
+    if (is_step or is_check) and _may_be_bare(model):
         branches.append({"type": "null"})
+    elif is_step or is_check:
+        mapping["minProperties"] = 1
     if len(branches) == 1:
         return mapping
     description = mapping.pop("description", "")
@@ -217,7 +220,7 @@ def _language(definitions: Mapping[str, Schema]) -> dict[str, Schema]:
 def _one_word(
     words: Mapping[str, Schema], beside: Mapping[str, Schema], models: Mapping[str, type[SpecModel]]
 ) -> Schema:
-    bare = [word for word, model in models.items() if not _required(model)]
+    bare = [word for word, model in models.items() if _may_be_bare(model)]
     mapping: Schema = {
         "type": "object",
         "properties": {**words, **beside},
@@ -227,8 +230,13 @@ def _one_word(
     return {"anyOf": [mapping, {"type": "string", "enum": bare}]}
 
 
-def _required(model: type[SpecModel]) -> list[str]:
-    return [name for name, field in model.model_fields.items() if field.is_required()]
+def _may_be_bare(model: type[SpecModel]) -> bool:
+    """Whether a verb or predicate means something without content."""
+    try:
+        model.model_validate({})
+    except ValidationError:
+        return False
+    return True
 
 
 def _properties(model: type[SpecModel]) -> dict[str, Schema]:

@@ -58,7 +58,8 @@ MEANINGS = {
 """SI unit -> what it measures, and what a person would write."""
 
 NUMBER_AND_UNIT = re.compile(
-    r"\s*(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>.*?)\s*", re.DOTALL
+    r"\s*(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>|[^\W\d].*?|°.*?)\s*",
+    re.DOTALL,
 )
 UNIT = re.compile(r"[A-Za-zµμ°_]+(?:\s*(?:\*\*|[*/^·])?\s*(?:[A-Za-zµμ°_]+|-?[1-4]))*")
 LONGEST = 60

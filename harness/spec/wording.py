@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, cast
 
 from pydantic_core import ErrorDetails
 
@@ -20,9 +20,18 @@ def problems_of(errors: Iterable[ErrorDetails], lines: SourceMap) -> list[Proble
     """One problem for each place and message."""
     problems: dict[tuple[int, int, str], Problem] = {}
     for error in errors:
+        if _is_follow_up(error):
+            continue
         problem = _problem(error, lines)
         problems.setdefault((problem.line, problem.column, problem.message), problem)
     return list(problems.values())
+
+
+def _is_follow_up(error: ErrorDetails) -> bool:
+    """Whether pydantic calls a list too short because items of it are wrong."""
+    given: object = error["input"]
+    length = len(cast("list[Any]", given)) if isinstance(given, list) else 0
+    return error["type"] == "too_short" and length >= error.get("ctx", {})["min_length"]
 
 
 def _problem(error: ErrorDetails, lines: SourceMap) -> Problem:
@@ -35,23 +44,24 @@ def _problem(error: ErrorDetails, lines: SourceMap) -> Problem:
         place = found.key
     word = WORDINGS.get(error["type"], _as_said)
     message, hint = word(error, error.get("ctx", {}), describe(error["input"]))
-    subject = _subject(found)
-    if subject and error["type"] not in ("value_error",):
-        message = f"`{subject}` {message}"
+    if error["type"] != "value_error":
+        is_key = place is found.key
+        message = f"a name {message}" if is_key else f"`{_subject(found)}` {message}"
     return place.problem(message, hint)
 
 
 def _subject(found: Found) -> str:
-    """The key that the value belongs to: `xyz`, or `xyz` for its third item."""
+    """The key that the value belongs to: `xyz`, for its third item too."""
     names = [part for part in found.path if isinstance(part, str)]
-    return names[-1] if names and found.item.tag == "" else ""
+    return names[-1] if names else "the file"
 
 
 def _missing(loc: Loc, found: Found) -> tuple[str, str]:
     part = loc[-1]
     if isinstance(part, int):
         size = len(found.item.items())
-        return f"`{_subject(found)}` has {size} items; item {part + 1} is missing", ""
+        noun = "item" if size == 1 else "items"
+        return f"`{_subject(found)}` has {size} {noun}; item {part + 1} is missing", ""
     where = found.item.tag or next((p for p in reversed(found.path) if isinstance(p, str)), "")
     inside = f" in `{where}`" if where else ""
     return f"`{part}` is missing{inside}", f"add `{part}:`"
@@ -95,7 +105,8 @@ def _length(words: str, key: str) -> Wording:
 
 def _characters(words: str, key: str) -> Wording:
     def word(_: ErrorDetails, context: dict[str, Any], value: str) -> tuple[str, str]:
-        return f"has {words} {context[key]} characters, not {value}", ""
+        noun = "character" if context[key] == 1 else "characters"
+        return f"has {words} {context[key]} {noun}, not {value}", ""
 
     return word
 

@@ -1,0 +1,145 @@
+from pathlib import Path
+
+import pytest
+
+from harness.core.errors import SpecError
+from harness.spec.load import load_scenario, parse_scenario
+
+FILES = Path(__file__).parent / "files"
+HEAD = "scenario: x\nrobot: ur3e\nsteps:\n"
+
+
+def problems(text):
+    with pytest.raises(SpecError) as caught:
+        parse_scenario(text, Path("f.yaml"))
+    return caught.value.problems
+
+
+def test_ten_mistakes_give_ten_located_problems_at_once():
+    with pytest.raises(SpecError) as caught:
+        load_scenario(FILES / "ten_mistakes.yaml")
+    found = [(p.line, p.column, p.message) for p in caught.value.problems]
+    assert found == [
+        (2, 22, "unknown key `griper`"),
+        (3, 7, "`seed` must be at least 0, not `-1`"),
+        (4, 46, "`pipeline` cannot be `omlp`"),
+        (6, 5, "no verb is called `move_too`"),
+        (8, 5, "a step has one verb; this one has `gripper` and `move_to`"),
+        (9, 11, "`120 milimeter`: no unit is called `milimeter`"),
+        (10, 33, "`expect` stands beside `move_to`, not inside it"),
+        (11, 23, "`xyz` has 2 items; item 3 is missing"),
+        (12, 5, "`object` is missing in `pick`"),
+        (14, 13, "no predicate is called `colision`"),
+    ]
+
+
+def test_a_problem_shows_the_line_a_caret_and_the_nearest_word():
+    text = HEAD + "  - grsp: {object: box}\n"
+    (problem,) = problems(text)
+    first, excerpt, caret, *rest = str(problem).splitlines()
+    assert first == "f.yaml:4:5: no verb is called `grsp`"
+    assert excerpt == "    4 |   - grsp: {object: box}"
+    assert caret == "      |     ^^^^"
+    assert rest[0].startswith("      | did you mean `grasp`? verbs: move_to, ptp, lin")
+
+
+@pytest.mark.parametrize(
+    ("step", "message", "hint"),
+    [
+        ("- §5", "a step is a verb with its content, not `5`", "verbs: move_to"),
+        ("- §moveto: up", "no verb is called `moveto`", "did you mean `move_to`?"),
+        ("- §xyzzy", "no verb is called `xyzzy`", "verbs: move_to"),
+        ("- §{id: a}", "a step has one verb; this one has none", "verbs: move_to"),
+        ("- {§do: lin}", "`do:` is not written", "verbs"),
+        ("- {lin: up, §pose: {}}", "`pose` stands inside `lin`, not beside", "further right"),
+        ("- {lin: up, §expct: []}", "unknown key `expct` beside `lin`", "mean `expect`?"),
+        ("- clear_objects: §up", "`clear_objects` takes a mapping, not `up`", "keys: world"),
+        ("- §move_to:", "exactly one goal of", "found none"),
+        ("- §move_to: {named_target: a, joints: {b: 1}}", "exactly one goal of", "and joints"),
+        ("- grasp: {object: §5}", "`object` is text, not `5`", 'write "5"'),
+        ("- grasp: {object: a, mode: §glue}", "`mode` cannot be `glue`", "friction, weld"),
+        ("- repeat: {times: §2.5, steps: [settle]}", "`times` is a whole number, not `2.5`", ""),
+        ("- repeat: {times: 2, steps: §{}}", "`steps` is a list, not a mapping", ""),
+        ("- repeat: {times: 2, steps: §[]}", "`steps` has at least 1 item, not 0", ""),
+        ("- repeat: {times: 2, steps: [§grsp: a]}", "no verb is called `grsp`", "`grasp`?"),
+        ("- {lin: up, expect_error: §COLLISION}", "cannot be `COLLISION`", "GOAL_IN_COLLISION"),
+        ("- {lin: up, expect: §{grasped: a}}", "`expect` is a list, not a mapping", ""),
+        ("- move_to: {joints: {a: §5 s}}", "`5 s` is a time; an angle or a length", "deg"),
+        ("- move_to: {joints: {§'': 5}}", "a name has at least 1 character", ""),
+        ("- move_to: {pose: {xyz: §5}}", "`xyz` is a list, not `5`", ""),
+        ("- move_to: {pose: {xyz: §[0, 0, 0, 1]}}", "`xyz` has at most 3 items, not 4", ""),
+        ("- move_to: {position: [0, 0, §up]}", "a length is a number, not `up`", "cm"),
+        (
+            "- move_to: {pose: {quat_xyzw: §[1, 1, 0, 0]}}",
+            "a quaternion has norm 1, this one 1.414",
+            "normalised it is [0.707107, 0.707107, 0, 0]",
+        ),
+        (
+            "- move_to: {pose: §{rpy: [0, 0, 0], quat_wxyz: [1, 0, 0, 0]}}",
+            "a pose has one rotation",
+            "rpy and quat_wxyz",
+        ),
+        ("- add_object: §{name: a}", "an object is exactly one of box", "or several"),
+        ("- add_object: {name: a, box: {size: [1, 1, §0]}}", "`size` must be more than 0", ""),
+        (
+            "- add_object: {name: a, sphere: {radius: 1}, friction: §slick}",
+            "`friction` is a number, not `slick`",
+            "",
+        ),
+        (
+            "- attach_object: {object: {§nme: a, sphere: {radius: 1}}}",
+            "unknown key `nme`",
+            "did you mean `name`?",
+        ),
+    ],
+)
+def test_a_mistake_in_a_step_is_one_problem_at_its_place(step, message, hint):
+    (problem,) = problems(f"{HEAD}  {step.replace('§', '')}\n")
+    assert (problem.line, problem.column) == (4, step.index("§") + 3)
+    assert message in problem.message
+    assert hint in f"{problem.message} {problem.hint}"
+
+
+@pytest.mark.parametrize(
+    ("expectation", "message", "hint"),
+    [
+        ("- §lifed: a", "no predicate is called `lifed`", "did you mean `lifted`?"),
+        ("- {lifted: a, §grasped: a}", "one predicate; this one has `lifted`", "`- grasped:`"),
+        ("- always: {lifted: a, §grasped: a}", "`always` has one predicate", "`- grasped:`"),
+        ("- always: {§never: {lifted: a}}", "`never` cannot stand inside a temporal word", ""),
+        ("- always: §withn_limits", "no predicate is called `withn_limits`", "`within_limits`"),
+        ("- §{until: {lifted: a}}", "an expectation has one predicate", "always: A, until: B"),
+        ("- {never: {lifted: a}, §until: {lifted: b}}", "`until` goes with `always`", "B does"),
+        ("- §{name: b}", "an expectation has one predicate; this one has none", "lifted"),
+        ("- lifted: {§objet: a}", "unknown key `objet` in `lifted`", "did you mean `object`?"),
+        ("- {lifted: {object: a, for: 1}, §for: 2}", "`for` is here twice", "line 6"),
+        ("- never: {lifted: {object: a, above: §5 kg}}", "`5 kg` is a mass; a length", "cm"),
+        ("- §lifted:", "`object` is missing in `lifted`", "add `object:`"),
+        ("- {lifted: a, for: §-1}", "`for` must be at least 0, not `-1`", ""),
+        ("- {formula: G(x), §for: 1}", "`for` has no meaning beside `formula`", ""),
+        ("- collision: {between: §[robot]}", "`between` has 1 item; item 2 is missing", ""),
+    ],
+)
+def test_a_mistake_in_an_expectation_is_one_problem_at_its_place(expectation, message, hint):
+    (problem,) = problems(f"{HEAD}- settle\nexpect:\n{expectation.replace('§', '')}\n")
+    assert (problem.line, problem.column) == (6, expectation.index("§") + 1)
+    assert message in problem.message
+    assert hint in problem.hint
+
+
+def test_a_misspelt_word_is_read_as_the_nearest_so_that_its_content_is_checked():
+    found = problems(HEAD + "- grsp: {object: 5, moode: weld}\n")
+    assert [problem.message for problem in found] == [
+        "no verb is called `grsp`",
+        "`object` is text, not `5`",
+        "unknown key `moode` in `grasp`",
+    ]
+
+
+def test_what_is_missing_at_the_top_is_at_the_files_start():
+    found = problems("description: nothing else\n")
+    assert [(p.line, p.column, p.message) for p in found] == [
+        (1, 1, "`scenario` is missing"),
+        (1, 1, "`robot` is missing"),
+        (1, 1, "`steps` is missing"),
+    ]
