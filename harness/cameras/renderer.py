@@ -54,4 +54,6 @@ def make_renderer(
             except Exception as error:
                 if backend == name:
                     raise RuntimeError(f"{name} cannot draw here: {error}") from error
+    if backend not in ("auto", RayRenderer.backend):
+        raise RuntimeError(f"no backend '{backend}'")
     return RayRenderer(picture, width, height)

@@ -1,0 +1,11 @@
+"""The robot of the camera tests."""
+
+import pytest
+
+from harness.robot.load import load_robot
+from harness.spec.scenario import RobotSpec
+
+
+@pytest.fixture(scope="session")
+def ur3e():
+    return load_robot(RobotSpec(model="ur3e", gripper="rh_p12_rn_a"))

@@ -1,0 +1,166 @@
+"""A still shows what was recorded, with every backend the machine has."""
+
+import os
+import subprocess
+import sys
+
+import cv2
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from harness.cameras.picture_model import build_picture_model
+from harness.cameras.recorded_scene import poses_at
+from harness.cameras.renderer import make_renderer
+from harness.cameras.robot_poses import link_poses
+from harness.cameras.stills import overview, save_stills
+from harness.cameras.viewpoint import fit_viewpoint
+from tests.cameras.recorded_runs import IMAGINED, OBJECTS, RED_BOX, a_run
+
+SIZE = 640, 480
+
+
+def draw(description, run, sample, backend):
+    picture = build_picture_model(
+        description, OBJECTS, floor_height=0.0, width=SIZE[0], height=SIZE[1]
+    )
+    picture.pose(poses_at(description, OBJECTS, run, sample, None))
+    try:
+        renderer = make_renderer(picture, *SIZE, backend)
+    except RuntimeError as error:
+        pytest.skip(str(error))
+    try:
+        return renderer.render(overview(description, OBJECTS, run))
+    finally:
+        renderer.close()
+
+
+def pixel(viewpoint, point):
+    """Column and row of a point in the world."""
+    x, y, z = viewpoint.pose.inverse().apply(np.asarray(point))
+    focal = 0.5 * SIZE[1] / np.tan(np.radians(viewpoint.field_of_view) / 2)
+    return round(SIZE[0] / 2 + focal * x / -z), round(SIZE[1] / 2 - focal * y / -z)
+
+
+def mean_colour(picture, viewpoint, point):
+    column, row = pixel(viewpoint, point)
+    return picture[row - 3 : row + 4, column - 3 : column + 4].reshape(-1, 3).mean(axis=0)
+
+
+@pytest.mark.parametrize("backend", ["egl", "osmesa", "rays"])
+def test_objects_are_drawn_where_they_were_recorded(ur3e, backend):
+    run = a_run(ur3e)
+    viewpoint = overview(ur3e, OBJECTS, run)
+    place = RED_BOX.pose.translation
+    raised = place + np.array([0, 0, 0.2])
+    red, green, blue = mean_colour(draw(ur3e, run, 0, backend), viewpoint, place)
+    assert red > 2 * max(green, blue)
+    red, green, blue = mean_colour(draw(ur3e, run, 1, backend), viewpoint, raised)
+    assert red > 2 * max(green, blue)
+    red, green, blue = mean_colour(draw(ur3e, run, 2, backend), viewpoint, place)
+    assert red < 1.2 * max(green, blue)  # it was removed
+
+
+@pytest.mark.parametrize("backend", ["egl", "osmesa", "rays"])
+def test_an_object_of_the_planner_alone_is_translucent(ur3e, backend):
+    run = a_run(ur3e)
+    viewpoint = overview(ur3e, OBJECTS, run)
+    place = IMAGINED.pose.translation
+    ghost = mean_colour(draw(ur3e, run, 0, backend), viewpoint, place)
+    floor = mean_colour(draw(ur3e, run, 2, backend), viewpoint, place)
+    assert ghost[2] > 1.15 * ghost[0]  # blue
+    assert ghost[0] > 50  # but the floor shines through
+    assert abs(floor[2] - floor[0]) < 15
+
+
+def test_rays_and_graphics_library_draw_the_same_picture(ur3e):
+    run = a_run(ur3e)
+    first, second = (draw(ur3e, run, 0, name).astype(float) for name in ("egl", "rays"))
+    edges = [cv2.Canny(image.astype(np.uint8), 80, 160) > 0 for image in (first, second)]
+    near = cv2.dilate(edges[1].astype(np.uint8), np.ones((7, 7))) > 0
+    assert near[edges[0]].mean() > 0.6
+    assert np.abs(first - second).mean() < 25
+
+
+def test_one_picture_is_saved_for_each_executed_step(ur3e, tmp_path):
+    report = save_stills(ur3e, OBJECTS, a_run(ur3e), tmp_path / "images")
+    names = [file.name for file in report.files]
+    assert names == [f"0{i + 1}-step-{i}.jpg" for i in range(4)]
+    for file in report.files:
+        assert cv2.imread(str(file)).shape == (480, 640, 3)
+    assert (report.note == "") is (report.backend != "rays")
+
+
+def test_without_a_graphics_library_the_rays_draw_and_the_note_says_so(tmp_path):
+    """PyOpenGL told to use a library that is none of ours stands for a machine without one."""
+    program = """
+import sys
+from pathlib import Path
+from harness.cameras.stills import save_stills
+from harness.robot.load import load_robot
+from harness.spec.scenario import RobotSpec
+from tests.cameras.recorded_runs import OBJECTS, a_run
+robot = load_robot(RobotSpec(model="open_manipulator_x"))
+report = save_stills(robot, OBJECTS, a_run(robot), Path(sys.argv[1]))
+print(report.backend, len(report.files), report.note, sep="|")
+"""
+    environment = {
+        **os.environ,
+        "PYOPENGL_PLATFORM": "none",
+        "PYTHONPATH": os.pathsep.join(sys.path),
+    }
+    done = subprocess.run(
+        [sys.executable, "-c", program, str(tmp_path)],
+        capture_output=True, text=True, env=environment, check=True,
+    )  # fmt: skip
+    assert done.stdout.strip() == (
+        "rays|4|pictures by the ray camera: this machine has neither EGL nor OSMesa"
+    )
+
+
+def test_a_named_backend_that_is_not_there_is_an_error(ur3e):
+    picture = build_picture_model(ur3e, (), floor_height=0.0, width=64, height=48)
+    with pytest.raises(RuntimeError, match="no backend 'povray'"):
+        make_renderer(picture, 64, 48, "povray")
+
+
+def test_link_poses_are_those_of_pinocchio(ur3e):
+    model = pin.buildModelFromXML(ur3e.urdf)
+    data = model.createData()
+    positions = ur3e.with_mimics(np.linspace(-0.5, 0.6, len(ur3e.joint_names)))
+    q = pin.neutral(model)
+    for name, position in zip(ur3e.joint_names, positions, strict=True):
+        joint = model.joints[model.getJointId(name)]
+        if joint.nq == 2:
+            q[joint.idx_q : joint.idx_q + 2] = np.cos(position), np.sin(position)
+        else:
+            q[joint.idx_q] = position
+    pin.framesForwardKinematics(model, data, q)
+    poses = link_poses(ur3e, positions)
+    for link in ur3e.link_names:
+        expected = data.oMf[model.getFrameId(link)]
+        np.testing.assert_allclose(poses[link].translation, expected.translation, atol=1e-9)
+        np.testing.assert_allclose(poses[link].rotation, expected.rotation, atol=1e-9)
+
+
+def test_an_attached_object_is_drawn_where_the_planner_believes_it(ur3e):
+    poses = poses_at(ur3e, OBJECTS, a_run(ur3e), 3, None)
+    tip = poses[ur3e.tcp_link]
+    np.testing.assert_allclose(
+        poses["imagined"].translation, tip.translation + 0.1 * tip.rotation[:, 2]
+    )
+    assert "imagined" not in poses_at(ur3e, OBJECTS, a_run(ur3e), 2, None)
+    assert "red_box" not in poses
+
+
+def test_the_overview_holds_every_point():
+    rng = np.random.default_rng(3)
+    points = rng.uniform(-1.0, 1.5, (200, 3))
+    viewpoint = fit_viewpoint(points, np.zeros(200), *SIZE)
+    columns, rows = np.array([pixel(viewpoint, point) for point in points]).T
+    assert columns.min() >= 0
+    assert columns.max() < SIZE[0]
+    assert rows.min() >= 0
+    assert rows.max() < SIZE[1]
+    filled = max(np.ptp(columns) / SIZE[0], np.ptp(rows) / SIZE[1])
+    assert filled > 0.7
