@@ -21,7 +21,7 @@ from harness.spec.steps import (
 
 
 def words(models: Iterable[type], tag: str) -> list[str]:
-    """How files spell some models: `words(execute, "do")` is the verbs that are executed, sorted."""
+    """How files spell some models, sorted: `words(execute, "do")` are the executed verbs."""
     return sorted(
         str(model.model_fields[tag].default) for model in models if issubclass(model, SpecModel)
     )

@@ -11,7 +11,8 @@ from harness.core.errors import RobotError, SpecError
 from harness.engine.compile import Sources, compile_scenario
 from harness.engine.program import Program
 from harness.planning.backend import make_planning
-from harness.planning.planner_names import STATE_CHECKS_PER_SECOND, resolve_planner_id
+from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
+from harness.planning.planner_names import resolve_planner_id
 from harness.ports import Kinematics, MotionPlanner, PlanningScene
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot

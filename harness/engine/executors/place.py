@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from harness.core.errors import PlanningFailed, StepFailed
@@ -16,12 +18,14 @@ from harness.engine.executors.pick import (
 )
 from harness.engine.goals import TcpGoal, group_of
 from harness.engine.grasping import gripper_axes, pitch_of
+from harness.engine.program import ProgramStep
 from harness.engine.registry import execute
 from harness.ports import PositionGoal
 from harness.spec.poses import Direction, Position
 from harness.spec.steps import Place, Release
 
 REFINEMENTS = 4
+PUT_DOWN_GAP = 0.001  # [m] above the target, so that the support is touched when the fingers open
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -33,7 +37,8 @@ def place(step: Place, cell: Cell) -> None:
     if name is None or name not in cell.scene.attached():
         what = f"'{name}' is not held" if name else "nothing is held"
         raise StepFailed("INVALID_OBJECT_NAME", f"{what}, so nothing can be placed")
-    target = cell.world_pose(step.pose)
+    stated = cell.world_pose(step.pose)
+    target = SE3(stated.rotation, stated.translation + PUT_DOWN_GAP * UP)
     along = -UP
     if step.approach is not None and step.approach.direction is not None:
         along = cell.world_direction(step.approach.direction)
@@ -45,7 +50,9 @@ def place(step: Place, cell: Cell) -> None:
             _tcp_goal(name, before, step, cell).move_to(step.group),
             f"move_to above the place of {name}",
         ),
-        cell.child("lower", _tcp_goal(name, target, step, cell).lin(step.group), f"lin {name}"),
+        _touching(
+            cell.child("lower", _tcp_goal(name, target, step, cell).lin(step.group), f"lin {name}")
+        ),
         cell.child("release", Release(object=name), f"release {name}"),
         cell.child(
             "retreat", relative_step(step.retreat, backwards, step.group), "move_relative back"
@@ -55,6 +62,11 @@ def place(step: Place, cell: Cell) -> None:
         cell.run_steps(children)
     finally:
         cell.step, cell.notes = current, notes
+
+
+def _touching(step: ProgramStep) -> ProgramStep:
+    """The step without padding: what is put down comes as near to its support as it will stand."""
+    return replace(step, options=replace(step.options, padding=0.0))
 
 
 def _retreat_direction(cell: Cell) -> Direction:
