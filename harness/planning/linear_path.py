@@ -197,16 +197,15 @@ def time_line(
         MAX_ROTATION_VELOCITY / max(line.angle, 1e-9),
     )
     change = scaling[1] * acceleration_share * rate / scaling[0]
-    profile = Trapezoid.fastest(1.0, rate, change)
     spline = uniform_spline(traced.positions)
-
-    def curve(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        s, ds, dds = (column[:, None] for column in profile(times))
-        value, slope, bend = spline(s[:, 0])
-        return value, slope * ds, slope * dds + bend * ds**2
-
-    fine = np.arange(0.0, profile.duration, GRID)
-    _, velocities, accelerations = curve(fine)
+    for _ in range(2):  # gentler ramps and a lower middle, before everything is slowed down
+        profile = Trapezoid.fastest(1.0, rate, change)
+        _, velocities, accelerations = _along(spline, profile)(_fine(profile))
+        rate /= max(1.0, float(np.max(np.abs(velocities) / limits.velocity)))
+        change /= max(1.0, float(np.max(np.abs(accelerations) / limits.acceleration)))
+    profile = Trapezoid.fastest(1.0, rate, change)
+    curve = _along(spline, profile)
+    _, velocities, accelerations = curve(_fine(profile))
     total = on_grid(profile.duration * max(1.0, limits.excess(velocities, accelerations)))
     factor = profile.duration / total
 
@@ -215,6 +214,21 @@ def time_line(
         return value, velocity * factor, acceleration * factor**2
 
     return sample(checker.space.joint_names, slowed, total)
+
+
+def _fine(profile: Trapezoid) -> FloatArray:
+    return np.arange(0.0, profile.duration, GRID)
+
+
+def _along(spline: Curve, profile: Trapezoid) -> Curve:
+    """A spline over its parameter, as a curve over time."""
+
+    def curve(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        s, ds, dds = (column[:, None] for column in profile(times))
+        value, slope, bend = spline(s[:, 0])
+        return value, slope * ds, slope * dds + bend * ds**2
+
+    return curve
 
 
 def deviation(

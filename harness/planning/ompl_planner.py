@@ -92,7 +92,7 @@ def search(
     kind = resolve_planner_id(planner_id)
     space = checker.space
     _seed_ompl(seed)
-    information, definition, space_ref = _problem(space, checker, start, goals, resolution)
+    information, definition = _problem(space, checker, start, goals, resolution)
     planner = getattr(og, kind)(information)
     _set_parameters(planner, {"range": DEFAULT_RANGE}, strict=False)
     _set_parameters(planner, parameters, strict=True)
@@ -110,7 +110,6 @@ def search(
     path = definition.getSolutionPath()
     states = path.getStates()
     waypoints = np.array([[state[index] for index in range(space.dof)] for state in states])
-    del space_ref
     return Search(waypoints, used, vertices, 0.0)
 
 
@@ -126,7 +125,7 @@ def _problem(
     start: FloatArray,
     goals: Sequence[FloatArray],
     resolution: float,
-) -> tuple[ob.SpaceInformation, ob.ProblemDefinition, ob.RealVectorStateSpace]:
+) -> tuple[ob.SpaceInformation, ob.ProblemDefinition]:
     ends = np.vstack([start, *goals])
     states = ob.RealVectorStateSpace(space.dof)
     bounds = ob.RealVectorBounds(space.dof)
@@ -148,7 +147,7 @@ def _problem(
     for positions in goals:
         goal.addState(_state(states, positions))
     definition.setGoal(goal)
-    return information, definition, states
+    return information, definition
 
 
 def _state(space: ob.RealVectorStateSpace, positions: FloatArray) -> ob.State:

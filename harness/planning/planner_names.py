@@ -16,7 +16,6 @@ _CLASSES: Mapping[str, str] = {
     "KPIECE": "KPIECE1",
     "BKPIECE": "BKPIECE1",
     "LBKPIECE": "LBKPIECE1",
-    "BITstar": "BITstar",
 }
 """Planner name -> class of the OMPL wheel."""
 
@@ -27,6 +26,7 @@ _REFUSED: Mapping[str, str] = {
     "BFMT": "it checks a whole batch of samples before it heeds the budget",
     "LazyPRM": "the OMPL wheel does not have it",
     "LazyPRMstar": "the OMPL wheel does not have it",
+    "BITstar": "its binding in the OMPL wheel never frees a plan",
     "AORRTC": "it searches until the budget ends and its equal runs were not verified",
     "EST": "the OMPL wheel does not have it",
     "BiEST": "the OMPL wheel does not have it",

@@ -1,0 +1,267 @@
+"""Planned motions of the lesson: found, repeatable, free at a finer step, else explained."""
+
+import numpy as np
+import pytest
+
+from harness.core.errors import PlanningFailed
+from harness.core.geometry import Box, Cylinder, Shape
+from harness.planning.checker import MotionChecker
+from harness.planning.robot_model import GroupSpace
+from harness.ports import JointGoal, PlanningOptions, PoseGoal, PositionGoal
+from tests.planning.lesson import (
+    ARM,
+    FIRST_BOXES,
+    SECOND_BOX,
+    TCP,
+    Cell,
+    at,
+    boxes,
+    grasp_goal,
+    open_manipulator,
+    thing,
+    ur,
+)
+
+OPTIONS = {"velocity_scaling": 0.3, "acceleration_scaling": 0.3, "seed": 7}
+
+
+def check_motion(cell, plan, padding=0.0, group=ARM):
+    """Everything the planner promises of a plan, checked again from outside and finer."""
+    trajectory, start = plan.trajectory, cell.state
+    space = GroupSpace(cell.kinematics.robot, group, start)
+    checker = MotionChecker(cell.scene, space, space.part(start), padding)
+    assert np.allclose(trajectory.positions[0], space.part(start), atol=1e-9)
+    assert np.all(np.diff(trajectory.times) > 0)
+    assert np.all(trajectory.positions >= space.lower - 1e-9)
+    assert np.all(trajectory.positions <= space.upper + 1e-9)
+    assert np.abs(trajectory.velocities / space.velocity).max() <= 0.3 * 1.001
+    assert np.abs(trajectory.accelerations / space.acceleration).max() <= 0.3 * 1.001
+    previous = trajectory.positions[0]
+    for positions in trajectory.positions[1:]:
+        assert checker.edge_free(previous, positions, 1 / 256)
+        previous = positions
+    return space.whole(trajectory.positions[-1])
+
+
+def sixteen_steps(model):
+    """The arm's motions of the lesson; yields name, goal, padding after changing the scene."""
+    cell = Cell(ur(model))
+    yield cell, "mogi_down", JointGoal(cell.named("mogi_down")), 0.0
+    cell.add(boxes(*FIRST_BOXES))
+    yield cell, "up", JointGoal(cell.named("up")), 0.01
+    yield cell, "mogi_home", JointGoal(cell.named("mogi_home")), 0.01
+    cell.scene.remove_object("boxes")
+    yield cell, "joints", JointGoal(np.array([-1.5707, -1.5707, 0, 0, 0, 0])), 0.0
+    yield cell, "step 8", grasp_goal(0.32, -0.17, 0.3), 0.0
+    tolerances = {"position_tolerance": 0.002, "orientation_tolerance": 0.001}
+    yield cell, "step 10", grasp_goal(0.32, -0.17, 0.08, **tolerances), 0.0
+    cell.add(thing("cylinder", at(0.32, -0.168, 1.07), Shape(Cylinder(0.03, 0.1))))
+    cell.scene.attach_object("cylinder", TCP, cell.description.gripper.links, cell.state)
+    cell.state[6:] = 0.5755
+    cell.add(boxes(*SECOND_BOX))
+    yield cell, "step 14", grasp_goal(0, -0.4, 0.09), 0.005
+    yield cell, "up again", JointGoal(cell.named("up")), 0.005
+
+
+@pytest.mark.parametrize("model", ["ur3e", "ur5e"])
+def test_the_motions_of_the_lesson_are_planned_and_hold(model):
+    planners = {}
+    for cell, name, goal, padding in sixteen_steps(model):
+        plan = cell.planner.plan(ARM, cell.state, goal, PlanningOptions(padding=padding, **OPTIONS))
+        end = check_motion(cell, plan, padding)
+        planners[name] = plan.statistics["planner_id"]
+        if isinstance(goal, PoseGoal):
+            shift, angle = goal.pose.distance_to(cell.kinematics.link_pose(end, TCP))
+            assert max(shift, angle) < 1e-6
+        cell.state = end
+    assert planners["up"] == "RRTConnect"  # the boxes stand in the straight way
+    assert planners["mogi_down"] == "straight line"
+
+
+def test_without_the_boxes_the_way_is_another():
+    cell = Cell(ur("ur3e"))
+    cell.state = cell.with_arm(cell.named("mogi_down"))
+    goal, options = JointGoal(cell.named("up")), PlanningOptions(padding=0.01, **OPTIONS)
+    free = cell.planner.plan(ARM, cell.state, goal, options)
+    cell.add(boxes(*FIRST_BOXES))
+    around = cell.planner.plan(ARM, cell.state, goal, options)
+    assert free.statistics["planner_id"] == "straight line"
+    assert around.statistics["path_length"] > free.statistics["path_length"]
+
+
+def test_the_same_plan_comes_out_whatever_was_planned_before():
+    def plan_up(before):
+        cell = Cell(ur("ur3e"))
+        cell.add(boxes(*FIRST_BOXES))
+        cell.state = cell.with_arm(cell.named("mogi_down"))
+        for seed in before:
+            options = PlanningOptions(seed=seed)
+            cell.planner.plan(ARM, cell.state, JointGoal(cell.named("up")), options)
+        options = PlanningOptions(padding=0.01, **OPTIONS)
+        plan = cell.planner.plan(ARM, cell.state, JointGoal(cell.named("up")), options)
+        return plan.trajectory.positions.tobytes(), plan.trajectory.times.tobytes()
+
+    alone = plan_up([])
+    assert plan_up([]) == alone
+    assert plan_up([3, 1]) == alone
+
+
+def test_another_seed_gives_another_path():
+    lengths = set()
+    for seed in (1, 2, 3):
+        cell = Cell(ur("ur3e"))
+        cell.add(boxes(*FIRST_BOXES))
+        cell.state = cell.with_arm(cell.named("mogi_down"))
+        plan = cell.planner.plan(
+            ARM, cell.state, JointGoal(cell.named("up")), PlanningOptions(seed=seed)
+        )
+        lengths.add(plan.statistics["raw_path_length"])
+    assert len(lengths) > 1
+
+
+def failure(call, *args):
+    with pytest.raises(PlanningFailed) as caught:
+        call(*args)
+    return caught.value
+
+
+def test_a_point_out_of_reach_is_explained_with_its_distance():
+    cell = Cell(ur("ur3e"))
+    error = failure(cell.planner.plan, ARM, cell.state, grasp_goal(1.32, 0, 0.3), PlanningOptions())
+    assert error.code == "NO_IK_SOLUTION"
+    nearest = np.array(error.facts["nearest_position"])
+    away = np.linalg.norm(nearest - [1.32, 0, 1.32])
+    assert error.facts["point_out_of_reach_by"] == pytest.approx(away)
+    assert 0.4 < away < 0.9
+    assert f"{1000 * away:.1f} mm" in error.message
+
+
+def test_an_orientation_out_of_reach_is_told_from_a_point_out_of_reach():
+    cell = Cell(ur("ur3e"))
+    goal = grasp_goal(0.5, -0.1, 0.3)
+    error = failure(cell.planner.plan, ARM, cell.state, goal, PlanningOptions())
+    assert error.code == "NO_IK_SOLUTION"
+    assert error.facts["point_out_of_reach_by"] == 0.0
+    assert error.facts["orientation_error"] > 0.01 or error.facts["position_error"] > 0.001
+
+
+def test_solutions_that_fall_to_limits_name_the_joint_and_how_far():
+    cell = Cell(ur("ur3e"))
+    found = cell.planner.check_goal(
+        ARM, cell.state, grasp_goal(0.32, -0.17, 0.08), PlanningOptions()
+    )
+    outside = found["outside_limits"]
+    assert len(outside) + len(found["ik_solutions"]) == 8
+    for solution in outside:
+        assert solution["joint"].endswith("_joint")
+        assert solution["excess"] == pytest.approx(abs(solution["value"] - solution["limit"]))
+        assert solution["excess"] > 0
+
+
+def test_a_goal_in_collision_names_every_solution_and_its_pair():
+    cell = Cell(ur("ur3e"))
+    goal = grasp_goal(0.32, -0.17, -0.02)
+    error = failure(cell.planner.plan, ARM, cell.state, goal, PlanningOptions())
+    assert error.code == "GOAL_IN_COLLISION"
+    assert len(error.facts["ik_solutions"]) > 1
+    for solution in error.facts["ik_solutions"]:
+        assert solution["status"] == "in collision"
+        assert solution["touches"][0]["distance"] < 0
+    assert "Table_0" in error.message
+
+
+def test_joint_goals_outside_their_limits_or_in_collision_are_refused():
+    cell = Cell(ur("ur3e"))
+    beyond = JointGoal(np.array([-3.5, -1.57, 0, 0, 0, 0]))
+    error = failure(cell.planner.plan, ARM, cell.state, beyond, PlanningOptions())
+    assert error.code == "GOAL_STATE_INVALID"
+    assert error.facts["outside_limits"][0]["joint"] == "shoulder_pan_joint"
+    assert error.facts["outside_limits"][0]["excess"] == pytest.approx(3.5 - 3.3406585, abs=1e-6)
+    down = JointGoal(np.array([0, 0.6, 0, 0, 0, 0]))
+    error = failure(cell.planner.plan, ARM, cell.state, down, PlanningOptions())
+    assert error.code == "GOAL_IN_COLLISION"
+    assert any("Table" in touch["pair"] for touch in error.facts["touches"])
+
+
+def test_an_exhausted_budget_tells_what_blocks_the_straight_way():
+    cell = Cell(ur("ur3e"))
+    cell.state = cell.with_arm(cell.named("mogi_down"))
+    cell.add(boxes(*FIRST_BOXES))
+    options = PlanningOptions(max_state_checks=30, attempts=2, seed=1)
+    error = failure(cell.planner.plan, ARM, cell.state, JointGoal(cell.named("up")), options)
+    assert error.code == "PLANNING_FAILED"
+    assert 30 <= error.facts["state_checks"] < 400
+    assert 0 < error.facts["straight_way"]["free_share"] < 1
+    assert "boxes" in error.facts["straight_way"]["touches"][0]["pair"]
+    assert error.facts["gap"] > 0
+
+
+def test_a_timed_joint_motion_takes_exactly_its_time_or_says_what_it_needs():
+    cell = Cell(open_manipulator())
+    goal = np.array([0.0, 0.87, -0.195, -0.67])
+    plan = cell.planner.plan_joint_motion("arm", cell.state, goal, PlanningOptions(), 2.0)
+    assert plan.trajectory.duration == pytest.approx(2.0, abs=1e-12)
+    assert np.all(plan.trajectory.velocities[[0, -1]] == 0)
+    middle = plan.trajectory.positions[len(plan.trajectory.times) // 2]
+    assert np.allclose(middle, 0.5 * (plan.trajectory.positions[0] + goal), atol=0.02)
+    call = cell.planner.plan_joint_motion
+    error = failure(call, "arm", cell.state, goal, PlanningOptions(), 0.1)
+    assert error.code == "INVALID_MOTION_PLAN"
+    assert error.facts["joint"] == "joint2"
+    needed = error.facts["shortest_duration"]
+    again = call("arm", cell.state, goal, PlanningOptions(), needed + 0.002)
+    assert again.trajectory.duration == pytest.approx(needed, abs=0.0041)
+
+
+def test_a_joint_motion_through_an_object_is_refused_with_the_pair():
+    cell = Cell(ur("ur3e"))
+    cell.state = cell.with_arm(cell.named("mogi_down"))
+    cell.add(boxes(*FIRST_BOXES))
+    error = failure(
+        cell.planner.plan_joint_motion, ARM, cell.state, cell.named("up"), PlanningOptions()
+    )
+    assert error.code == "INVALID_MOTION_PLAN"
+    assert any("boxes" in touch["pair"] for touch in error.facts["touches"])
+
+
+def test_a_motion_to_where_the_arm_stands_is_a_rest():
+    cell = Cell(ur("ur3e"))
+    goal = JointGoal(cell.state[:6])
+    plan = cell.planner.plan(ARM, cell.state, goal, PlanningOptions())
+    assert plan.trajectory.duration < 0.02
+    assert np.all(plan.trajectory.velocities == 0)
+
+
+def test_the_open_manipulator_goes_to_a_position_with_and_without_a_pitch():
+    cell = Cell(open_manipulator())
+    point = np.array([0.25, 0.0, 1.02 + 0.075])
+    for pitch in (0.0, None):
+        goal = PositionGoal(TCP, point, pitch)
+        plan = cell.planner.plan("arm", cell.state, goal, PlanningOptions())
+        state = cell.state.copy()
+        state[:4] = plan.trajectory.positions[-1]
+        pose = cell.kinematics.link_pose(state, TCP)
+        assert np.linalg.norm(pose.translation - point) < 1e-7
+        if pitch is not None:
+            assert pose.rotation[2, 0] == pytest.approx(0.0, abs=1e-7)
+
+
+def test_a_pose_for_four_joints_is_answered_with_what_to_write_instead():
+    cell = Cell(open_manipulator())
+    pose = at(0.25, 0.0, 1.095, rpy=(0, 0, 0.5))
+    error = failure(cell.planner.plan, "arm", cell.state, PoseGoal(TCP, pose), PlanningOptions())
+    assert error.code == "NO_IK_SOLUTION"
+    assert "`position` and `pitch`" in error.message
+    assert error.facts["orientation_error"] > 0.01
+
+
+def test_padding_widens_what_must_be_gone_around():
+    cell = Cell(ur("ur3e"))
+    wall = thing("wall", at(0.0, 0.0, 0.0), Shape(Box((0.02, 0.02, 0.02))))
+    tip = cell.kinematics.link_pose(cell.with_arm(cell.named("mogi_home")), TCP).translation
+    cell.scene.add_object(wall, at(tip[0] + 0.06, tip[1], tip[2]))
+    goal = JointGoal(cell.named("mogi_home"))
+    cell.planner.check_goal(ARM, cell.state, goal, PlanningOptions())
+    error = failure(cell.planner.plan, ARM, cell.state, goal, PlanningOptions(padding=0.08))
+    assert error.code == "GOAL_IN_COLLISION"
+    assert error.facts["touches"][0]["distance"] > 0

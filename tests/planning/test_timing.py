@@ -1,0 +1,77 @@
+"""Trajectories from paths: limits kept, ends at rest, derivatives that belong together."""
+
+import numpy as np
+import pytest
+
+from harness.planning.blended_path import BlendedPath
+from harness.planning.profiles import GRID, Trapezoid, cubic_curve
+from harness.planning.timing import Limits, time_blended, time_stopping, time_straight
+
+NAMES = tuple("abcdef")
+LIMITS = Limits.scaled(np.full(6, np.pi), np.full(6, 5.0), 0.3, 0.3)
+
+
+def zigzag(seed, count=5):
+    return np.cumsum(np.random.default_rng(seed).uniform(-1, 1, (count, 6)), axis=0)
+
+
+def ways(seed):
+    path = zigzag(seed)
+    return {
+        "straight": (path[:2], time_straight(NAMES, path[0], path[1], LIMITS)),
+        "toppra": (path, time_blended(NAMES, path, LIMITS, 0.05)),
+        "stopping": (path, time_stopping(NAMES, path, LIMITS)),
+    }
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_limits_are_kept_and_used_and_the_ends_rest(seed):
+    for path, trajectory in ways(seed).values():
+        speed = np.abs(trajectory.velocities / LIMITS.velocity).max()
+        push = np.abs(trajectory.accelerations / LIMITS.acceleration).max()
+        assert max(speed, push) <= 1.0 + 1e-9
+        assert max(speed, push) > 0.98
+        assert np.all(np.diff(trajectory.times) > 0)
+        assert np.allclose(trajectory.positions[[0, -1]], path[[0, -1]], atol=1e-9)
+        assert np.all(trajectory.velocities[[0, -1]] == 0)
+        assert trajectory.duration / GRID == pytest.approx(round(trajectory.duration / GRID))
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_velocities_are_the_derivative_of_positions(seed):
+    """Against the mean velocity of each interval, which lies within what acceleration allows."""
+    for _, trajectory in ways(seed).values():
+        steps = np.diff(trajectory.times)[:, None]
+        mean = np.diff(trajectory.positions, axis=0) / steps
+        halfway = 0.5 * (trajectory.velocities[1:] + trajectory.velocities[:-1])
+        assert np.abs(mean - halfway).max() < 1.5 * 0.01
+        slope = np.diff(trajectory.velocities, axis=0) / steps
+        assert np.abs(slope).max() <= 1.5 * (1 + 1e-3)
+
+
+def test_a_blended_path_stays_near_its_corners_and_on_its_lines():
+    path = zigzag(3)
+    blended = BlendedPath(path, 0.02)
+    positions, first, _ = blended.evaluate(np.linspace(0, blended.length, 2000))
+    assert max(np.linalg.norm(positions - corner, axis=1).min() for corner in path) <= 0.02 + 1e-3
+    assert np.abs(np.diff(first, axis=0)).max() < 0.2  # no jump of direction
+    middle = 0.5 * (path[0] + path[1])
+    assert np.linalg.norm(positions - middle, axis=1).min() < 2e-3
+
+
+def test_a_trapezoid_covers_its_length_in_its_time():
+    profile = Trapezoid.fastest(2.0, 0.5, 1.0)
+    times = np.linspace(0, profile.duration, 4001)
+    s, rate, change = profile(times)
+    assert (s[0], s[-1]) == (0.0, pytest.approx(2.0))
+    assert np.abs(np.gradient(s, times) - rate).max() < 1e-3
+    assert rate.max() <= 0.5
+    assert np.abs(change).max() <= 1.0
+
+
+def test_a_cubic_takes_the_time_it_is_given():
+    curve = cubic_curve(np.zeros(2), np.array([1.0, -2.0]), 4.0)
+    positions, velocities, accelerations = curve(np.array([0.0, 2.0, 4.0]))
+    assert np.allclose(positions, [[0, 0], [0.5, -1.0], [1.0, -2.0]])
+    assert np.allclose(velocities, [[0, 0], [0.375, -0.75], [0, 0]])
+    assert np.allclose(accelerations[0], [0.375, -0.75])
