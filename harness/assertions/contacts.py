@@ -18,7 +18,7 @@ from harness.recording.run import GripperRecord, Run
 TOUCH_FORCE = 1e-3
 """A tenth of the weight of one gram; less is no support and no grip [N]."""
 DEBOUNCE = 0.010
-"""Longest gap inside one contact [s]: five physics steps of 2 ms."""
+"""Longest gap inside one contact [s]: ten physics steps of 1 ms."""
 
 
 def gripper_of(run: Run) -> GripperRecord:

@@ -85,5 +85,5 @@ class World:
     name: str
     objects: tuple[WorldObject, ...]
     gravity: tuple[float, float, float] = (0.0, 0.0, -9.8)
-    timestep: float = 0.002
+    timestep: float = 0.001
     lights: tuple[Light, ...] = ()

@@ -313,7 +313,7 @@ class Run:
     steps: tuple[StepRecord, ...]
     signals: Signals
     gravity: tuple[float, float, float] = (0.0, 0.0, -9.8)
-    timestep: float = 0.002
+    timestep: float = 0.001
     allowed_contacts: tuple[tuple[str, str], ...] = ()
     findings: tuple[Finding, ...] = ()
     source: str = ""

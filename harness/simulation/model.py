@@ -14,6 +14,7 @@ from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
 from harness.robot.description import RobotDescription
 from harness.simulation.geoms import Surfaces
+from harness.simulation.grasp_contacts import add_grasp_contacts
 from harness.simulation.robot_mjcf import add_robot, joint_range, link_friction
 from harness.simulation.servo import Servos, add_servos, design_servos
 from harness.simulation.world_mjcf import add_object, parking_pose
@@ -110,6 +111,7 @@ def build_model(
         is_present = obj.name in present
         pose = obj.pose if is_present else parking_pose(index)
         add_object(spec, obj, pose, surfaces)
+    add_grasp_contacts(spec, description, simulated, surfaces)
     for frame in (description.tcp_link, *frames):
         _add_frame_sensors(spec, frame)
     for joint in description.movable_joints:

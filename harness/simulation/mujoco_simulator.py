@@ -46,7 +46,7 @@ class MujocoSimulator:
         present: Collection[str],
         *,
         gravity: tuple[float, float, float] = (0.0, 0.0, -9.8),
-        timestep: float = 0.002,
+        timestep: float = 0.001,
         frames: Sequence[str] = (),
     ) -> None:
         """Build the model and record its start state as sample 0.

@@ -15,7 +15,7 @@ from harness.simulation.geoms import Surfaces
 from harness.simulation.robot_mjcf import add_robot, coupling, link_friction
 
 BANDWIDTH_PER_STEP = 0.3
-"""Natural frequency of an arm servo times the physics step; 150 rad/s at 2 ms.
+"""Natural frequency of an arm servo times the physics step; 300 rad/s at 1 ms.
 
 Explicit stiffness is stable below 2; a folded arm has several times less inertia than the
 stretched one that the servo is made for.

@@ -159,7 +159,7 @@ class LightSpec(SpecModel):
 class PhysicsSpec(SpecModel):
     """Of the simulation."""
 
-    timestep: Annotated[PositiveDuration, Field(le=0.02)] = 0.002
+    timestep: Annotated[PositiveDuration, Field(le=0.02)] = 0.001
     gravity: tuple[Length, Length, Length] = (0.0, 0.0, -9.8)
 
 

@@ -58,4 +58,4 @@ def test_every_world_has_a_floor_a_light_and_the_lessons_gravity(name):
     assert found.objects[0].plane is not None
     assert len(found.lights) == 1
     assert found.physics.gravity == (0.0, 0.0, -9.8)
-    assert found.physics.timestep == 0.002
+    assert found.physics.timestep == 0.001

@@ -66,8 +66,8 @@ def test_every_signal_has_a_row_for_every_sample_from_time_zero(ur3e):
     move_arm(simulator, (0, -1.4, 0.2, -1.57, 0, 0), duration=0.5)
     signals = simulator.finish()
     count = simulator.sample_count
-    assert count == 251
-    np.testing.assert_allclose(signals.times, 0.002 * np.arange(count))
+    assert count == 501
+    np.testing.assert_allclose(signals.times, 0.001 * np.arange(count))
     joints = (count, len(ur3e.joint_names))
     for name in ("positions", "velocities", "efforts", "commands", "command_velocities"):
         assert getattr(signals, f"joint_{name}").shape == joints
