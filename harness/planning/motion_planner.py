@@ -194,11 +194,13 @@ class VerifiedPlanner:
     def check_goal(
         self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
     ) -> Mapping[str, Any]:
-        """What can be said of a goal without planning to it: each IK solution's fate."""
+        """What can be said of a goal without planning to it: each IK solution's fate.
+
+        `positions` are the group's at the free solution that would be tried first.
+        """
         task = self._task(group, start, options)
-        return find_goals(
-            self.kinematics, task.checker, np.asarray(start), goal, options.seed
-        ).explanation
+        found = find_goals(self.kinematics, task.checker, np.asarray(start), goal, options.seed)
+        return {**found.explanation, "positions": found.positions[0].tolist()}
 
     # Parts ---------------------------------------------------------------------------------
 
