@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TextIO
 
 from harness.reporting.result import CaseResult, ProgressEvent
@@ -21,10 +20,10 @@ class ProgressLines:
     """
 
     def __init__(
-        self, stream: TextIO, files: Sequence[Path], *, is_side_by_side: bool, style: Style
+        self, stream: TextIO, cases: Sequence[str], *, is_side_by_side: bool, style: Style
     ) -> None:
         self._stream = stream
-        self._files = files
+        self._cases = cases
         self._style = style
         self._is_side_by_side = is_side_by_side
         self._rewrites = stream.isatty() and style.has_color and not is_side_by_side
@@ -51,10 +50,10 @@ class ProgressLines:
     def _begin(self, index: int) -> None:
         if not self._is_side_by_side and self._headline != index:
             self._headline = index
-            self._stream.write(f"{self._style.strong(str(self._files[index]))}\n")
+            self._stream.write(f"{self._style.strong(self._cases[index])}\n")
 
     def _line(self, index: int, text: str) -> None:
         clear = CLEAR_LINE if self._rewrites else ""
-        whose = f"{self._files[index]}:" if self._is_side_by_side else ""
+        whose = f"{self._cases[index]}:" if self._is_side_by_side else ""
         self._stream.write(f"{clear}{whose}{text}\n")
         self._stream.flush()

@@ -84,7 +84,7 @@ def _collect(
     if not arguments.json:
         told = ProgressLines(
             sys.stdout,
-            [job.file for job in jobs],
+            _case_names(arguments, jobs),
             is_side_by_side=arguments.workers > 1 and not arguments.in_process,
             style=Style.of(sys.stdout),
         )
@@ -98,6 +98,14 @@ def _collect(
     except KeyboardInterrupt:
         return dict(sorted(results.items())), True
     return dict(sorted(results.items())), False
+
+
+def _case_names(arguments: argparse.Namespace, jobs: Sequence[CaseJob]) -> list[str]:
+    is_alone = arguments.workers == 1
+    names = [str(job.file) if is_alone else job.file.name.split(".")[0] for job in jobs]
+    if arguments.repeat == 1:
+        return names
+    return [f"{name} #{number % arguments.repeat + 1}" for number, name in enumerate(names)]
 
 
 def _results(

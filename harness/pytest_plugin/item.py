@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from harness.reporting.result import CaseResult
-from harness.reporting.terminal import failure
+from harness.reporting.terminal import causes
 from harness.suite.cases import CaseJob, run_here, run_isolated
 from harness.suite.folders import report_folders
 from harness.suite.header import Header, read_header, source_lines
@@ -24,11 +24,13 @@ PYTEST_MARKS = frozenset(
 
 
 class ScenarioNotPassed(Exception):  # noqa: N818 - what pytest shows is the text
-    """A scenario failed, is invalid, or broke; carries its result."""
+    """A scenario failed, is invalid, or broke; says why, with every number."""
 
     def __init__(self, result: CaseResult) -> None:
-        self.result = result
-        super().__init__(failure(result, source=source_lines(Path(result.file))))
+        told = causes(result, source_lines(Path(result.file)))
+        if result.report_dir:
+            told.append(f"report: {result.report_dir}")
+        super().__init__("\n".join(told))
 
 
 class ScenarioFile(pytest.File):

@@ -79,9 +79,8 @@ def step_done(event: ProgressEvent, style: Style = PLAIN) -> str:
     line += style.quiet(f"  t={event.sim_time:.2f} s")
     if event.status == "expected_error":
         line += style.quiet("  failed as expected")
-    if not is_good or event.status == "expected_error":
-        message = event.message.splitlines()[0] if event.message else ""
-        line += f"  {message}" if message else ""
+    if not is_good and event.message:
+        line += f"  {event.message.splitlines()[0]}"
     return line
 
 
@@ -116,24 +115,40 @@ def failure(
         source: Lines of the scenario file, to show those that are spoken of.
     """
     name = f"{result.file} [{result.case}]" if result.case else result.file
-    lines = [f"{style.outcome(result.outcome, result.outcome.upper())} {name}: {result.title}"]
-    causes = [str(problem) for problem in result.problems]
-    causes += [
-        step_failure(result.file, step, source) for step in result.steps if step.status == "failed"
-    ]
-    causes += [
-        verdict_failure(result.file, verdict, source)
-        for verdict in result.verdicts
-        if verdict.status != "passed"
-    ]
-    if result.outcome == "error" or not causes:
-        causes.append(result.message or "no cause was told")
-    lines += [_indent(cause) for cause in causes]
+    title = f": {result.title}" if not result.file.endswith(result.title) else ""
+    lines = [f"{style.outcome(result.outcome, result.outcome.upper())} {name}{title}"]
+    lines += [_indent(cause) for cause in causes(result, source)]
     if result.report_dir:
         lines.append(f"  report: {result.report_dir}")
     if again:
         lines.append(f"  again:  {again}")
     return "\n".join(lines)
+
+
+def causes(result: CaseResult, source: Sequence[str] = ()) -> list[str]:
+    """Everything that kept a case from passing; the file's mistakes, else steps, else expectations.
+
+    Args:
+        result: Of the case.
+        source: Lines of the scenario file, to show those that are spoken of.
+    """
+    found = [str(problem) for problem in result.problems]
+    found += [step_failure(result.file, step, source) for step in _innermost_failures(result.steps)]
+    found += [
+        verdict_failure(result.file, verdict, source)
+        for verdict in result.verdicts
+        if verdict.status != "passed"
+    ]
+    if result.outcome == "error" or not found:
+        found.append(result.message or "no cause was told")
+    return found
+
+
+def _innermost_failures(steps: Sequence[StepLine]) -> Iterable[StepLine]:
+    """Failed steps without those that failed only because a step nested in them did."""
+    failures = [step for step in steps if step.status == "failed"]
+    innermost = {(step.line, step.error_code, step.message): step for step in failures}
+    return innermost.values()
 
 
 def step_failure(file: str, step: StepLine, source: Sequence[str] = ()) -> str:
@@ -148,7 +163,8 @@ def verdict_failure(file: str, verdict: Verdict, source: Sequence[str] = ()) -> 
     """Place, expectation, status, why, source line, and everything measured."""
     place = f"{file}:{verdict.line}" if verdict.line else file
     lines = [f"{place}: {verdict.expectation}: {verdict_line(verdict)}"]
-    lines += _excerpt(source, verdict.line)
+    if verdict.status != "not reached":
+        lines += _excerpt(source, verdict.line)
     lines += [f"    {measure_text(measure)}" for measure in verdict.measures]
     return "\n".join(lines)
 

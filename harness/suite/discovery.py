@@ -39,6 +39,9 @@ def discover(paths: Sequence[str | Path]) -> list[Path]:
 def bundled_scenarios() -> dict[str, Path]:
     """Names of the bundled scenarios and their files."""
     folder = data_folder("scenarios")
+    here = Path.cwd()
+    if folder.is_relative_to(here):
+        folder = folder.relative_to(here)
     return {
         file.relative_to(folder).as_posix().removesuffix(SUFFIX): file
         for file in _in_folder(folder)
