@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Generic, TypeVar
 
@@ -112,9 +112,12 @@ def load_world(name_or_path: str, base_dir: Path) -> LoadedWorld:
         SpecError: No such world, or with every problem of its file.
     """
     path = world_path(name_or_path, base_dir)
-    text = read_text(path)
     problems: list[Problem] = []
-    written = parse_yaml(text, Source.of_text(str(path), text))
+    try:
+        text = read_text(path)
+        written = parse_yaml(text, Source.of_text(str(path), text))
+    except SpecError as error:
+        raise SpecError(_of_world(problem, name_or_path) for problem in error.problems) from error
     model, lines = _model(written, WorldSpec, problems)
     return LoadedWorld(model, path, text, lines, written)
 
@@ -177,6 +180,13 @@ def _model(written: Located, model: type[M], problems: list[Problem]) -> tuple[M
     if problems:
         raise SpecError(problems)
     return loaded, lines
+
+
+def _of_world(problem: Problem, name: str) -> Problem:
+    """A problem without a line, told so that it can stand in the scenario's."""
+    if problem.line:
+        return problem
+    return replace(problem, message=f"world `{name}`: {problem.message}")
 
 
 def _no_world(name: str, message: str, hint: str) -> SpecError:

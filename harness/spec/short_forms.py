@@ -8,7 +8,7 @@ is left out, so that pydantic goes on with the rest. Every value keeps its place
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple, get_args, get_origin
+from typing import Any, get_args, get_origin
 
 from harness.core.errors import Problem
 from harness.spec.annotations import bare, branches, is_model, keys_of
@@ -25,10 +25,9 @@ from harness.spec.language import (
 )
 from harness.spec.mistakes import describe, did_you_mean, nearest
 from harness.spec.scenario import RobotSpec
-from harness.spec.source import Entry, Located, Place
+from harness.spec.source import Entry, Located
 from harness.spec.steps import Step, StepFields
-
-UNTIL_USAGE = "`- {always: A, until: B}`: A holds until B does"
+from harness.spec.words import UNTIL_USAGE, Words, take_apart
 
 STEP, EXPECTATION, PREDICATE = bare(Step), bare(Expectation), bare(Predicate)
 
@@ -36,14 +35,6 @@ STEP, EXPECTATION, PREDICATE = bare(Step), bare(Expectation), bare(Predicate)
 def models_shape(item: Located, model: type[SpecModel], problems: list[Problem]) -> Located:
     """A file's values in the shape of its model; mistakes are added to `problems`."""
     return _Shaper(problems).model(item, model)
-
-
-class _Words(NamedTuple):
-    """A mapping taken apart: its one word, its content, and what stands beside it."""
-
-    word: str
-    entry: Entry
-    beside: dict[str, Entry]
 
 
 class _Shaper:
@@ -105,7 +96,7 @@ class _Shaper:
         return Located(entries, item.place)
 
     def step(self, item: Located) -> Located:
-        found = self._words(item, VERBS, BESIDE_VERB, "step", "verb")
+        found = take_apart(item, VERBS, BESIDE_VERB, "step", "verb", self.problems)
         if found is None:
             return _stand_in(item, "do", "settle", {})
         model = VERBS[found.word]
@@ -121,7 +112,7 @@ class _Shaper:
 
     def expectation(self, item: Located) -> Located:
         words = (*BESIDE_CHECK, UNTIL)
-        found = self._words(item, EXPECTATIONS, words, "expectation", "predicate")
+        found = take_apart(item, EXPECTATIONS, words, "expectation", "predicate", self.problems)
         if found is None:
             return _stand_in(item, "check", "within_limits", {})
         until = found.beside.pop(UNTIL, None)
@@ -134,12 +125,14 @@ class _Shaper:
         return self._predicate(found)
 
     def predicate(self, item: Located) -> Located:
-        found = self._words(item, PREDICATES, BESIDE_CHECK, "expectation", "predicate")
+        found = take_apart(
+            item, PREDICATES, BESIDE_CHECK, "expectation", "predicate", self.problems
+        )
         if found is None:
             return _stand_in(item, "check", "within_limits", {})
         return self._predicate(found)
 
-    def _predicate(self, found: _Words) -> Located:
+    def _predicate(self, found: Words) -> Located:
         model = EXPECTATIONS[found.word]
         content = self.model(_content(found.entry), model, word=found.word)
         if not isinstance(content.value, dict):
@@ -155,85 +148,29 @@ class _Shaper:
                 self._put(entries, key, entry)
         return _tagged("check", found, entries)
 
-    def _temporal(self, found: _Words, until: Entry | None) -> Located:
+    def _temporal(self, found: Words, until: Entry | None) -> Located:
         """`never: {collision: {...}, for: 1 s}`: the words inside belong to `never`."""
-        inner = self._words(found.entry.value, PREDICATES, BESIDE_CHECK, found.word, "predicate")
+        inner = take_apart(
+            found.entry.value, PREDICATES, BESIDE_CHECK, found.word, "predicate", self.problems
+        )
         entries = dict(found.beside)
         if inner is None:
             return _stand_in(found.entry.value, "check", "within_limits", {})
         for key, entry in inner.beside.items():
             self._put(entries, key, entry)
-        predicate = self._predicate(_Words(inner.word, inner.entry, {}))
+        predicate = self._predicate(Words(inner.word, inner.entry, {}))
         entries["predicate"] = Entry(found.entry.key, predicate)
         if until is None:
             return _tagged("check", found, entries)
         entries[UNTIL] = Entry(until.key, self.predicate(until.value))
-        return _tagged("check", _Words(UNTIL, found.entry, {}), entries)
+        return _tagged("check", Words(UNTIL, found.entry, {}), entries)
 
-    def _words(
-        self,
-        item: Located,
-        words: Mapping[str, object],
-        beside: tuple[str, ...],
-        whole: str,
-        kind: str,
-    ) -> _Words | None:
-        """Take a step or an expectation apart; None if there is no telling what it is."""
-        if isinstance(item.value, str):
-            if item.value in words:
-                return _Words(item.value, Entry(item.place, Located(None, item.place)), {})
-            meant = self._unknown(item.value, item.place, words, kind)
-            nothing = Entry(item.place, Located(None, item.place))
-            return None if meant is None else _Words(meant, nothing, {})
-        if not isinstance(item.value, dict):
-            message = f"{_a(whole)} is a {kind} with its content, not {describe(item.plain())}"
-            self.problems.append(item.place.problem(message, _all(words, kind)))
-            return None
-        said = [key for key in item.value if key in words]
-        others = [key for key in item.value if key not in words and key not in beside]
-        rest = {key: entry for key, entry in item.value.items() if key in beside}
-        if not said and others:
-            wrong = max(others, key=lambda key: nearest(key, words) is not None)
-            meant = self._unknown(wrong, item.value[wrong].key, words, kind)
-            return None if meant is None else _Words(meant, item.value[wrong], rest)
-        if not said:
-            message = f"{_a(whole)} has one {kind}; this one has none"
-            hint = UNTIL_USAGE if UNTIL in rest else _all(words, kind)
-            self.problems.append(item.place.problem(message, hint))
-            return None
-        for extra in said[1:]:
-            message = f"{_a(whole)} has one {kind}; this one has `{said[0]}` and `{extra}`"
-            hint = f"begin another one: `- {extra}:`"
-            self.problems.append(item.value[extra].key.problem(message, hint))
-        for other in others:
-            self._misplaced(other, item.value[other], said[0], words[said[0]], beside)
-        return _Words(said[0], item.value[said[0]], rest)
+    def _take_apart(
+        self, item: Located, words: Mapping[str, type[SpecModel]], whole: str
+    ) -> Words | None:
+        return take_apart(item, words, BESIDE_CHECK, whole, "predicate", self.problems)
 
-    def _unknown(
-        self, word: str, place: Place, words: Mapping[str, object], kind: str
-    ) -> str | None:
-        """Refuse a word; the nearest valid one, to go on as if the file said that."""
-        if word in EXPECTATIONS and kind == "predicate":
-            message = f"`{word}` cannot stand inside a temporal word; a predicate can"
-        elif word in ("do", "check"):
-            message = f"`{word}:` is not written; the {kind} itself is the key"
-        else:
-            message = f"no {kind} is called `{word}`"
-        self.problems.append(place.problem(message, did_you_mean(word, words, f"{kind}s")))
-        return nearest(word, words)
-
-    def _misplaced(
-        self, key: str, entry: Entry, word: str, model: object, beside: tuple[str, ...]
-    ) -> None:
-        if is_model(model) and key in keys_of(model):
-            message = f"`{key}` stands inside `{word}`, not beside it"
-            hint = f"write it below `{word}:`, further right"
-        else:
-            message = f"unknown key `{key}` beside `{word}`"
-            hint = did_you_mean(key, beside, "words that may stand there")
-        self.problems.append(entry.key.problem(message, hint))
-
-    def _not_content(self, found: _Words, content: Located, model: type[SpecModel]) -> None:
+    def _not_content(self, found: Words, content: Located, model: type[SpecModel]) -> None:
         message = f"`{found.word}` takes a mapping, not {describe(content.plain())}"
         keys = [key for key in keys_of(model) if key not in (*BESIDE_VERB, *BESIDE_CHECK)]
         hint = f"keys: {', '.join(keys)}" if keys else f"write `- {found.word}` alone"
@@ -294,7 +231,7 @@ def _content(entry: Entry) -> Located:
     return entry.value
 
 
-def _tagged(tag: str, found: _Words, entries: dict[str, Entry]) -> Located:
+def _tagged(tag: str, found: Words, entries: dict[str, Entry]) -> Located:
     place = found.entry.key
     word = Entry(place, Located(found.word, place))
     return Located({tag: word, **entries}, place, found.word)
@@ -302,14 +239,4 @@ def _tagged(tag: str, found: _Words, entries: dict[str, Entry]) -> Located:
 
 def _stand_in(item: Located, tag: str, word: str, beside: dict[str, Entry]) -> Located:
     """Holds the place of what could not be read, so that indices stay."""
-    return _tagged(tag, _Words(word, Entry(item.place, item), {}), beside)
-
-
-def _a(whole: str) -> str:
-    if whole in ("step", "expectation"):
-        return f"a{'n' if whole[0] == 'e' else ''} {whole}"
-    return f"`{whole}`"
-
-
-def _all(words: Mapping[str, object], kind: str) -> str:
-    return f"{kind}s: {', '.join(words)}"
+    return _tagged(tag, Words(word, Entry(item.place, item), {}), beside)

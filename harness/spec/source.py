@@ -39,6 +39,11 @@ class Source:
         """A line's text by its number from 1; empty where there is none."""
         return self.lines[number - 1] if 0 < number <= len(self.lines) else ""
 
+    def end_of(self, before: str) -> Place:
+        """The place behind the first characters of the text."""
+        lines = LINE_BREAK.split(before)
+        return Place(self, len(lines), len(lines[-1]) + 1)
+
 
 @dataclass(frozen=True)
 class Place:

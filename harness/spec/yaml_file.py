@@ -7,8 +7,6 @@ level and ends the process on a file of brackets, resolves scalars by YAML 1.1 (
 
 from __future__ import annotations
 
-import math
-import re
 import stat
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,36 +16,14 @@ import yaml
 
 from harness.core.errors import Problem, SpecError
 from harness.spec.source import Entry, Located, Place, Scalar, Source
+from harness.spec.yaml_scalars import scalar_of
+from harness.spec.yaml_wording import syntax_problem
 
 LARGEST_FILE = 2_000_000  # [bytes]
 LARGEST_TREE = 100_000  # values, aliases expanded
 DEEPEST = 50
-LONGEST_NUMBER = 300  # characters
-
-INTEGER = re.compile(r"[-+]?[0-9]+")
-BASED = re.compile(r"0o[0-7]+|0x[0-9a-fA-F]+")
-FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
-NOT_FINITE = re.compile(r"[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)")
-CONSTANTS: dict[str, Scalar] = {
-    **dict.fromkeys(("", "~", "null", "Null", "NULL"), None),
-    **dict.fromkeys(("true", "True", "TRUE"), True),
-    **dict.fromkeys(("false", "False", "FALSE"), False),
-}
 
 LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-
-PLAINER = (
-    ("mapping values are not allowed", "a second `:` here; quote text that contains `: `"),
-    ("found undefined alias", "no anchor has this name; text that begins with `*` needs quotes"),
-    ("found unexpected end of stream", "the text that begins here is not closed"),
-    ("did not find expected ',' or ']'", "this list is not closed, or a comma is missing"),
-    ("did not find expected ',' or '}'", "this mapping is not closed, or a comma is missing"),
-    ("did not find expected node content", "a value is missing, or a bracket is not closed"),
-    ("did not find expected '-' indicator", "every item of this list begins with `- `"),
-    ("did not find expected key", "this line does not fit the indentation above it"),
-    ("could not find expected ':'", "a key ends with `: `"),
-)
-"""What libyaml says -> what a person would say."""
 
 
 def read_text(path: Path, shown: str | None = None) -> str:
@@ -77,7 +53,7 @@ def read_text(path: Path, shown: str | None = None) -> str:
         before = data[: error.start].decode("utf-8-sig", errors="replace")
         source = Source.of_text(name, data.decode("utf-8-sig", errors="replace"))
         hint = "save the file as UTF-8"
-        raise SpecError([_at_end_of(before, source).problem("not UTF-8 text", hint)]) from error
+        raise SpecError([source.end_of(before).problem("not UTF-8 text", hint)]) from error
 
 
 def parse_yaml(text: str, source: Source) -> Located:
@@ -91,9 +67,9 @@ def parse_yaml(text: str, source: Source) -> Located:
     try:
         root = composer.document(text)
     except yaml.MarkedYAMLError as error:
-        raise SpecError([_syntax(error, source)]) from error
+        raise SpecError([syntax_problem(error, source)]) from error
     except yaml.reader.ReaderError as error:
-        place = _at_end_of(text[: error.position], source)
+        place = source.end_of(text[: error.position])
         raise SpecError([place.problem("a control character cannot be in YAML text")]) from error
     if composer.problems:
         raise SpecError(composer.problems)
@@ -122,12 +98,6 @@ def parse_value(text: str, source: Source) -> Located:
     if composer.problems:
         raise SpecError(composer.problems)
     return Located(None, Place(source)) if root is None else root.moved(Place(source))
-
-
-def is_plain_text(text: str) -> bool:
-    """Whether a text without quotes is text: by the core schema no number, boolean or null."""
-    patterns = (INTEGER, FLOAT, BASED, NOT_FINITE)
-    return text not in CONSTANTS and not any(each.fullmatch(text) for each in patterns)
 
 
 class _Composer:
@@ -228,17 +198,12 @@ class _Composer:
         text = str(event.value)
         if not event.implicit[0] or event.style in ("'", '"', "|", ">"):
             return text
-        if is_plain_text(text):
-            return text
-        if text in CONSTANTS:
-            return CONSTANTS[text]
-        is_number = not NOT_FINITE.fullmatch(text) and len(text) <= LONGEST_NUMBER
-        number = _number(text) if is_number else math.inf
-        if not math.isfinite(number):
+        try:
+            return scalar_of(text)
+        except OverflowError:
             shown = text if len(text) <= 40 else text[:40] + "..."
             self.problems.append(place.problem(f"`{shown}` is not a finite number"))
             return 0
-        return number
 
     def _bound(self, place: Place, depth: int) -> None:
         if depth > DEEPEST:
@@ -257,12 +222,6 @@ class _Composer:
         return Place(self.source, start.line + 1, start.column + 1, length)
 
 
-def _number(text: str) -> int | float:
-    if INTEGER.fullmatch(text):
-        return int(text)
-    return int(text, 0) if BASED.fullmatch(text) else float(text)
-
-
 def _depth(item: Located) -> int:
     children = [entry.value for entry in item.mapping().values()] + item.items()
     return 1 + max(map(_depth, children), default=0)
@@ -274,32 +233,3 @@ def _is_nested(event: Any) -> bool:
 
 def _short_tag(tag: str) -> str:
     return tag.replace("tag:yaml.org,2002:", "!!")
-
-
-def _at_end_of(before: str, source: Source) -> Place:
-    lines = Source.of_text("", before).lines
-    return Place(source, len(lines), len(lines[-1]) + 1)
-
-
-def _syntax(error: yaml.MarkedYAMLError, source: Source) -> Problem:
-    """Where the parser gave up, in plainer words; an unclosed quote where it began."""
-    said = error.problem or "this is not YAML"
-    mark = error.problem_mark or error.context_mark
-    if mark is None:
-        return Problem(source.path, 0, 0, said)
-    place = Place(source, mark.line + 1, mark.column + 1)
-    character = source.line(place.line)[mark.column : mark.column + 1]
-    if "cannot start any token" in said:
-        if character == "\t":
-            return place.problem("a tab cannot indent YAML", "use spaces")
-        return place.problem(
-            f"a plain value cannot begin with `{character}`", "put it in quotes if it is text"
-        )
-    opened = error.context_mark
-    is_open = "or ']'" in said or "or '}'" in said or not source.line(place.line).strip()
-    if opened is not None and is_open:
-        place = Place(source, opened.line + 1, opened.column + 1)
-    hint = next((plainer for words, plainer in PLAINER if words in said), "")
-    if not hint:
-        return place.problem(f"not YAML: {said}")
-    return place.problem(f"not YAML: {hint}")

@@ -9,7 +9,7 @@ from typing import Any
 import yaml
 
 from harness.spec.source import Located
-from harness.spec.yaml_file import is_plain_text
+from harness.spec.yaml_scalars import is_plain_text
 
 LONGEST_FLOW = 88  # characters of a list or mapping that stands on one line
 

@@ -199,7 +199,7 @@ def test_a_world_is_a_name_or_a_file_beside_the_scenario(tmp_path):
     assert load_world("my.yaml", tmp_path).world.objects[0].sphere.radius == 0.01
     for name, message, hint in (
         ("lesson_urr", "no world is called `lesson_urr`", "did you mean `lesson_ur`?"),
-        ("none.yaml", "there is no such file", ""),
+        ("none.yaml", "world `none.yaml`: there is no such file", ""),
         ("room.sdf", "SDF worlds are not yet available", ""),
         ("https://example.org/w.yaml", "is a URL", ""),
         ("a\0b.yaml", "is not a path", ""),

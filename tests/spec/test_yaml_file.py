@@ -71,6 +71,8 @@ def test_an_alias_stands_for_its_anchor():
         ("a: b: c", 1, 5, "a second `:` here"),
         ("a: [1, 2\nb: 3\n", 1, 4, "this list is not closed"),
         ("a: 'x\nb: 2\n", 1, 4, "is not closed"),
+        ("a: {b: 1\n\n", 1, 4, "this mapping is not closed"),
+        ("a: 1\nb: [1,", 2, 7, "a bracket is not closed"),
         ("a: @x", 1, 4, "cannot begin with `@`"),
         ("a: *x", 1, 4, "no complete anchor is called `x`"),
         ("a: &x [*x]", 1, 8, "no complete anchor is called `x`"),

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from harness.core.resources import data_folder
 from harness.spec.load import load_scenario, parse_scenario
-from harness.spec.resolved import resolved_text
+from harness.spec.resolve import resolved_text
 from harness.spec.source import Place, Source, located
 from harness.spec.yaml_file import parse_yaml
 from harness.spec.yaml_text import yaml_text

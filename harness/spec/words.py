@@ -1,0 +1,103 @@
+"""Takes a step or an expectation apart: its one word, the content, and what stands beside."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from harness.core.errors import Problem
+from harness.spec.annotations import is_model, keys_of
+from harness.spec.language import EXPECTATIONS, UNTIL
+from harness.spec.mistakes import describe, did_you_mean, nearest
+from harness.spec.source import Entry, Located, Place
+
+UNTIL_USAGE = "`- {always: A, until: B}`: A holds until B does"
+
+
+class Words(NamedTuple):
+    """A mapping taken apart: its one word, its content, and what stands beside it."""
+
+    word: str
+    entry: Entry
+    beside: dict[str, Entry]
+
+
+def take_apart(
+    item: Located,
+    words: Mapping[str, object],
+    beside: tuple[str, ...],
+    whole: str,
+    kind: str,
+    problems: list[Problem],
+) -> Words | None:
+    """Take a step or an expectation apart; None if there is no telling what it is."""
+    if isinstance(item.value, str):
+        if item.value in words:
+            return Words(item.value, Entry(item.place, Located(None, item.place)), {})
+        meant = _unknown(item.value, item.place, words, kind, problems)
+        nothing = Entry(item.place, Located(None, item.place))
+        return None if meant is None else Words(meant, nothing, {})
+    if not isinstance(item.value, dict):
+        message = f"{_a(whole)} is a {kind} with its content, not {describe(item.plain())}"
+        problems.append(item.place.problem(message, _all(words, kind)))
+        return None
+    said = [key for key in item.value if key in words]
+    others = [key for key in item.value if key not in words and key not in beside]
+    rest = {key: entry for key, entry in item.value.items() if key in beside}
+    if not said and others:
+        wrong = max(others, key=lambda key: nearest(key, words) is not None)
+        meant = _unknown(wrong, item.value[wrong].key, words, kind, problems)
+        return None if meant is None else Words(meant, item.value[wrong], rest)
+    if not said:
+        message = f"{_a(whole)} has one {kind}; this one has none"
+        hint = UNTIL_USAGE if UNTIL in rest else _all(words, kind)
+        problems.append(item.place.problem(message, hint))
+        return None
+    for extra in said[1:]:
+        message = f"{_a(whole)} has one {kind}; this one has `{said[0]}` and `{extra}`"
+        hint = f"begin another one: `- {extra}:`"
+        problems.append(item.value[extra].key.problem(message, hint))
+    for other in others:
+        _misplaced(other, item.value[other], said[0], words[said[0]], beside, problems)
+    return Words(said[0], item.value[said[0]], rest)
+
+
+def _unknown(
+    word: str, place: Place, words: Mapping[str, object], kind: str, problems: list[Problem]
+) -> str | None:
+    """Refuse a word; the nearest valid one, to go on as if the file said that."""
+    if word in EXPECTATIONS and kind == "predicate":
+        message = f"`{word}` cannot stand inside a temporal word; a predicate can"
+    elif word in ("do", "check"):
+        message = f"`{word}:` is not written; the {kind} itself is the key"
+    else:
+        message = f"no {kind} is called `{word}`"
+    problems.append(place.problem(message, did_you_mean(word, words, f"{kind}s")))
+    return nearest(word, words)
+
+
+def _misplaced(
+    key: str,
+    entry: Entry,
+    word: str,
+    model: object,
+    beside: tuple[str, ...],
+    problems: list[Problem],
+) -> None:
+    if is_model(model) and key in keys_of(model):
+        message = f"`{key}` stands inside `{word}`, not beside it"
+        hint = f"write it below `{word}:`, further right"
+    else:
+        message = f"unknown key `{key}` beside `{word}`"
+        hint = did_you_mean(key, beside, "words that may stand there")
+    problems.append(entry.key.problem(message, hint))
+
+
+def _a(whole: str) -> str:
+    if whole in ("step", "expectation"):
+        return f"a{'n' if whole[0] == 'e' else ''} {whole}"
+    return f"`{whole}`"
+
+
+def _all(words: Mapping[str, object], kind: str) -> str:
+    return f"{kind}s: {', '.join(words)}"
