@@ -136,6 +136,9 @@ def _decide(terms: _Terms, window: Window, margins: MarginSignal) -> Verdict:
         if decision.holds:
             raise NotReached("what it is about was not there for that long")
         return Verdict("", status, time=time, reason=f"not known, or not there, at t={time:.3f} s")
+    if terms.word == "eventually" and terms.hold is not None and not (values >= 0).any():
+        index = _nearest(values, times, margins.progress)
+        time = window.time(index)
     evidence = margins.evidence(index)
     margin, unit = decision.value, margins.unit
     if evidence.margin is not None:
@@ -168,6 +171,12 @@ def _reduce(
             return temporal.eventually(low, times, hold, within, progress)
         case _:
             return temporal.at_end(low, times, hold, within, progress)
+
+
+def _nearest(values: FloatArray, times: FloatArray, progress: FloatArray | None) -> int:
+    """The sample that came nearest to what never held at all: it says most about why."""
+    known = np.where(np.isnan(values), -np.inf, values)
+    return temporal.eventually(known, times, progress=progress).index
 
 
 def _too_short(terms: _Terms, times: FloatArray) -> Verdict:

@@ -25,7 +25,7 @@ def amount(value: float, unit: str) -> str:
 def _short(value: float) -> str:
     if not math.isfinite(value):
         return str(value)
-    if 1e-6 < abs(value) < 0.05:
+    if 1e-3 <= abs(value) < 0.05:
         return f"{value:.2g}"
-    value = 0.0 if abs(value) <= 1e-6 else value
+    value = 0.0 if abs(value) < 1e-3 else value
     return f"{value:.1f}" if abs(value) < 100 else f"{value:.0f}"

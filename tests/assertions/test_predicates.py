@@ -628,6 +628,14 @@ def test_a_hold_longer_than_the_window_fails_and_says_so():
     assert verdict(run, Never(predicate=Static(), **{"for": 0.5}), "move").status == "not reached"
 
 
+def test_what_never_held_shows_where_it_came_nearest():
+    spec = Lifted(object="box", above=0.2, **{"for": 0.5})
+    answer = verdict(lift_run(), spec)
+    assert answer.status == "failed"
+    assert answer.reason.startswith("lifted 100 mm of 200 mm")
+    assert answer.reason.endswith("held for 0.0 s at most, 0.5 s asked for")
+
+
 def test_a_deadline_counts_from_the_window_s_start():
     run = lift_run()
     assert verdict(run, Lifted(object="box", above=0.05, within=1.3)).status == "passed"
