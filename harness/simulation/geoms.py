@@ -16,10 +16,9 @@ from harness.core.world import Friction
 CONTACT_SOLREF = (0.002, 1.0)
 """Time constant [s] and damping ratio of a contact: two steps of 1 ms, critically damped.
 
-MuJoCo raises it to two steps where those are longer. It is this short for what a hand carries on
-a curve: friction constraints leave out the changing of the contact frame (J̇ v), so a held object
-creeps at its centripetal acceleration times this constant over two: 5.5 mm in the lesson's swing
-up with 6 ms, 1.4 mm with 2 ms, whatever the friction coefficient, `impratio` or noslip passes."""
+MuJoCo raises it to two steps where those are longer. What a hand carries on a curve creeps by half
+this constant times its centripetal acceleration in all contacts but those of `grasp_contacts`.
+"""
 
 CONTACT_SOLIMP = (0.99, 0.999, 0.001, 0.5, 2.0)
 """Impedance of a contact: at touch, when pressed, width of the change [m], its shape."""

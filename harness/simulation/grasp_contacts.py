@@ -1,4 +1,4 @@
-"""Contacts between fingers and objects, made so that what is held does not creep in a moving hand."""
+"""Contacts of fingers and objects: what is held does not creep in a moving hand."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -16,10 +16,14 @@ from harness.simulation.robot_mjcf import link_friction
 FRICTION_DAMPING_PER_STEP = 1.5
 """Part of a sliding velocity that friction takes back in one physics step.
 
-MuJoCo's friction opposes velocity only, at the pose where a step begins, so a held body falls behind
-a hand on a curve: with centripetal acceleration a, step h and damping b it creeps with
-a (1 - h b) / b + a h / 2, which vanishes for h b = 2, where velocities oscillate for ever. At 1.5 an
-oscillation halves each step. Ordinary contacts (h b = 0.67) crept 2 mm/s at 1 m/s^2.
+MuJoCo's friction opposes the sliding velocity found at the start of a step, so what is held falls
+behind a hand on a curve: with centripetal acceleration a, step h and damping b it creeps with about
+a (1 - h b) / b + a h / 2. That vanishes towards h b = 2, where velocities would oscillate for ever;
+at 1.5 an oscillation halves each step. MuJoCo gives contacts at most h b = 1, and lets only
+explicit pairs have more, for friction alone. Measured in two swings of a UR3e in 2 s each, creep in mm:
+
+    step 2 ms: contacts of 6 ms 4.6; pairs with 1.0, 1.5, 1.8: 2.5, 1.2, 0.8
+    step 1 ms: contacts of 2 ms 1.25; pairs with 1.5: 0.6, whatever the contact's time constant
 """
 
 

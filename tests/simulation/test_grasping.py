@@ -103,6 +103,25 @@ def test_a_ur3e_lifts_the_lessons_cylinder(ur3e):
     assert errors.max() < 0.002  # an unknown payload sags less than a millimetre at 0.4 m
 
 
+def test_what_is_held_does_not_creep_while_the_hand_swings(ur3e):
+    table = a_box("Table", (1.5, 1.6, 0.03), (0.4, 0, 1.0), friction=0.6)
+    cylinder = a_cylinder("cylinder", 0.03, 0.1, (0.32, -0.168, 1.065), mass=0.1, friction=30.0)
+    simulator = MujocoSimulator(ur3e, (table, cylinder), ("Table", "cylinder"))
+    move_arm(simulator, ABOVE)
+    move_arm(simulator, AT_CYLINDER)
+    simulator.command_gripper(0.59, GRIP, timeout=5.0)
+    grasped = simulator.sample_count - 1
+    move_arm(simulator, ABOVE)
+    move_arm(simulator, (0.0, -1.5707, 0.0, -1.5707, 0.0, 0.0))
+    signals = simulator.finish()
+    first, last = (
+        SE3.from_vector(signals.tcp_pose[i]).inverse()
+        @ SE3.from_vector(signals.object_poses["cylinder"][i])
+        for i in (grasped, -1)
+    )
+    assert first.distance_to(last)[0] < 0.001  # 1.25 mm without a friction damping of its own
+
+
 @pytest.mark.parametrize(("effort", "lifted"), [(10.0, True), (0.2, False)])
 def test_an_open_manipulator_lifts_the_red_box_only_if_it_presses(open_manipulator, effort, lifted):
     box = a_box("red_box", (0.05, 0.05, 0.1), (0.36, 0, 0.05), mass=0.1, friction=30.0)
