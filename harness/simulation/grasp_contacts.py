@@ -20,7 +20,7 @@ MuJoCo's friction opposes the sliding velocity found at the start of a step, so 
 behind a hand on a curve: with centripetal acceleration a, step h and damping b it creeps with about
 a (1 - h b) / b + a h / 2. That vanishes towards h b = 2, where velocities would oscillate for ever;
 at 1.5 an oscillation halves each step. MuJoCo gives contacts at most h b = 1, and lets only
-explicit pairs have more, for friction alone. Measured in two swings of a UR3e in 2 s each, creep in mm:
+explicit pairs have more, for friction alone. Creep [mm] measured in two swings of a UR3e:
 
     step 2 ms: contacts of 6 ms 4.6; pairs with 1.0, 1.5, 1.8: 2.5, 1.2, 0.8
     step 1 ms: contacts of 2 ms 1.25; pairs with 1.5: 0.6, whatever the contact's time constant

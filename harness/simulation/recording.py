@@ -82,37 +82,37 @@ class Recording:
         self._command_velocities[first : first + steps] = command_velocities
         model, data, step = self._physics.model, self._data, mujoco.mj_step
         control, qpos, qvel, sensors = data.ctrl, data.qpos, data.qvel, data.sensordata
-        for index in range(steps):
-            row = first + index
-            control[:] = controls[index]
+        positions, velocities, sensed = self._qpos, self._qvel, self._sensors
+        keep_contacts = self._keep_contacts
+        for row in range(first, first + steps):
+            control[:] = controls[row - first]
             step(model, data)
-            if index:
-                self._sensors[row - 1] = sensors
-                self._keep_contacts(row - 1)
-            self._qpos[row] = qpos
-            self._qvel[row] = qvel
+            if row > first:
+                sensed[row - 1] = sensors
+                keep_contacts(data, row - 1)
+            positions[row] = qpos
+            velocities[row] = qvel
         self.count = first + steps
         self._refuse_divergence(first)
         self._record_forces_of_last_row()
 
-    def _keep_contacts(self, row: int) -> None:
-        found = self._data.ncon
-        end = self._contacts + found
-        if found:
-            if end > len(self._forces):
-                self._geoms = np.concatenate([self._geoms, np.empty_like(self._geoms)])
-                self._forces = np.concatenate([self._forces, np.empty_like(self._forces)])
-            contact = self._data.contact
-            self._geoms[self._contacts : end] = contact.geom
-            self._forces[self._contacts : end] = self._data.efc_force[contact.efc_address]
-            self._contacts = end
+    def _keep_contacts(self, data: mujoco.MjData, row: int) -> None:
+        begin = self._contacts
+        self._contacts = end = begin + data.ncon
         self._contact_end[row] = end
+        if end > len(self._forces):
+            self._geoms = np.concatenate([self._geoms, np.empty_like(self._geoms)])
+            self._forces = np.concatenate([self._forces, np.empty_like(self._forces)])
+        if end > begin:
+            contact = data.contact
+            self._geoms[begin:end] = contact.geom
+            data.efc_force.take(contact.efc_address, 0, self._forces[begin:end], "clip")
 
     def _record_forces_of_last_row(self) -> None:
         """Find the forces in the present state, leaving the physics as if nobody had looked."""
         refresh(self._physics.model, self._data)
         self._sensors[self.count - 1] = self._data.sensordata
-        self._keep_contacts(self.count - 1)
+        self._keep_contacts(self._data, self.count - 1)
 
     def _refuse_divergence(self, first: int) -> None:
         warned = any(self._data.warning[kind].number for kind in _DIVERGED)
