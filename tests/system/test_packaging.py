@@ -88,7 +88,8 @@ def test_an_installed_package_is_not_the_checkout(harness, installed):
 
 
 def test_an_installed_package_finds_robots_worlds_and_scenarios(harness):
-    assert {"ur3e", "ur5e", "open_manipulator_x", "rh_p12_rn_a"} <= set(names(harness("list", "robots")))
+    robots = {"ur3e", "ur5e", "open_manipulator_x", "rh_p12_rn_a"}
+    assert robots <= set(names(harness("list", "robots")))
     assert {"empty", "lesson_om", "lesson_ur"} <= set(names(harness("list", "worlds")))
     assert "lessons/03_ur_sixteen_steps" in names(harness("list", "scenarios"))
 
