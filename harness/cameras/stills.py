@@ -83,7 +83,7 @@ def save_stills(
     try:
         for number, step in enumerate(steps, start=1):
             sample = min(max(step.end_index - 1, 0), len(run.signals.times) - 1)
-            picture.pose(poses_at(description, world_objects, run, sample, step.end_time))
+            picture.pose(poses_at(description, world_objects, run, sample, step))
             files.append(folder / f"{number:02d}-{_slug(step.id)}.jpg")
             _write(files[-1], renderer, viewpoint, step, f"{number}/{len(steps)}")
     finally:
@@ -114,7 +114,7 @@ def overview(
                 radii.append(min(size, 0.15))
     base = link_poses(description, run.signals.joint_positions[0])[description.base_link]
     for sample in (0, last):
-        scene = poses_at(description, world_objects, run, int(sample), None)
+        scene = poses_at(description, world_objects, run, int(sample))
         for obj in world_objects:
             size = max((bounding_radius(shape) for shape in obj.shapes), default=0.0)
             pose = scene.get(obj.name)

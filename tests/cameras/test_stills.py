@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -24,7 +25,7 @@ def draw(description, run, sample, backend):
     picture = build_picture_model(
         description, OBJECTS, floor_height=0.0, width=SIZE[0], height=SIZE[1]
     )
-    picture.pose(poses_at(description, OBJECTS, run, sample, None))
+    picture.pose(poses_at(description, OBJECTS, run, sample))
     try:
         renderer = make_renderer(picture, *SIZE, backend)
     except RuntimeError as error:
@@ -144,13 +145,24 @@ def test_link_poses_are_those_of_pinocchio(ur3e):
 
 
 def test_an_attached_object_is_drawn_where_the_planner_believes_it(ur3e):
-    poses = poses_at(ur3e, OBJECTS, a_run(ur3e), 3, None)
+    poses = poses_at(ur3e, OBJECTS, a_run(ur3e), 3)
     tip = poses[ur3e.tcp_link]
     np.testing.assert_allclose(
         poses["imagined"].translation, tip.translation + 0.1 * tip.rotation[:, 2]
     )
-    assert "imagined" not in poses_at(ur3e, OBJECTS, a_run(ur3e), 2, None)
+    assert "imagined" not in poses_at(ur3e, OBJECTS, a_run(ur3e), 2)
     assert "red_box" not in poses
+
+
+def test_what_a_step_without_duration_adds_is_not_there_at_the_end_of_the_motion_before(ur3e):
+    run = a_run(ur3e)
+    (record,) = run.objects
+    appears = replace(record, present=((1.0, 3.0),))
+    run = replace(run, objects=(appears,))
+    motion = replace(run.steps[1], start_time=0.0, end_time=1.0)
+    instant = replace(run.steps[1], start_time=1.0, end_time=1.0)
+    assert "imagined" not in poses_at(ur3e, OBJECTS, run, 1, motion)
+    assert "imagined" in poses_at(ur3e, OBJECTS, run, 1, instant)
 
 
 def test_the_overview_holds_every_point():
