@@ -16,8 +16,8 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.checker import MotionChecker, describe_touches, touch_facts
 from harness.planning.ik_numeric import LinkGoal, LinkTask, pitch_of
-from harness.planning.profiles import GRID, Curve, Trapezoid, on_grid, sample
-from harness.planning.timing import Limits
+from harness.planning.profiles import GRID, Curve, Trapezoid, sample
+from harness.planning.timing import Limits, slowed_to_limits
 from harness.ports import PoseGoal, PositionGoal
 
 MAX_TRANSLATION_VELOCITY = 1.0
@@ -204,15 +204,7 @@ def time_line(
         rate /= max(1.0, float(np.max(np.abs(velocities) / limits.velocity)))
         change /= max(1.0, float(np.max(np.abs(accelerations) / limits.acceleration)))
     profile = Trapezoid.fastest(1.0, rate, change)
-    curve = _along(spline, profile)
-    _, velocities, accelerations = curve(_fine(profile))
-    total = on_grid(profile.duration * max(1.0, limits.excess(velocities, accelerations)))
-    factor = profile.duration / total
-
-    def slowed(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        value, velocity, acceleration = curve(times * factor)
-        return value, velocity * factor, acceleration * factor**2
-
+    slowed, total = slowed_to_limits(_along(spline, profile), profile.duration, limits)
     return sample(checker.space.joint_names, slowed, total)
 
 

@@ -1,9 +1,9 @@
-"""Plans motions that can be trusted: goal resolved, path searched, shortened, timed, verified."""
+"""The planner's front door: free motions, joint motions, straight lines, each verified."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy as np
 from harness.core.errors import ErrorCode, PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.planning.checker import MotionChecker, describe_touches, touch_facts
+from harness.planning.free_motion import find_motion
 from harness.planning.goals import find_goals
 from harness.planning.kinematics import PinocchioKinematics, meets_tolerance
 from harness.planning.linear_path import (
@@ -24,19 +24,10 @@ from harness.planning.linear_path import (
     time_line,
     trace,
 )
-from harness.planning.ompl_planner import search
 from harness.planning.profiles import cubic_curve, on_grid, resting, sample
-from harness.planning.robot_model import GroupSpace
 from harness.planning.scene import CoalScene
-from harness.planning.shortening import shorten
-from harness.planning.timing import (
-    Limits,
-    TimingError,
-    time_blended,
-    time_stopping,
-    time_straight,
-)
-from harness.planning.verify import FINAL_RESOLUTION, Defect, find_defect
+from harness.planning.task import PlanningTask, make_task
+from harness.planning.timing import Limits, TimingError, time_straight
 from harness.ports import Goal, JointGoal, MotionPlan, PlanningOptions, PoseGoal
 from harness.robot.description import RobotDescription
 
@@ -47,34 +38,8 @@ One check of a UR with its gripper in the lesson's world takes 20 to 25 microsec
 project's machines, so that a second there buys twice as much.
 """
 
-PLANNING_RESOLUTIONS = (1 / 32, 1 / 64, 1 / 128)
-"""Joint-space distance between checked states while searching [rad]; finer when a path fails."""
-
-BLEND_DEVIATIONS = (0.05, 0.01)
-"""How far the timed path may leave a corner of the checked one [rad]; then it stops there."""
-
-LONGEST_DETOUR = 2.0
-"""A straight way to a farther solution is taken only up to this many times the nearest's length."""
-
 RELATIVE_STEP = 0.002
 """Step of a motion that goes as far as it can [m]."""
-
-START_SLACK = 0.01
-"""How far outside its limit a joint may start; it is not asked to go farther [rad or m]."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Task:
-    """One call's robot, scene and limits."""
-
-    space: GroupSpace
-    checker: MotionChecker
-    start: FloatArray
-    limits: Limits
-    options: PlanningOptions
-
-    def defect(self, trajectory: JointTrajectory, end: FloatArray) -> Defect | None:
-        return find_defect(trajectory, self.checker, self.start, end, self.limits)
 
 
 class VerifiedPlanner:
@@ -96,12 +61,7 @@ class VerifiedPlanner:
         task = self._task(group, start, options)
         found = find_goals(self.kinematics, task.checker, np.asarray(start), goal, options.seed)
         explanation = {**found.explanation, "lowered_margins": list(task.checker.lowered)}
-        straight = self._straight(task, found.positions)
-        if straight is not None:
-            end, trajectory = straight
-            statistics = _statistics(task, "straight line", trajectory, [task.start, end])
-            return MotionPlan(trajectory, statistics, _chosen(explanation, end))
-        return self._searched(task, found.positions, explanation)
+        return find_motion(task, found.positions, explanation)
 
     def plan_joint_motion(
         self,
@@ -123,11 +83,11 @@ class VerifiedPlanner:
         if duration is None:
             trajectory = time_straight(task.space.joint_names, task.start, end, task.limits)
         else:
-            task = replace(task, limits=self._limits(task.space, 1.0, 1.0))
+            task = replace(task, limits=_whole_limits(task))
             trajectory = _timed_by_hand(task, end, duration)
         self._accept(task, trajectory, end, "the straight joint motion cannot be executed")
         explanation = {"lowered_margins": list(task.checker.lowered)}
-        statistics = _statistics(task, "PTP", trajectory, [task.start, end])
+        statistics = task.statistics("PTP", trajectory, [task.start, end])
         return MotionPlan(trajectory, statistics, explanation)
 
     def plan_linear(
@@ -202,142 +162,11 @@ class VerifiedPlanner:
         found = find_goals(self.kinematics, task.checker, np.asarray(start), goal, options.seed)
         return {**found.explanation, "positions": found.positions[0].tolist()}
 
-    # Parts ---------------------------------------------------------------------------------
-
-    def _task(self, group: str, start: FloatArray, options: PlanningOptions) -> _Task:
-        if group not in self.description.groups:
-            known = ", ".join(self.description.groups)
-            raise PlanningFailed(
-                "INVALID_GROUP_NAME", f"the robot has no group '{group}' (it has: {known})"
-            )
-        start = np.asarray(start, dtype=float)
-        space = GroupSpace(self.kinematics.robot, group, start)
-        positions = space.part(start)
-        _widen_for_start(space, positions)
-        checker = MotionChecker(self.scene, space, positions, options.padding)
-        limits = self._limits(space, options.velocity_scaling, options.acceleration_scaling)
-        return _Task(space, checker, positions, limits, options)
-
-    def _limits(self, space: GroupSpace, velocity: float, acceleration: float) -> Limits:
-        return Limits.scaled(space.velocity, space.acceleration, velocity, acceleration)
-
-    def _straight(
-        self, task: _Task, goals: Sequence[FloatArray]
-    ) -> tuple[FloatArray, JointTrajectory] | None:
-        """A verified straight motion to the first goal that has one, or None."""
-        space, checker = task.space, task.checker
-        nearest = space.effort(task.start, goals[0])
-        for end in goals:
-            if space.effort(task.start, end) > LONGEST_DETOUR * nearest + 1e-9:
-                break
-            if checker.edge_free(task.start, end, FINAL_RESOLUTION):
-                trajectory = time_straight(space.joint_names, task.start, end, task.limits)
-                if task.defect(trajectory, end) is None:
-                    return end, trajectory
-        return None
-
-    def _searched(
-        self, task: _Task, goals: Sequence[FloatArray], explanation: dict[str, Any]
-    ) -> MotionPlan:
-        """Search, shorten, time and verify; finer when verification finds something."""
-        options, checker = task.options, task.checker
-        gaps: list[float] = []
-        used = 0
-        defect: Defect | None = None
-        for attempt in range(options.attempts):
-            left = options.max_state_checks
-            for level, resolution in enumerate(PLANNING_RESOLUTIONS):
-                seed = _derived_seed(options.seed, attempt, level)
-                try:
-                    result = search(
-                        options.planner_id,
-                        checker,
-                        task.start,
-                        goals,
-                        resolution=resolution,
-                        max_state_checks=left,
-                        seed=seed,
-                        parameters=options.parameters,
-                    )
-                except ValueError as problem:
-                    raise PlanningFailed("PLANNING_FAILED", str(problem)) from problem
-                used += result.checks
-                left -= result.checks
-                if result.waypoints is None:
-                    gaps.append(result.gap)
-                    break
-                if checker.path_free(result.waypoints, FINAL_RESOLUTION):
-                    short = shorten(result.waypoints, checker, FINAL_RESOLUTION, seed)
-                    timed = self._timed(task, short)
-                    if isinstance(timed, JointTrajectory):
-                        statistics = _statistics(
-                            task, options.planner_id, timed, short, result.waypoints
-                        )
-                        statistics |= {
-                            "attempts": attempt + 1,
-                            "search_checks": used,
-                            "vertices": result.vertices,
-                            "resolution": resolution,
-                        }
-                        return MotionPlan(timed, statistics, _chosen(explanation, short[-1]))
-                    defect = timed
-                if left <= 0:
-                    break
-        raise self._not_found(task, goals, explanation, used, gaps, defect)
-
-    def _timed(self, task: _Task, waypoints: FloatArray) -> JointTrajectory | Defect:
-        """The fastest of three ways to time a path that passes verification."""
-        names, end = task.space.joint_names, waypoints[-1]
-        if len(waypoints) == 2:
-            trajectory = time_straight(names, waypoints[0], end, task.limits)
-            return task.defect(trajectory, end) or trajectory
-        for blend in BLEND_DEVIATIONS:
-            try:
-                trajectory = time_blended(names, waypoints, task.limits, blend)
-            except TimingError:
-                continue
-            if task.defect(trajectory, end) is None:
-                return trajectory
-        trajectory = time_stopping(names, waypoints, task.limits)
-        return task.defect(trajectory, end) or trajectory
-
-    def _not_found(
-        self,
-        task: _Task,
-        goals: Sequence[FloatArray],
-        explanation: dict[str, Any],
-        used: int,
-        gaps: list[float],
-        defect: Defect | None,
-    ) -> PlanningFailed:
-        if defect is not None:
-            return PlanningFailed(
-                "INVALID_MOTION_PLAN",
-                "paths were found, but none that holds when it is checked finely: "
-                + defect.message,
-                {**explanation, **defect.facts},
-            )
-        options = task.options
-        message = (
-            f"no free path to the goal was found with {used} state checks "
-            f"({options.attempts} of at most {options.max_state_checks})"
-        )
-        facts: dict[str, Any] = {**explanation, "state_checks": used}
-        if gaps:
-            facts["gap"] = min(gaps)
-            message += f"; the search came within {min(gaps):.2f} rad of it"
-        blocked = task.checker.first_block(task.start, goals[0], FINAL_RESOLUTION)
-        if blocked is not None:
-            share, touches = blocked
-            facts["straight_way"] = {"free_share": share, "touches": touch_facts(touches)}
-            message += (
-                f"; the straight way is blocked after {100 * share:.0f} % by "
-                f"{describe_touches(touches)}"
-            )
-        return PlanningFailed("PLANNING_FAILED", message, facts)
+    def _task(self, group: str, start: FloatArray, options: PlanningOptions) -> PlanningTask:
+        return make_task(self.scene, self.kinematics.robot, group, start, options)
 
     def _line_plan(
-        self, task: _Task, line: Line, traced: Trace, kind: str, explanation: dict[str, Any]
+        self, task: PlanningTask, line: Line, traced: Trace, kind: str, explanation: dict[str, Any]
     ) -> MotionPlan:
         names, end = task.space.joint_names, traced.positions[-1]
         if line.length < 1e-9 and line.angle < 1e-9:
@@ -345,7 +174,10 @@ class VerifiedPlanner:
         else:
             options = task.options
             scaling = (options.velocity_scaling, options.acceleration_scaling)
-            trajectory = time_line(line, traced, task.checker, task.limits, scaling)
+            try:
+                trajectory = time_line(line, traced, task.checker, task.limits, scaling)
+            except TimingError as problem:
+                raise PlanningFailed("INVALID_MOTION_PLAN", str(problem)) from problem
         self._accept(task, trajectory, end, "the motion on the line cannot be executed")
         shift, turn = deviation(
             line,
@@ -359,7 +191,7 @@ class VerifiedPlanner:
                 f"{line.link} would leave its line by {1000 * shift:.3f} mm and {turn:.5f} rad",
                 {"position_deviation": shift, "orientation_deviation": turn},
             )
-        statistics = _statistics(task, kind, trajectory, traced.positions)
+        statistics = task.statistics(kind, trajectory, traced.positions)
         statistics |= {"position_deviation": shift, "orientation_deviation": turn}
         return MotionPlan(trajectory, statistics, explanation)
 
@@ -377,7 +209,9 @@ class VerifiedPlanner:
             {"free_share": traced.share, "reason": traced.reason, **traced.facts},
         )
 
-    def _accept(self, task: _Task, trajectory: JointTrajectory, end: FloatArray, what: str) -> None:
+    def _accept(
+        self, task: PlanningTask, trajectory: JointTrajectory, end: FloatArray, what: str
+    ) -> None:
         defect = task.defect(trajectory, end)
         if defect is not None:
             raise PlanningFailed(
@@ -385,7 +219,11 @@ class VerifiedPlanner:
             )
 
 
-def _timed_by_hand(task: _Task, end: FloatArray, duration: float) -> JointTrajectory:
+def _whole_limits(task: PlanningTask) -> Limits:
+    return Limits.scaled(task.space.velocity, task.space.acceleration, 1.0, 1.0)
+
+
+def _timed_by_hand(task: PlanningTask, end: FloatArray, duration: float) -> JointTrajectory:
     """A cubic from rest to rest in exactly the duration asked for.
 
     Raises:
@@ -409,63 +247,3 @@ def _timed_by_hand(task: _Task, end: FloatArray, duration: float) -> JointTrajec
             {"joint": name, "shortest_duration": float(shortest[slowest]), "duration": duration},
         )
     return sample(task.space.joint_names, cubic_curve(task.start, end, total), total)
-
-
-def _widen_for_start(space: GroupSpace, positions: FloatArray) -> None:
-    """Let a joint that starts a little outside its limit be there.
-
-    Raises:
-        PlanningFailed: START_STATE_INVALID, farther outside than `START_SLACK`.
-    """
-    outside = np.maximum(space.lower - positions, positions - space.upper)
-    worst = int(np.argmax(outside))
-    if outside[worst] > START_SLACK:
-        name = space.joint_names[worst]
-        raise PlanningFailed(
-            "START_STATE_INVALID",
-            f"{name} starts at {positions[worst]:.4f}, {outside[worst]:.4f} outside its limits "
-            f"{space.lower[worst]:.4f} to {space.upper[worst]:.4f}",
-            {"joint": name, "value": float(positions[worst]), "excess": float(outside[worst])},
-        )
-    space.lower = np.minimum(space.lower, positions)
-    space.upper = np.maximum(space.upper, positions)
-
-
-def _derived_seed(seed: int, attempt: int, level: int) -> int:
-    return int(np.random.SeedSequence([seed % 2**63, attempt, level]).generate_state(1)[0])
-
-
-def _chosen(explanation: dict[str, Any], end: FloatArray) -> dict[str, Any]:
-    """The explanation with the solution that was taken marked."""
-    solutions = explanation.get("ik_solutions")
-    if not solutions:
-        return explanation
-    marked = [
-        {**solution, "status": "chosen"}
-        if np.allclose(solution["joint_positions"], end, atol=1e-9)
-        else solution
-        for solution in solutions
-    ]
-    return {**explanation, "ik_solutions": marked}
-
-
-def _statistics(
-    task: _Task,
-    planner_id: str,
-    trajectory: JointTrajectory,
-    waypoints: Sequence[FloatArray] | FloatArray,
-    raw: FloatArray | None = None,
-) -> dict[str, Any]:
-    length = _length(np.asarray(waypoints))
-    return {
-        "planner_id": planner_id,
-        "state_checks": task.checker.checks,
-        "waypoints": len(waypoints),
-        "path_length": length,
-        "raw_path_length": length if raw is None else _length(raw),
-        "duration": trajectory.duration,
-    }
-
-
-def _length(waypoints: FloatArray) -> float:
-    return float(np.linalg.norm(np.diff(waypoints, axis=0), axis=1).sum())

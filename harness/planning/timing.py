@@ -28,11 +28,12 @@ from harness.planning.profiles import (
 GRID_POINTS_PER_PIECE = 20
 """TOPP-RA's grid points on each line and blend; fewer break the limits in between."""
 
+_MOST_STRETCHES = 20
 _STILL = 1e-9  # [rad] paths shorter than this have nowhere to go
 
 
 class TimingError(Exception):
-    """TOPP-RA found no times for a path."""
+    """A path cannot be given times under the limits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,24 +113,38 @@ def time_blended(
     """
     path = BlendedPath(waypoints, deviation)
     timed, duration = _toppra(path, limits)
-    stretch = 1.0
-    for _ in range(3):
-        fine = np.arange(0.0, duration + GRID / 2, GRID)
-        _, velocities, accelerations = timed(np.minimum(fine, duration))
-        excess = limits.excess(velocities / stretch, accelerations / stretch**2)
-        if excess <= 1.0:
-            break
-        stretch *= excess * (1 + 1e-9)
-    total = on_grid(duration * stretch)
-    factor = duration / total
-
-    def curve(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        positions, velocities, accelerations = timed(np.minimum(times * factor, duration))
-        return positions, velocities * factor, accelerations * factor**2
-
+    curve, total = slowed_to_limits(timed, duration, limits)
     trajectory = sample(joint_names, curve, total)
     trajectory.positions[0], trajectory.positions[-1] = waypoints[0], waypoints[-1]
     return trajectory
+
+
+def slowed_to_limits(curve: Curve, duration: float, limits: Limits) -> tuple[Curve, float]:
+    """A curve run more slowly, until every sample of the time grid keeps the limits.
+
+    Returns:
+        The slower curve and its duration, a whole multiple of the grid [s].
+
+    Raises:
+        TimingError: Stretching does not help: the curve is not smooth enough.
+    """
+    total, excess = on_grid(duration), np.inf
+    for _ in range(_MOST_STRETCHES):
+        factor = duration / total
+
+        def slowed(
+            times: FloatArray, factor: float = factor
+        ) -> tuple[FloatArray, FloatArray, FloatArray]:
+            positions, velocities, accelerations = curve(np.minimum(times * factor, duration))
+            return positions, velocities * factor, accelerations * factor**2
+
+        grid: FloatArray = np.arange(round(total / GRID) + 1, dtype=np.float64) * GRID
+        _, velocities, accelerations = slowed(grid)
+        excess = limits.excess(velocities, accelerations)
+        if excess <= 1.0 + 1e-9:
+            return slowed, total
+        total = on_grid(max(total * excess, total + GRID))
+    raise TimingError(f"the limits are exceeded {excess:.3g} times however slow the motion is")
 
 
 def _toppra(path: BlendedPath, limits: Limits) -> tuple[Curve, float]:

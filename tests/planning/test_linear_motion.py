@@ -9,7 +9,7 @@ from harness.core.errors import PlanningFailed
 from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3
 from harness.planning.linear_path import uniform_spline
-from harness.ports import PlanningOptions, PoseGoal
+from harness.ports import PlanningOptions, PoseGoal, PositionGoal
 from tests.planning.lesson import ARM, TCP, Cell, at, grasp_goal, open_manipulator, thing, ur
 
 SLOW = PlanningOptions(velocity_scaling=0.1, acceleration_scaling=0.1)
@@ -110,3 +110,17 @@ def test_the_spline_follows_a_smooth_curve_with_its_derivatives():
     assert np.allclose(value[:, 0], np.sin(3 * fine), atol=1e-6)
     assert np.allclose(slope[:, 0], 3 * np.cos(3 * fine), atol=1e-3)
     assert np.allclose(bend[5:-5, 0], -9 * np.sin(3 * fine)[5:-5], atol=3e-2)
+
+
+def test_a_line_on_which_a_joint_meets_its_velocity_limit_is_slowed_until_every_sample_keeps_it():
+    """Straight up by 6 cm from the lesson's grasp, at full speed: joint 4 is the one that limits."""
+    cell = Cell(open_manipulator())
+    up = np.array([0, 0, 1.0, 0, 0, 0])
+    limit = cell.description.joint_by_name["joint4"].velocity
+    for height in (0.055, 0.06, 0.065):
+        goal = PositionGoal(TCP, np.array([0.25, 0.0, 1.02 + height]), 0.0)
+        cell.state[:4] = cell.kinematics.solve("arm", goal, cell.state, 0)[0]
+        plan = cell.planner.plan_relative(
+            "arm", cell.state, TCP, up, (0.06, 0.06), PlanningOptions()
+        )
+        assert np.abs(plan.trajectory.velocities).max() <= limit * (1 + 1e-9)

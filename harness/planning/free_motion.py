@@ -1,0 +1,182 @@
+"""Finds a free, verified motion to one of several goals: straight if it can, else searched."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from harness.core.errors import PlanningFailed
+from harness.core.trajectory import JointTrajectory
+from harness.core.types import FloatArray
+from harness.planning.checker import describe_touches, touch_facts
+from harness.planning.ompl_planner import search
+from harness.planning.shortening import shorten
+from harness.planning.task import PlanningTask
+from harness.planning.timing import TimingError, time_blended, time_stopping, time_straight
+from harness.planning.verify import FINAL_RESOLUTION, Defect
+from harness.ports import MotionPlan
+
+PLANNING_RESOLUTIONS = (1 / 32, 1 / 64, 1 / 128)
+"""Joint-space distance between checked states while searching [rad]; finer when a path fails."""
+
+BLEND_DEVIATIONS = (0.05, 0.01)
+"""How far the timed path may leave a corner of the checked one [rad]; then it stops there."""
+
+LONGEST_DETOUR = 2.0
+"""A straight way to a farther solution is taken only up to this many times the nearest's length."""
+
+
+def find_motion(
+    task: PlanningTask, goals: Sequence[FloatArray], explanation: dict[str, Any]
+) -> MotionPlan:
+    """A verified motion from the task's start to one of the goals.
+
+    Args:
+        task: What is asked.
+        goals: Free group positions, nearest first.
+        explanation: Of the goals; the plan carries it on, the solution taken marked.
+
+    Raises:
+        PlanningFailed: PLANNING_FAILED (budget used up), INVALID_MOTION_PLAN (nothing found holds).
+    """
+    straight = _straight(task, goals)
+    if straight is None:
+        return _searched(task, goals, explanation)
+    end, trajectory = straight
+    statistics = task.statistics("straight line", trajectory, [task.start, end])
+    return MotionPlan(trajectory, statistics, _chosen(explanation, end))
+
+
+def _straight(
+    task: PlanningTask, goals: Sequence[FloatArray]
+) -> tuple[FloatArray, JointTrajectory] | None:
+    """A verified straight motion to the first goal that has one, or None."""
+    space, checker = task.space, task.checker
+    nearest = space.effort(task.start, goals[0])
+    for end in goals:
+        if space.effort(task.start, end) > LONGEST_DETOUR * nearest + 1e-9:
+            break
+        if checker.edge_free(task.start, end, FINAL_RESOLUTION):
+            trajectory = time_straight(space.joint_names, task.start, end, task.limits)
+            if task.defect(trajectory, end) is None:
+                return end, trajectory
+    return None
+
+
+def _searched(
+    task: PlanningTask, goals: Sequence[FloatArray], explanation: dict[str, Any]
+) -> MotionPlan:
+    """Search, shorten, time and verify; finer when verification finds something."""
+    options, checker = task.options, task.checker
+    gaps: list[float] = []
+    used = 0
+    defect: Defect | None = None
+    for attempt in range(options.attempts):
+        left = options.max_state_checks
+        for level, resolution in enumerate(PLANNING_RESOLUTIONS):
+            seed = _derived_seed(options.seed, attempt, level)
+            try:
+                result = search(
+                    options.planner_id,
+                    checker,
+                    task.start,
+                    goals,
+                    resolution=resolution,
+                    max_state_checks=left,
+                    seed=seed,
+                    parameters=options.parameters,
+                )
+            except ValueError as problem:
+                raise PlanningFailed("PLANNING_FAILED", str(problem)) from problem
+            used += result.checks
+            left -= result.checks
+            if result.waypoints is None:
+                gaps.append(result.gap)
+                break
+            if checker.path_free(result.waypoints, FINAL_RESOLUTION):
+                short = shorten(result.waypoints, checker, FINAL_RESOLUTION, seed)
+                timed = _timed(task, short)
+                if isinstance(timed, JointTrajectory):
+                    statistics = task.statistics(options.planner_id, timed, short, result.waypoints)
+                    statistics |= {
+                        "attempts": attempt + 1,
+                        "search_checks": used,
+                        "vertices": result.vertices,
+                        "resolution": resolution,
+                    }
+                    return MotionPlan(timed, statistics, _chosen(explanation, short[-1]))
+                defect = timed
+            if left <= 0:
+                break
+    raise _not_found(task, goals, explanation, used, gaps, defect)
+
+
+def _timed(task: PlanningTask, waypoints: FloatArray) -> JointTrajectory | Defect:
+    """The fastest of three ways to time a path that passes verification."""
+    names, end = task.space.joint_names, waypoints[-1]
+    if len(waypoints) == 2:
+        trajectory = time_straight(names, waypoints[0], end, task.limits)
+        return task.defect(trajectory, end) or trajectory
+    for blend in BLEND_DEVIATIONS:
+        try:
+            trajectory = time_blended(names, waypoints, task.limits, blend)
+        except TimingError:
+            continue
+        if task.defect(trajectory, end) is None:
+            return trajectory
+    trajectory = time_stopping(names, waypoints, task.limits)
+    return task.defect(trajectory, end) or trajectory
+
+
+def _not_found(
+    task: PlanningTask,
+    goals: Sequence[FloatArray],
+    explanation: dict[str, Any],
+    used: int,
+    gaps: list[float],
+    defect: Defect | None,
+) -> PlanningFailed:
+    if defect is not None:
+        return PlanningFailed(
+            "INVALID_MOTION_PLAN",
+            "paths were found, but none that holds when it is checked finely: " + defect.message,
+            {**explanation, **defect.facts},
+        )
+    options = task.options
+    message = (
+        f"no free path to the goal was found with {used} state checks "
+        f"({options.attempts} of at most {options.max_state_checks})"
+    )
+    facts: dict[str, Any] = {**explanation, "state_checks": used}
+    if gaps:
+        facts["gap"] = min(gaps)
+        message += f"; the search came within {min(gaps):.2f} rad of it"
+    blocked = task.checker.first_block(task.start, goals[0], FINAL_RESOLUTION)
+    if blocked is not None:
+        share, touches = blocked
+        facts["straight_way"] = {"free_share": share, "touches": touch_facts(touches)}
+        message += (
+            f"; the straight way is blocked after {100 * share:.0f} % by "
+            f"{describe_touches(touches)}"
+        )
+    return PlanningFailed("PLANNING_FAILED", message, facts)
+
+
+def _derived_seed(seed: int, attempt: int, level: int) -> int:
+    return int(np.random.SeedSequence([seed % 2**63, attempt, level]).generate_state(1)[0])
+
+
+def _chosen(explanation: dict[str, Any], end: FloatArray) -> dict[str, Any]:
+    """The explanation with the solution that was taken marked."""
+    solutions = explanation.get("ik_solutions")
+    if not solutions:
+        return explanation
+    marked = [
+        {**solution, "status": "chosen"}
+        if np.allclose(solution["joint_positions"], end, atol=1e-9)
+        else solution
+        for solution in solutions
+    ]
+    return {**explanation, "ik_solutions": marked}

@@ -1,0 +1,111 @@
+"""One planning call's robot, scene, start and limits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from harness.core.errors import PlanningFailed
+from harness.core.trajectory import JointTrajectory
+from harness.core.types import FloatArray
+from harness.planning.checker import MotionChecker
+from harness.planning.robot_model import GroupSpace, RobotModel
+from harness.planning.scene import CoalScene
+from harness.planning.timing import Limits
+from harness.planning.verify import Defect, find_defect
+from harness.ports import PlanningOptions
+
+START_SLACK = 0.01
+"""How far outside its limit a joint may start; it is not asked to go farther [rad or m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlanningTask:
+    """What a planning call is about.
+
+    Attributes:
+        space: The group, the rest of the robot where it is.
+        checker: Of states and edges, with this motion's margins.
+        start: Group positions.
+        limits: Of the joints, scaled.
+        options: As asked for.
+    """
+
+    space: GroupSpace
+    checker: MotionChecker
+    start: FloatArray
+    limits: Limits
+    options: PlanningOptions
+
+    def defect(self, trajectory: JointTrajectory, end: FloatArray) -> Defect | None:
+        """What forbids a trajectory to be executed, or None."""
+        return find_defect(trajectory, self.checker, self.start, end, self.limits)
+
+    def statistics(
+        self,
+        planner_id: str,
+        trajectory: JointTrajectory,
+        waypoints: Sequence[FloatArray] | FloatArray,
+        raw: FloatArray | None = None,
+    ) -> dict[str, Any]:
+        """Numbers of a plan for the record: checks, lengths before and after shortening, time."""
+        length = _length(np.asarray(waypoints))
+        return {
+            "planner_id": planner_id,
+            "state_checks": self.checker.checks,
+            "waypoints": len(waypoints),
+            "path_length": length,
+            "raw_path_length": length if raw is None else _length(raw),
+            "duration": trajectory.duration,
+        }
+
+
+def make_task(
+    scene: CoalScene, robot: RobotModel, group: str, start: FloatArray, options: PlanningOptions
+) -> PlanningTask:
+    """Prepare a call: `start` in description order.
+
+    Raises:
+        PlanningFailed: INVALID_GROUP_NAME, START_STATE_INVALID, START_STATE_IN_COLLISION.
+    """
+    if group not in scene.description.groups:
+        known = ", ".join(scene.description.groups)
+        raise PlanningFailed(
+            "INVALID_GROUP_NAME", f"the robot has no group '{group}' (it has: {known})"
+        )
+    start = np.asarray(start, dtype=float)
+    space = GroupSpace(robot, group, start)
+    positions = space.part(start)
+    _widen_for_start(space, positions)
+    checker = MotionChecker(scene, space, positions, options.padding)
+    limits = Limits.scaled(
+        space.velocity, space.acceleration, options.velocity_scaling, options.acceleration_scaling
+    )
+    return PlanningTask(space, checker, positions, limits, options)
+
+
+def _widen_for_start(space: GroupSpace, positions: FloatArray) -> None:
+    """Let a joint that starts a little outside its limit be there.
+
+    Raises:
+        PlanningFailed: START_STATE_INVALID, farther outside than `START_SLACK`.
+    """
+    outside = np.maximum(space.lower - positions, positions - space.upper)
+    worst = int(np.argmax(outside))
+    if outside[worst] > START_SLACK:
+        name = space.joint_names[worst]
+        raise PlanningFailed(
+            "START_STATE_INVALID",
+            f"{name} starts at {positions[worst]:.4f}, {outside[worst]:.4f} outside its limits "
+            f"{space.lower[worst]:.4f} to {space.upper[worst]:.4f}",
+            {"joint": name, "value": float(positions[worst]), "excess": float(outside[worst])},
+        )
+    space.lower = np.minimum(space.lower, positions)
+    space.upper = np.maximum(space.upper, positions)
+
+
+def _length(waypoints: FloatArray) -> float:
+    return float(np.linalg.norm(np.diff(waypoints, axis=0), axis=1).sum())
