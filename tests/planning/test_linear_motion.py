@@ -112,7 +112,7 @@ def test_the_spline_follows_a_smooth_curve_with_its_derivatives():
     assert np.allclose(bend[5:-5, 0], -9 * np.sin(3 * fine)[5:-5], atol=3e-2)
 
 
-def test_a_line_on_which_a_joint_meets_its_velocity_limit_is_slowed_until_every_sample_keeps_it():
+def test_a_line_is_slowed_until_every_sample_keeps_the_velocity_limit():
     """Straight up by 6 cm from the lesson's grasp, at full speed: joint 4 is the one that limits."""
     cell = Cell(open_manipulator())
     up = np.array([0, 0, 1.0, 0, 0, 0])
