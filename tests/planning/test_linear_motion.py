@@ -113,7 +113,7 @@ def test_the_spline_follows_a_smooth_curve_with_its_derivatives():
 
 
 def test_a_line_is_slowed_until_every_sample_keeps_the_velocity_limit():
-    """Straight up by 6 cm from the lesson's grasp, at full speed: joint 4 is the one that limits."""
+    """Straight up by 6 cm from the lesson's grasp, at full speed: joint 4 limits."""
     cell = Cell(open_manipulator())
     up = np.array([0, 0, 1.0, 0, 0, 0])
     limit = cell.description.joint_by_name["joint4"].velocity
