@@ -56,7 +56,7 @@ def run_case(
     program = prepared.program
     on_progress(ProgressEvent("compiled", 0, len(program.steps), program.title, "", 0.0, ""))
     try:
-        run = _execute(prepared, str(path), clock, on_progress)
+        run = _execute(prepared, str(path), clock, on_progress, report_dir)
         with clock.part("judge"):
             verdicts = judge(run, _placed(program))
         outcome = _outcome(run, verdicts)
@@ -109,7 +109,9 @@ def step_line(step: StepRecord) -> StepLine:
     )
 
 
-def _execute(prepared: Prepared, file: str, clock: Clock, on_progress: Notify) -> Run:
+def _execute(
+    prepared: Prepared, file: str, clock: Clock, on_progress: Notify, report_dir: Path | None
+) -> Run:
     program = prepared.program
     needed = observations(expectation.spec for expectation in program.expectations)
     links = set(program.description.link_names)
@@ -145,7 +147,7 @@ def _execute(prepared: Prepared, file: str, clock: Clock, on_progress: Notify) -
         signals,
         file=file,
         source=prepared.loaded.text,
-        resolved=resolved_text(prepared.loaded, seeds),
+        resolved=resolved_text(prepared.loaded, seeds, folder=report_dir),
     )
 
 

@@ -344,7 +344,9 @@ class Place(StepFields):
     object: Name | None = Field(default=None, description="Default: what was picked last.")
     pose: Pose = Field(description="Where the object shall stand.")
     approach: Travel | None = None
-    retreat: Travel | None = None
+    retreat: Travel | None = Field(
+        default=None, description="Default: 3 to 10 cm back along the gripper."
+    )
 
 
 class Capture(StepFields):

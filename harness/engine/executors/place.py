@@ -22,10 +22,11 @@ from harness.engine.program import ProgramStep
 from harness.engine.registry import execute
 from harness.ports import PositionGoal
 from harness.spec.poses import Direction, Position
-from harness.spec.steps import Place, Release
+from harness.spec.steps import Place, Release, Travel
 
 REFINEMENTS = 4
 PUT_DOWN_GAP = 0.001  # [m] above the target, so that the support is touched when the fingers open
+DEFAULT_RETREAT = Travel(min_distance=0.03, max_distance=0.1)
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -55,7 +56,9 @@ def place(step: Place, cell: Cell) -> None:
         ),
         cell.child("release", Release(object=name), f"release {name}"),
         cell.child(
-            "retreat", relative_step(step.retreat, backwards, step.group), "move_relative back"
+            "retreat",
+            relative_step(step.retreat or DEFAULT_RETREAT, backwards, step.group),
+            "move_relative back",
         ),
     ]
     try:
