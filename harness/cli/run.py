@@ -184,5 +184,5 @@ def _document(results: Mapping[int, CaseResult], code: int, is_interrupted: bool
         "format": "armharness-results/1",
         "exit_code": code,
         "interrupted": is_interrupted,
-        "results": list(results.values()),
+        "cases": list(results.values()),
     }

@@ -38,13 +38,14 @@ def main() -> None:
     sys.path[:] = json.loads(sys.argv[2])
     # A terminal's Ctrl-C is the caller's to handle; this process ends when its socket does.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    gc.disable()  # imports make objects that stay
     try:
         preload(json.loads(sys.argv[3]))
     except BaseException:  # noqa: BLE001 - whatever an import raises is told to the caller
         send(control, ("broken", traceback.format_exc()))
         os._exit(1)
-    gc.collect()
     gc.freeze()  # children share these pages as long as no collector writes into them
+    gc.enable()
     send(control, ("ready",))
     Server(control).serve()
 

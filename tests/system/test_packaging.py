@@ -97,7 +97,7 @@ def test_an_installed_package_finds_robots_worlds_and_scenarios(harness):
 def test_an_installed_package_runs_a_bundled_lesson_by_its_name(harness, tmp_path):
     done = harness("run", "lessons/04_gripper_alone", "--json")
     document = json.loads(done.stdout)
-    assert document["results"][0]["outcome"] == "passed", done.stdout
+    assert document["cases"][0]["outcome"] == "passed", done.stdout
     assert done.returncode == document["exit_code"] == 0
     assert (tmp_path / "reports/lessons/04_gripper_alone/run.json").is_file()
 
@@ -111,6 +111,6 @@ def test_the_readme_and_ci_have_the_same_test_command():
 
 def test_what_the_commands_need_is_declared():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    assert project["scripts"] == {"harness": "harness.cli.main:main"}
+    assert project["scripts"] == {"harness": "harness.cli.main:entry"}
     assert project["entry-points"]["pytest11"] == {"armharness": "harness.pytest_plugin.plugin"}
     assert project["requires-python"] == ">=3.11,<3.14"

@@ -86,7 +86,7 @@ def run_here(here):
 
 
 def digests(document):
-    return {Path(each["file"]).name: each["digest"] for each in document["results"]}
+    return {Path(each["file"]).name: each["digest"] for each in document["cases"]}
 
 
 def processes_below(pid):
@@ -159,14 +159,14 @@ def test_the_gravest_outcome_is_the_exit_code():
     write("late", expect=LATE)
     write("broken", robot="no_such_robot")
     document = run_json(".")
-    outcomes = [(each["file"], each["outcome"]) for each in document["results"]]
+    outcomes = [(each["file"], each["outcome"]) for each in document["cases"]]
     assert outcomes == [
         ("broken.scenario.yaml", "invalid"),
         ("good.scenario.yaml", "passed"),
         ("late.scenario.yaml", "failed"),
     ]
     assert document["exit_code"] == 2
-    assert document["results"][0]["problems"][0]["line"] == 3
+    assert document["cases"][0]["problems"][0]["line"] == 3
     assert run_json(".", HARNESS_HARD_CAP="0.01")["exit_code"] == 3
 
 
@@ -175,7 +175,7 @@ def test_digests_are_the_same_alone_in_a_suite_side_by_side_and_in_this_process(
         write(name, wait=f"0.{ord(name) - ord('a') + 1} s")
     write("sub/c", wait="0.3 s", title="Another title", tag="b")
     first = run_json(".")
-    assert first["results"][2]["digest"] == first["results"][3]["digest"]
+    assert first["cases"][2]["digest"] == first["cases"][3]["digest"]
     in_suite = digests(first)
     assert len(set(in_suite.values())) == 3
     assert digests(run_json(".", "-j", "2", "--no-report")) == in_suite
@@ -191,20 +191,20 @@ def test_repeat_says_whether_the_digests_are_the_same():
     assert done.returncode == 0
     assert "3 runs, one digest: " in done.stdout
     document = run_json("a.scenario.yaml", "--repeat", "2")
-    assert [each["report_dir"] for each in document["results"]] == ["reports/a", ""]
+    assert [each["report_dir"] for each in document["cases"]] == ["reports/a", ""]
 
 
 def test_k_set_seed_and_report_dir_do_what_they_say(run_here):
     write("a", tag="slow")
     write("b", tag="quick", title="Move it")
     document = run_here(".", "-k", "quick and not slow", "--seed", "11", "--report-dir", "r")
-    [result] = document["results"]
+    [result] = document["cases"]
     assert (result["file"], result["seed"]) == ("b.scenario.yaml", 11)
     assert Path("r/b/run.json").is_file()
     assert not Path("reports").exists()
     changed = run_here("b.scenario.yaml", "--set", "steps.2.wait=0.4 s", "--no-report")
-    assert changed["results"][0]["outcome"] == "passed"
-    assert changed["results"][0]["sim_time"] > result["sim_time"] + 0.2
+    assert changed["cases"][0]["outcome"] == "passed"
+    assert changed["cases"][0]["sim_time"] > result["sim_time"] + 0.2
 
 
 def test_no_report_writes_nothing(folder, run_here):
@@ -223,7 +223,7 @@ def test_a_killed_child_is_an_error_and_leaves_the_others_complete():
     [child] = wait_for(lambda: running_cases(process.pid))
     os.kill(child, signal.SIGKILL)
     out, _err = process.communicate(timeout=60)
-    first, second = json.loads(out)["results"]
+    first, second = json.loads(out)["cases"]
     assert process.returncode == 3
     assert first["outcome"] == "error"
     assert "SIGKILL (signal 9)" in first["message"]
@@ -310,5 +310,5 @@ def test_a_saved_run_is_judged_again_by_its_own_and_by_other_expectations(here, 
 def test_a_new_scenario_passes(here, run_here):
     assert here("new", "first.scenario.yaml").returncode == 0
     assert here("check", "first.scenario.yaml").returncode == 0
-    [result] = run_here("first.scenario.yaml")["results"]
+    [result] = run_here("first.scenario.yaml")["cases"]
     assert result["outcome"] == "passed", result
