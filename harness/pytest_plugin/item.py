@@ -23,7 +23,7 @@ PYTEST_MARKS = frozenset(
 """Marks that change what a verdict means, or that pytest refuses: no tag becomes one of them."""
 
 
-class ScenarioNotPassed(Exception):  # noqa: N818 - what pytest shows is the text
+class ScenarioNotPassed(Exception):
     """A scenario failed, is invalid, or broke; says why, with every number."""
 
     def __init__(self, result: CaseResult) -> None:

@@ -243,13 +243,16 @@ def test_ctrl_c_keeps_finished_reports_and_leaves_nothing_half_written(workers):
         text=True,
         start_new_session=True,
     )
-    wait_for(lambda: Path("reports/a/run.json").is_file())
-    time.sleep(0.3)
+    before = ""
+    while "digest" not in before:
+        before += process.stdout.readline()
+    wait_for(lambda: running_cases(process.pid))
     below = processes_below(process.pid)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does
     out, err = process.communicate(timeout=30)
     assert process.returncode == 130
     assert "Traceback" not in out + err
+    out = before + out
     assert "interrupted: 2 of 3 runs did not finish" in err
     assert "1 passed of 1 case" in out
     assert [path.name for path in Path("reports").iterdir()] == ["a"]
