@@ -21,6 +21,13 @@ from harness.planning.body_tracks import (
 from harness.planning.forward_kinematics import LinkPoses
 from harness.planning.nearest import ShapePair, pairs_between, smallest_distances
 from harness.planning.robot_model import RobotModel
+from harness.planning.sampled_clearance import (
+    around_smallest,
+    at_samples,
+    between,
+    knots,
+    nearest_measured,
+)
 from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
 from harness.robot.description import RobotDescription
 
@@ -51,6 +58,23 @@ class _Clearances:
                 self.links[key] = np.full(self.count, -1, dtype=np.int64)
             self.links[key][samples] = links
 
+    def refined(self, finer: _Clearances, samples: IntArray, near: IntArray) -> IntArray:
+        """Take in what was measured at other samples; returns all samples, in order."""
+        merged = np.union1d(samples, near)
+        old, new = np.searchsorted(merged, samples), np.searchsorted(merged, near)
+        for key, values in self.distances.items():
+            whole = np.full(len(merged), np.nan)
+            whole[old] = values
+            whole[new] = finer.distances.get(key, np.nan)
+            self.distances[key] = whole
+        for key, values in self.links.items():
+            indices = np.full(len(merged), -1, dtype=np.int64)
+            indices[old] = values
+            indices[new] = finer.links.get(key, -1)
+            self.links[key] = indices
+        self.count = len(merged)
+        return merged
+
 
 class CoalClearance:
     """The port `ClearanceObserver` for a composed robot."""
@@ -69,29 +93,51 @@ class CoalClearance:
         cutoff: float,
     ) -> Signals:
         """The same signals with `clearances` and `clearance_links` filled in."""
-        found = _Clearances(len(signals.times))
-        if found.count:
-            links = LinkPoses(self.description, signals.joint_positions)
-            tracks = {
-                record.name: object_track(record, attachments, signals, links) for record in objects
-            }
-            shapes = {record.name: tracked_shapes(record.name, record.shapes) for record in objects}
-            self._robot_to_itself(found, links, cutoff)
-            for record in objects:
-                there = tracks[record.name].present & ~_held(record.name, attachments, signals)
-                self._robot_to_object(
-                    found, links, record, tracks[record.name], shapes[record.name], there, cutoff
-                )
-            for attachment in attachments:
-                self._held_to_objects(
-                    found, links, attachment, objects, tracks, shapes, signals, cutoff
-                )
+        count = len(signals.times)
+        if not count:
+            return replace(signals, clearance_cutoff=cutoff)
+        samples = knots(signals.times, objects, attachments)
+        found = self._measured(at_samples(signals, samples), objects, attachments, cutoff)
+        near = around_smallest(found.distances, samples, count)
+        if len(near):
+            finer = self._measured(at_samples(signals, near), objects, attachments, cutoff)
+            samples = found.refined(finer, samples, near)
+        distances = {
+            key: between(samples, values, count) for key, values in found.distances.items()
+        }
+        links = {
+            key: nearest_measured(samples, values, distances[key], cutoff)
+            for key, values in found.links.items()
+        }
         return replace(
-            signals,
-            clearances=found.distances,
-            clearance_links=found.links,
-            clearance_cutoff=cutoff,
+            signals, clearances=distances, clearance_links=links, clearance_cutoff=cutoff
         )
+
+    def _measured(
+        self,
+        signals: Signals,
+        objects: Sequence[ObjectRecord],
+        attachments: Sequence[AttachmentRecord],
+        cutoff: float,
+    ) -> _Clearances:
+        """Distances at every sample that is given."""
+        found = _Clearances(len(signals.times))
+        links = LinkPoses(self.description, signals.joint_positions)
+        tracks = {
+            record.name: object_track(record, attachments, signals, links) for record in objects
+        }
+        shapes = {record.name: tracked_shapes(record.name, record.shapes) for record in objects}
+        self._robot_to_itself(found, links, cutoff)
+        for record in objects:
+            there = tracks[record.name].present & ~_held(record.name, attachments, signals)
+            self._robot_to_object(
+                found, links, record, tracks[record.name], shapes[record.name], there, cutoff
+            )
+        for attachment in attachments:
+            self._held_to_objects(
+                found, links, attachment, objects, tracks, shapes, signals, cutoff
+            )
+        return found
 
     def _robot_to_itself(self, found: _Clearances, links: LinkPoses, cutoff: float) -> None:
         names = list(self._shapes)

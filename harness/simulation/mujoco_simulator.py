@@ -115,7 +115,7 @@ class MujocoSimulator:
             end = min(begin + CHECK_EVERY, len(points) - 1)
             first = self._recording.count
             self._recording.advance(
-                controls[begin:end],
+                controls[begin : end + 1],
                 whole.positions[begin + 1 : end + 1],
                 whole.velocities[begin + 1 : end + 1],
             )
@@ -179,7 +179,7 @@ class MujocoSimulator:
         """Hold the last commands for some samples."""
         shape = (count, len(self._command))
         self._recording.advance(
-            np.broadcast_to(self._control, shape),
+            np.broadcast_to(self._control, (count + 1, len(self._command))),
             np.broadcast_to(self._command, shape),
             np.zeros(shape),
         )
@@ -195,7 +195,7 @@ class MujocoSimulator:
     def follow(self, whole: SetPoints, begin: int, end: int) -> None:
         """Advance along set points of all actuated joints from row `begin` to row `end`."""
         part = SetPoints(*(rows[begin : end + 1] for rows in vars(whole).values()))
-        self._recording.advance(self._controls(part)[:-1], part.positions[1:], part.velocities[1:])
+        self._recording.advance(self._controls(part), part.positions[1:], part.velocities[1:])
         self._command = part.positions[-1]
 
     def whole(self, points: SetPoints, columns: IntArray) -> SetPoints:

@@ -63,18 +63,20 @@ class Recording:
     def advance(
         self, controls: FloatArray, commands: FloatArray, command_velocities: FloatArray
     ) -> None:
-        """Step once for each row of `controls`; afterwards the last sample is the state reached.
+        """Step once for each row of `controls` but the last; the last sample is the state reached.
 
         Args:
-            controls: Applied from one sample to the next, shape (N, m).
+            controls: Applied from one sample to the next, then what is applied in the state
+                reached, so that the forces recorded there are those of a servo on its set point,
+                shape (N + 1, m).
             commands: Set points at the samples after each step, shape (N, m).
             command_velocities: The same of velocities.
 
         Raises:
             SimulationDiverged: The state left the finite numbers.
         """
-        steps = len(controls)
-        if steps == 0:
+        steps = len(controls) - 1
+        if steps <= 0:
             return
         first = self.count
         self._reserve(first + steps)
@@ -92,6 +94,7 @@ class Recording:
                 keep_contacts(data, row - 1)
             positions[row] = qpos
             velocities[row] = qvel
+        control[:] = controls[-1]
         self.count = first + steps
         self._refuse_divergence(first)
         self._record_forces_of_last_row()

@@ -22,6 +22,14 @@ def test_a_free_arm_stays_within_a_tenth_of_a_milliradian_of_its_set_points(ur3e
     assert np.isnan(signals.joint_commands[:, 7:]).all()  # mimic joints are not commanded
 
 
+def test_recorded_efforts_do_not_jump_where_the_loop_is_looked_at(ur3e):
+    simulator = MujocoSimulator(ur3e, (), ())
+    move_arm(simulator, ABOVE, duration=1.0)
+    efforts = simulator.finish().joint_efforts[:-1, :6]  # at the end the command stands still
+    jumps = np.abs(np.diff(efforts, axis=0)).max(axis=0)
+    assert (jumps < 0.05 * np.array([joint.effort for joint in ur3e.movable_joints])[:6]).all()
+
+
 def test_the_tcp_is_recorded_where_the_joints_put_it(ur3e):
     simulator = MujocoSimulator(ur3e, (), (), frames=("tool0",))
     move_arm(simulator, AT_CYLINDER)
