@@ -1,0 +1,20 @@
+"""Timings taken in turns, so that a busy machine slows all of them alike."""
+
+import statistics
+import time
+from collections.abc import Callable, Mapping
+
+
+def median_seconds(
+    actions: Mapping[str, Callable[[], object]], repetitions: int
+) -> dict[str, float]:
+    """Median wall time of each action, all run once before anything is timed [s]."""
+    seconds: dict[str, list[float]] = {name: [] for name in actions}
+    for action in actions.values():
+        action()
+    for _ in range(repetitions):
+        for name, action in actions.items():
+            begin = time.perf_counter()
+            action()
+            seconds[name].append(time.perf_counter() - begin)
+    return {name: statistics.median(times) for name, times in seconds.items()}
