@@ -78,7 +78,7 @@ class PlanningOptions:
     acceleration_scaling: float = 1.0
     padding: float = 0.0
     seed: int = 0
-    parameters: Mapping[str, float] = field(default_factory=dict)
+    parameters: Mapping[str, float] = field(default_factory=dict[str, float])
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +134,7 @@ class PlanningScene(Protocol):
         ...
 
     def set_allowed(self, pairs: Sequence[tuple[str, str]], *, allowed: bool) -> None:
-        """Allow (or check again) collisions of pairs of links, objects, or `robot` for all links."""
+        """Allow, or check again, collisions of pairs: links, objects, `robot` for all links."""
         ...
 
     def object_names(self) -> tuple[str, ...]:
@@ -162,7 +162,7 @@ class Kinematics(Protocol):
         ...
 
     def link_poses(self, joint_positions: FloatArray, links: Sequence[str]) -> FloatArray:
-        """T_world_link of many samples and links: (N, n) -> (N, len(links), 7) as xyz, quat wxyz."""
+        """T_world_link of many samples: (N, n) -> (N, len(links), 7) as xyz, quat wxyz."""
         ...
 
     def solve(
@@ -183,7 +183,7 @@ class Kinematics(Protocol):
 
 
 class MotionPlanner(Protocol):
-    """Finds motions of a group that can be trusted, or raises PlanningFailed with an explanation."""
+    """Finds motions of a group that can be trusted, or raises PlanningFailed and says why."""
 
     def plan(
         self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
@@ -199,7 +199,7 @@ class MotionPlanner(Protocol):
         options: PlanningOptions,
         duration: float | None = None,
     ) -> MotionPlan:
-        """Plan Pilz's PTP: all joints together, straight in joint space, in `duration` seconds if given."""
+        """Plan Pilz's PTP: all joints together, straight in joint space, in `duration` [s]."""
         ...
 
     def plan_linear(
@@ -220,8 +220,12 @@ class MotionPlanner(Protocol):
         """Move a link along a direction as far as goes between two distances.
 
         Args:
+            group: A chain group.
+            start: In description order.
+            link: Rigidly behind the group's last joint.
             twist: Unit translation or rotation in world axes, shape (6,): linear, then angular.
             distances: Least and most [m or rad]; equal for a fixed distance.
+            options: How to plan.
         """
         ...
 
@@ -292,7 +296,7 @@ class Simulator(Protocol):
     def command_gripper(
         self, position: float, max_effort: float, *, timeout: float
     ) -> GripperResult:
-        """Drive the gripper's joint to a position under an effort limit until it arrives or stalls."""
+        """Drive the gripper's joint under an effort limit until it arrives or stalls."""
         ...
 
     def hold(self, duration: float) -> None:
@@ -300,7 +304,11 @@ class Simulator(Protocol):
         ...
 
     def settle(self, max_velocity: float, timeout: float) -> bool:
-        """Hold until joints and objects are slower than a limit [m/s, rad/s]; False when time ran out."""
+        """Hold until joints and objects stay slower than a limit [m/s, rad/s]; True.
+
+        Raises:
+            StepFailed: TIMED_OUT; says what still moves, and how fast.
+        """
         ...
 
     def add_object(self, name: str, pose: SE3) -> None:

@@ -32,7 +32,7 @@ class Decision:
     holds: bool
 
 
-class TooShort(Exception):  # noqa: N818 - it is an answer, handled by the judge
+class TooShort(Exception):
     """No sample of the window leaves room for the time that is asked for."""
 
 

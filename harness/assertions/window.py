@@ -13,11 +13,11 @@ from harness.recording.run import ObjectRecord, Run, StepRecord
 D = TypeVar("D", bound=np.dtype[Any])
 
 
-class NotReached(Exception):  # noqa: N818 - an answer, turned into a verdict by the judge
+class NotReached(Exception):
     """There was nothing to judge; says why."""
 
 
-class NotObservable(Exception):  # noqa: N818 - an answer, turned into a verdict by the judge
+class NotObservable(Exception):
     """The record lacks what the expectation is about; says what."""
 
 

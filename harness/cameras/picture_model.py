@@ -81,10 +81,9 @@ def build_picture_model(
     spec.visual.global_.offwidth, spec.visual.global_.offheight = width, height
     _add_surroundings(spec, floor_height)
     for link in description.links:
-        rgba = description.links_rgba.get(link.name)
-        _add_body(spec, link.name, link.visuals or (), rgba, ghost=False)
+        _add_body(spec, link.name, link.visuals, ghost=False)
     for obj in objects:
-        _add_body(spec, obj.name, obj.visuals or obj.shapes, None, ghost=not obj.in_simulation)
+        _add_body(spec, obj.name, obj.visuals or obj.shapes, ghost=not obj.in_simulation)
     model = spec.compile()
     model.vis.map.znear, model.vis.map.zfar = 0.01, 60.0
     mocap: dict[str, int] = {}
@@ -96,16 +95,14 @@ def build_picture_model(
     return PictureModel(model, mujoco.MjData(model), mocap, geoms, model.geom_rgba.copy())
 
 
-def _add_body(
-    spec: mujoco.MjSpec, name: str, shapes: Sequence[Shape], rgba: Rgba | None, *, ghost: bool
-) -> None:
+def _add_body(spec: mujoco.MjSpec, name: str, shapes: Sequence[Shape], *, ghost: bool) -> None:
     drawn = [shape for shape in shapes if not isinstance(shape.geometry, Plane)]
     if not drawn:
         return
     body = spec.worldbody.add_body(name=name, mocap=True)
     for shape in drawn:
         for geometry, colour in _pieces(spec, shape):
-            red, green, blue, alpha = colour or rgba or shape.rgba
+            red, green, blue, alpha = colour or shape.rgba
             alpha = min(alpha, GHOST_ALPHA) if ghost else alpha
             geom = _add_geom(body, geometry)
             geom.pos, geom.quat = shape.pose.translation, shape.pose.quat_wxyz

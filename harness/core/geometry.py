@@ -76,7 +76,7 @@ class Shape:
 
 
 def bounding_radius(shape: Shape) -> float:
-    """Radius of a sphere about the body's origin that holds the shape [m]; planes have none (inf)."""
+    """Radius of a sphere about the body's origin that holds the shape [m]; inf for planes."""
     offset = float(np.linalg.norm(shape.pose.translation))
     match shape.geometry:
         case Box(size=size):

@@ -1,4 +1,4 @@
-"""Where the bundled robots, worlds and scenarios are: in the checkout, or inside the installed package."""
+"""Where the bundled files are: in the checkout, or inside the installed package."""
 
 from __future__ import annotations
 

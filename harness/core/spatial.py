@@ -13,7 +13,7 @@ Vector = Sequence[float] | FloatArray
 
 
 def rotation_from_rpy(rpy: Vector) -> FloatArray:
-    """Rotation of URDF's fixed-axis roll, pitch, yaw [rad]: Rz(yaw) Ry(pitch) Rx(roll), shape (3, 3)."""
+    """Rotation of URDF's fixed-axis roll, pitch, yaw [rad]: Rz Ry Rx, shape (3, 3)."""
     roll, pitch, yaw = (float(angle) for angle in rpy)
     cr, sr, cp, sp, cy, sy = (
         np.cos(roll),

@@ -11,7 +11,7 @@ from harness.core.types import FloatArray
 
 @dataclass(frozen=True)
 class Friction:
-    """Coulomb coefficients of a surface; a contact takes the smaller of its two (as Gazebo's ODE does).
+    """Coulomb coefficients of a surface; a contact takes the smaller of its two, as Gazebo's ODE.
 
     Attributes:
         sliding: Dimensionless.

@@ -13,7 +13,7 @@ from typing import Literal
 
 import numpy as np
 
-from harness.core.geometry import Rgba, Shape
+from harness.core.geometry import Shape
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 
@@ -203,7 +203,6 @@ class RobotDescription:
         cameras: By name.
         tracking: Tolerances of the trajectory controller.
         ik_solver: `ur`, `open_manipulator_x` or `numeric`.
-        links_rgba: Colours of links for pictures, where the visuals say none.
     """
 
     name: str
@@ -222,7 +221,6 @@ class RobotDescription:
     cameras: Mapping[str, Camera] = field(default_factory=dict)
     tracking: TrackingTolerances = field(default_factory=TrackingTolerances)
     ik_solver: Literal["ur", "open_manipulator_x", "numeric"] = "numeric"
-    links_rgba: Mapping[str, Rgba] = field(default_factory=dict)
 
     @cached_property
     def movable_joints(self) -> tuple[Joint, ...]:
