@@ -94,7 +94,8 @@ def _count(event: ProgressEvent) -> str:
 def case_line(result: CaseResult, style: Style = PLAIN) -> str:
     """One line of a finished case."""
     name = f"{result.title} [{result.case}]" if result.case else result.title
-    parts = [f"{style.outcome(result.outcome):<8}{style.strong(name)}"]
+    outcome = style.outcome(result.outcome, f"{result.outcome:<8}")
+    parts = [f"{outcome}{style.strong(name)}"]
     if result.outcome in {"passed", "failed"}:
         held = sum(verdict.status == "passed" for verdict in result.verdicts)
         parts.append(f"{_plural(len(result.steps), 'step')}, {result.sim_time:.1f} s simulated")

@@ -128,6 +128,16 @@ def test_a_finished_case_is_one_line():
     )
 
 
+def test_colours_take_no_room():
+    line = case_line(result(), COLORED)
+    assert (
+        line.replace("\x1b[32m", "")
+        .replace("\x1b[1m", "")
+        .replace("\x1b[0m", "")
+        .startswith("passed  Pick  ")
+    )
+
+
 def test_the_summary_counts_the_gravest_first():
     results = [result(), result("error"), result()]
     assert summary(results, 2.0) == "1 error, 2 passed of 3 cases in 2.0 s"
