@@ -11,6 +11,7 @@ from pydantic import Field, ValidationError, model_validator
 from harness.core.errors import RobotError
 from harness.spec.base import Length, Name, PositiveLength, Rpy, SpecModel, Xyz
 from harness.spec.scenario import JointLimits, StartState
+from harness.spec.yaml_file import LOADER
 
 
 class JointFacts(JointLimits):
@@ -150,7 +151,7 @@ def read_robot_yaml(folder: Path) -> RobotYaml:
     """
     path = folder / "robot.yaml"
     try:
-        content: Any = yaml.safe_load(path.read_text(encoding="utf-8"))
+        content: Any = yaml.load(path.read_text(encoding="utf-8"), Loader=LOADER)
     except OSError as error:
         raise RobotError(f"{path}: cannot be read: {error.strerror}") from error
     except yaml.YAMLError as error:

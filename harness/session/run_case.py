@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from harness.assertions.judge import judge
 from harness.assertions.observations import observations
@@ -19,8 +19,11 @@ from harness.recording.store import write_run
 from harness.reporting.result import CaseResult, ProgressEvent, StepLine
 from harness.session.prepare import Prepared, prepare
 from harness.session.record import run_record
-from harness.session.timing import Clock, TimedSimulator
+from harness.session.timing import Clock
 from harness.spec.resolve import resolved_text
+
+if TYPE_CHECKING:
+    from harness.session.timed_simulator import TimedSimulator
 
 Notify = Callable[[ProgressEvent], None]
 
@@ -112,6 +115,8 @@ def step_line(step: StepRecord) -> StepLine:
 def _execute(
     prepared: Prepared, file: str, clock: Clock, on_progress: Notify, report_dir: Path | None
 ) -> Run:
+    from harness.session.timed_simulator import TimedSimulator  # physics: no use to a check
+
     program = prepared.program
     needed = observations(expectation.spec for expectation in program.expectations)
     links = set(program.description.link_names)
