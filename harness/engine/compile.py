@@ -28,6 +28,7 @@ from harness.spec.steps import AddObject, AllowCollisions, AnyStep, AttachObject
 from harness.spec.world import ObjectSpec, WorldSpec
 
 NOT_YET = "not yet available"
+MOST_OBJECTS = 1000  # of all kinds; 300 that move already take 2 s of wall time for each simulated
 
 
 class SourceMap(Protocol):
@@ -38,7 +39,11 @@ class SourceMap(Protocol):
         ...
 
     def problem(self, loc: Loc, message: str, hint: str = "") -> Problem:
-        """A located problem."""
+        """A problem at a value."""
+        ...
+
+    def problem_at_key(self, loc: Loc, message: str, hint: str = "") -> Problem:
+        """A problem at a value's key."""
         ...
 
 
@@ -83,7 +88,7 @@ def compile_scenario(sources: Sources) -> Program:
 class _Compiler:
     def __init__(self, sources: Sources) -> None:
         self.sources = sources
-        self.problems = Problems(sources.lines.problem)
+        self.problems = Problems(sources.lines.problem, sources.lines.problem_at_key)
         self.scope = Scope(sources.description, self.problems)
         self.later: dict[str, WorldObject] = {}
         self.later_specs: dict[str, ObjectSpec] = {}  # without poses
@@ -103,6 +108,12 @@ class _Compiler:
             self._expectation(expectation, ("expect", index), "")
         for expectation, loc in self.pending:
             check_expectation(expectation, loc, self.scope, sources.judged)
+        if len(objects) + len(self.later) > MOST_OBJECTS:
+            self.problems.add(
+                ("objects",) if scenario.objects else ("world",),
+                f"there are {len(objects) + len(self.later)} objects; a scene may have"
+                f" {MOST_OBJECTS}",
+            )
         self.problems.raise_if_any()
         return Program(
             title=scenario.scenario,
@@ -124,13 +135,17 @@ class _Compiler:
 
     def _objects_at_start(self) -> tuple[WorldObject, ...]:
         world, scenario = self.sources.world, self.sources.scenario
-        resolved = {
-            spec.name: resolve_object(spec, spec.pose.se3(), self.sources.world_dir)
-            for spec in world.objects
-        }
+        resolved = self._world_objects()
+        here: set[str] = set()
         for index, spec in enumerate(scenario.objects):
             loc: Loc = ("objects", index)
-            if spec.name in resolved and not spec.replace:
+            if spec.name in here:
+                self.problems.add(
+                    (*loc, "name"),
+                    f"another object is called '{spec.name}'",
+                    "every object has a name of its own",
+                )
+            elif spec.name in resolved and not spec.replace:
                 self.problems.add(
                     (*loc, "name"),
                     f"the world '{world.world}' has an object '{spec.name}' already",
@@ -138,10 +153,30 @@ class _Compiler:
                 )
             elif spec.name not in resolved and spec.replace:
                 self.problems.unknown((*loc, "name"), "object of the world", spec.name, resolved)
+            here.add(spec.name)
             obj = self._resolve(spec, loc, self._start_pose(spec, loc))
             if obj is not None:
                 resolved[spec.name] = obj
         return tuple(resolved.values())
+
+    def _world_objects(self) -> dict[str, WorldObject]:
+        """The world's own objects; what is wrong with one is told at the scenario's `world`."""
+        resolved: dict[str, WorldObject] = {}
+        world, problems = self.sources.world, list[str]()
+        for spec in world.objects:
+            if spec.name in resolved:
+                problems.append(f"two objects are called '{spec.name}'")
+            if spec.pose.frame != "world":
+                problems.append(
+                    f"'{spec.name}' has a pose in '{spec.pose.frame}', not in the world"
+                )
+            try:
+                resolved[spec.name] = resolve_object(spec, spec.pose.se3(), self.sources.world_dir)
+            except ObjectUnusableError as unusable:
+                problems.append(f"object '{spec.name}': {unusable}")
+        if problems:
+            self.problems.add(("world",), f"world '{world.world}': " + "; ".join(problems))
+        return resolved
 
     def _start_pose(self, spec: ObjectSpec, loc: Loc) -> SE3:
         description = self.sources.description

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable
 from harness.core.errors import Problem, SpecError
 from harness.core.world import WorldObject
 from harness.engine.program import Loc
+from harness.ports import LONGEST_RUN
 from harness.robot.description import RobotDescription
 
 LISTED = 12  # names in a hint
@@ -16,27 +17,36 @@ LISTED = 12  # names in a hint
 class Problems:
     """Collects located problems, so that all of a file's are told at once."""
 
-    def __init__(self, locate: Callable[[Loc, str, str], Problem]) -> None:
+    def __init__(
+        self,
+        locate: Callable[[Loc, str, str], Problem],
+        locate_key: Callable[[Loc, str, str], Problem],
+    ) -> None:
         self._locate = locate
-        self._found: list[Problem] = []
+        self._locate_key = locate_key
+        self._found: dict[Loc, Problem] = {}
 
     def add(self, loc: Loc, message: str, hint: str = "") -> None:
-        """Note a problem at a place of the file."""
-        self._found.append(self._locate(loc, message, hint))
+        """Note a problem at a place of the file; what else is wrong there follows from the first."""
+        self._found.setdefault(loc, self._locate(loc, message, hint))
 
-    def unknown(self, loc: Loc, what: str, name: str, known: Iterable[str]) -> None:
+    def unknown(
+        self, loc: Loc, what: str, name: str, known: Iterable[str], *, is_key: bool = False
+    ) -> None:
         """Note a name that nothing has, with the nearest that something has, then the rest."""
         names = list(dict.fromkeys(known))
         near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
         rest = ", ".join(names[:LISTED]) + (", ..." if len(names) > LISTED else "")
         parts = [f"did you mean '{near[0]}'?"] if near else []
         parts.append(f"known: {rest}" if names else "there is none here")
-        self.add(loc, f"there is no {what} '{name}'", " ".join(parts))
+        locate = self._locate_key if is_key else self._locate
+        message = f"there is no {what} '{name}'"
+        self._found.setdefault(loc, locate(loc, message, " ".join(parts)))
 
     def raise_if_any(self) -> None:
         """Raise SpecError with everything found, if anything was."""
         if self._found:
-            raise SpecError(self._found)
+            raise SpecError(self._found.values())
 
 
 class Scope:
@@ -48,6 +58,7 @@ class Scope:
         present: Objects in the scene at this point of the file, as far as the file tells.
         attached: Objects attached at this point.
         added: Objects that steps added and nothing removed.
+        asked_time: Simulated time that steps have asked for by number [s].
         problems: Where to report.
     """
 
@@ -58,6 +69,7 @@ class Scope:
         self.present: dict[str, None] = {}
         self.attached: dict[str, None] = {}
         self.added: dict[str, None] = {}
+        self.asked_time = 0.0
         self.step_ids: dict[str, None] = {}
 
     def add_object(self, obj: WorldObject, *, present: bool = False) -> None:
@@ -90,6 +102,17 @@ class Scope:
         """A robot link, or an object that is attached here (Task Constructor's ik_frame)."""
         if name is not None and name not in self.attached:
             self.check_link(name, loc)
+
+    def take_time(self, seconds: float, loc: Loc) -> None:
+        """Simulated time that a step asks for; all of it must fit into a run."""
+        before, self.asked_time = self.asked_time, self.asked_time + seconds
+        if before <= LONGEST_RUN < self.asked_time:
+            self.problems.add(
+                loc,
+                f"the steps up to here ask for {self.asked_time:g} s, and a run may take"
+                f" {LONGEST_RUN:g} s of simulated time",
+                "shorten it, or make it several scenarios",
+            )
 
     def check_group(self, name: str | None, loc: Loc) -> str:
         """A planning group; returns the one that is meant."""
@@ -139,7 +162,7 @@ class Scope:
             names = self.description.groups[group].joint_names
             where = f"joint of '{group}'"
         if name not in names:
-            self.problems.unknown(loc, where, name, names)
+            self.problems.unknown(loc, where, name, names, is_key=True)
 
     def check_gripper(self, loc: Loc, what: str) -> bool:
         """Whether the robot has a gripper, which `what` needs."""

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from harness.assertions.judge import EXECUTED
-from harness.core.errors import RobotError, SpecError
+from harness.core.errors import Problem, RobotError, SpecError
 from harness.engine.compile import Sources, compile_scenario
-from harness.engine.program import Program
+from harness.engine.program import Loc, Program
 from harness.planning.backend import make_planning
 from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
 from harness.planning.planner_names import resolve_planner_id
 from harness.ports import Kinematics, MotionPlanner, PlanningScene
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
-from harness.spec.load import LoadedScenario, LoadedWorld, load_scenario, load_world
+from harness.spec.load import LoadedScenario, LoadedWorld, Reading, load_world, read_scenario
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,10 +39,46 @@ def prepare(
     Raises:
         SpecError: With every problem of the file, robot and world included.
     """
-    loaded = load_scenario(path, overrides, seed)
-    description = _robot(loaded)
+    reading = read_scenario(path, overrides, seed)
+    if reading.loaded is None:
+        raise SpecError(reading.problems)
+    try:
+        prepared = _prepared(reading.loaded)
+    except SpecError as error:
+        raise SpecError(_together(reading, error.problems)) from error
+    if reading.problems:
+        raise SpecError(reading.problems)
+    return prepared
+
+
+def _together(reading: Reading, more: Sequence[Problem]) -> list[Problem]:
+    """All problems, but those that may follow from another."""
+    lines = {problem.line for problem in reading.problems}
+    return [
+        *reading.problems,
+        *(
+            problem
+            for problem in more
+            if problem.line not in lines
+            and not any(f"'{word}'" in problem.message for word in reading.doubtful)
+        ),
+    ]
+
+
+def _prepared(loaded: LoadedScenario) -> Prepared:
+    problems: list[Problem] = []
+    description = world = None
+    try:
+        description = _robot(loaded)
+    except SpecError as error:
+        problems += error.problems
+    try:
+        world = _world(loaded)
+    except SpecError as error:
+        problems += error.problems
+    if description is None or world is None:
+        raise SpecError(problems)
     scene, kinematics, planner = make_planning(description)
-    world = _world(loaded)
     sources = Sources(
         scenario=loaded.scenario,
         lines=loaded.lines,
@@ -61,7 +98,13 @@ def _robot(loaded: LoadedScenario) -> RobotDescription:
     try:
         return load_robot(loaded.scenario.robot, loaded.path.parent)
     except RobotError as error:
-        raise SpecError([loaded.lines.problem(("robot",), str(error))]) from error
+        raise SpecError([loaded.lines.problem(_place(str(error)), str(error))]) from error
+
+
+def _place(message: str) -> Loc:
+    """Where the scenario says what a robot's error is about: `robot.gripper: ...`, or its robot."""
+    key = re.match(r"robot\.(\w+)\b", message)
+    return ("robot", key[1]) if key else ("robot",)
 
 
 def _world(loaded: LoadedScenario) -> LoadedWorld:

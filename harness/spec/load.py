@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar, cast
 
 from pydantic import ValidationError
+from pydantic_core import ErrorDetails
 
 from harness.core.errors import Problem, SpecError
 from harness.core.resources import data_folder
 from harness.spec.annotations import keys_of
 from harness.spec.base import SpecModel
+from harness.spec.mending import mended
 from harness.spec.mistakes import did_you_mean
 from harness.spec.params import override, substitute
 from harness.spec.scenario import Scenario
@@ -68,6 +70,47 @@ class LoadedWorld(Loaded[WorldSpec]):
     def world(self) -> WorldSpec:
         """What the file says."""
         return self.model
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """What a scenario file came to.
+
+    Attributes:
+        loaded: The scenario; with problems, what remains of it; None when that is too little.
+        problems: Mistakes found so far.
+        doubtful: Words of what was left out; a mistake that speaks of one may follow from another.
+    """
+
+    loaded: LoadedScenario | None
+    problems: tuple[Problem, ...] = ()
+    doubtful: frozenset[str] = frozenset()
+
+
+def read_scenario(
+    path: Path, overrides: Mapping[str, str] | None = None, seed: int | None = None
+) -> Reading:
+    """A scenario file with its mistakes, for whoever goes on to find more.
+
+    Raises:
+        SpecError: The file is no YAML, or an override names nothing in it.
+    """
+    given = dict(overrides or {})
+    if seed is not None:
+        given["seed"] = str(seed)
+    text = read_text(path)
+    problems: list[Problem] = []
+    written = parse_yaml(text, Source.of_text(str(path), text))
+    written = override(written, given, keys_of(Scenario))
+    written = substitute(written, problems)
+    try:
+        model, lines = _model(written, Scenario, problems)
+    except _BrokenError as error:
+        if error.remains is None:
+            return Reading(None, tuple(error.problems))
+        loaded = LoadedScenario(error.remains, path, text, error.lines, written)
+        return Reading(loaded, tuple(error.problems), error.doubtful)
+    return Reading(LoadedScenario(model, path, text, lines, written))
 
 
 def load_scenario(
@@ -162,6 +205,26 @@ def file_path(text: str, base_dir: Path) -> Path:
     return base_dir / Path(text).expanduser() if text.startswith("~") else base_dir / text
 
 
+class _BrokenError(SpecError):
+    """A file has mistakes; carries what remains of it besides.
+
+    Attributes:
+        lines: From a field of the model to its line and column.
+        remains: A model of what could be read; None when too little could.
+        doubtful: Words of what could not.
+    """
+
+    def __init__(
+        self,
+        problems: list[Problem],
+        lines: SourceMap,
+        remains: Any = None,
+        doubtful: frozenset[str] = frozenset(),
+    ) -> None:
+        super().__init__(problems)
+        self.lines, self.remains, self.doubtful = lines, remains, doubtful
+
+
 def _model(written: Located, model: type[M], problems: list[Problem]) -> tuple[M, SourceMap]:
     """The model of a file's values.
 
@@ -169,17 +232,34 @@ def _model(written: Located, model: type[M], problems: list[Problem]) -> tuple[M
         SpecError: With the problems found before and all that are found here.
     """
     lines = SourceMap(models_shape(written, model, problems))
+    data = lines.root.plain()
     try:
-        loaded = model.model_validate(lines.root.plain())
+        loaded = model.model_validate(data)
     except ValidationError as error:
         places = {(problem.line, problem.column) for problem in problems}
-        for problem in problems_of(error.errors(include_url=False), lines):
+        errors = error.errors(include_url=False)
+        for problem in problems_of(errors, lines):
             if (problem.line, problem.column) not in places:  # else it follows from the first
                 problems.append(problem)
-        raise SpecError(problems) from None
+        raise _BrokenError(problems, lines, *_remains(data, model, errors)) from None
     if problems:
-        raise SpecError(problems)
+        raise _BrokenError(problems, lines, loaded)
     return loaded, lines
+
+
+def _remains(
+    data: object, model: type[M], errors: Sequence[ErrorDetails]
+) -> tuple[M | None, frozenset[str]]:
+    """A model of what is not broken, and the words of what is."""
+    if not isinstance(data, dict):
+        return None, frozenset()
+    found = mended(cast("dict[str, Any]", data), [error["loc"] for error in errors])
+    if found is None:
+        return None, frozenset()
+    try:
+        return model.model_validate(found[0]), found[1]
+    except ValidationError:
+        return None, frozenset()
 
 
 def _of_world(problem: Problem, name: str) -> Problem:

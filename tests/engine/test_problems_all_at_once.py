@@ -1,0 +1,79 @@
+"""Mistakes of every kind in one file are told at once, each at its place, none twice."""
+
+import pytest
+
+from harness.core.errors import SpecError
+from harness.session.prepare import prepare
+
+MISTAKES = """\
+scenario: Mistakes
+robot: {model: ur3e, gripper: rh_p12_rn_a, base: {xyz: [0, 0, 1.02]}}
+world: lesson_ur
+planning: {planner_id: RRTConect}
+steps:
+  - move_to: mogi_hom
+  - move_too: up
+  - gripper: opn
+  - lin: {pose: {frame: base_lnk, xyz: [0.3, 0, 0.3]}}
+  - move_to: {joints: {shoulder_pan: 0}}
+  - move_to: {pose: {xyz: [0.3, 0, 1.3], quat_xyzw: [0.9, -0.6, 0, 0]}}
+  - wait: 3 mm
+  - grasp: green_cilinder
+  - pick: {object: Table}
+expect:
+  - lifted: {object: green_cylinder, above: 5 cms}
+  - never: {collision: {between: [robot, Tabel]}}
+  - grasped: nothing
+"""
+PLACES = [
+    (4, 24, "RRTConect"),
+    (6, 14, "mogi_hom"),
+    (7, 5, "move_too"),
+    (8, 14, "opn"),
+    (9, 25, "base_lnk"),
+    (10, 24, "shoulder_pan"),
+    (11, 53, "norm"),
+    (12, 11, "3 mm"),
+    (13, 12, "green_cilinder"),
+    (14, 20, "static"),
+    (16, 45, "cms"),
+    (17, 42, "Tabel"),
+    (18, 14, "nothing"),
+]
+
+
+def problems(tmp_path, text):
+    path = tmp_path / "mistakes.scenario.yaml"
+    path.write_text(text)
+    with pytest.raises(SpecError) as caught:
+        prepare(path)
+    return caught.value.problems
+
+
+def test_words_values_and_names_that_are_wrong_are_told_together(tmp_path):
+    found = problems(tmp_path, MISTAKES)
+    assert [(problem.line, problem.column) for problem in found] == [place[:2] for place in PLACES]
+    for problem, (_, _, word) in zip(found, PLACES, strict=True):
+        assert word in problem.message
+        assert problem.source_line
+
+
+def test_a_wrong_robot_and_a_wrong_world_are_told_together(tmp_path):
+    text = "scenario: Two\nrobot: ur3x\nworld: lesson_or\nsteps:\n  - wait: 1 s\n"
+    found = problems(tmp_path, text)
+    assert [problem.line for problem in found] == [2, 3]
+
+
+def test_what_follows_from_another_mistake_is_not_told(tmp_path):
+    text = """\
+scenario: One
+robot: open_manipulator_x
+steps:
+  - add_object: {name: crate, box: {size: [0.1, 0.1]}, pose: {xyz: [0.5, 0, 0.05]}}
+    id: add
+  - remove_object: crate
+expect:
+  - static: {object: crate, during: add}
+"""
+    found = problems(tmp_path, text)
+    assert [problem.line for problem in found] == [4]
