@@ -14,6 +14,7 @@ import numpy as np
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
+from harness.engine.grasping import turn_about
 from harness.engine.program import Program
 from harness.ports import (
     Goal,
@@ -165,17 +166,10 @@ class DryPlanner:
         pose = self._kinematics.link_pose(start, link)
         moved = SE3(pose.rotation, pose.translation + distances[0] * twist[:3])
         if np.any(twist[3:]):
-            moved = SE3(_turn(twist[3:], distances[0]) @ pose.rotation, pose.translation)
+            moved = SE3(turn_about(twist[3:], distances[0]) @ pose.rotation, pose.translation)
         return self.plan(group, start, PoseGoal(link, moved, 1e-3, 1e-2), options)
 
     def check_goal(
         self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
     ) -> Mapping[str, Any]:
         return self._planner.check_goal(group, start, goal, options)
-
-
-def _turn(axis: FloatArray, angle: float) -> FloatArray:
-    """Rotation about a unit axis (Rodrigues), shape (3, 3)."""
-    x, y, z = axis
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross

@@ -7,13 +7,14 @@ import math
 import numpy as np
 
 from harness.core.errors import StepFailed
-from harness.core.geometry import Box, Capsule, Cylinder, Sphere
-from harness.core.spatial import SE3
+from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Shape, Sphere
+from harness.core.spatial import SE3, rotation_from_quat_wxyz
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.engine.cell import Cell
 
 GRASP_DEPTH = 0.02  # [m] below the top of a tall object
+MAX_LEAN = 10.0  # [degrees]
 
 
 def gripper_axes(cell: Cell) -> tuple[FloatArray, FloatArray]:
@@ -35,47 +36,71 @@ def gripper_axes(cell: Cell) -> tuple[FloatArray, FloatArray]:
 
 
 def top_grasp(obj: WorldObject, object_pose: SE3, cell: Cell) -> SE3:
-    """T_world_tcp that takes an upright object from above, across its narrow side.
+    """T_world_tcp that takes an object from above, across the narrow one of its level sides.
 
     Raises:
-        StepFailed: INVALID_OBJECT_NAME, when the object is too wide, or its shape says too little.
+        StepFailed: INVALID_OBJECT_NAME, when the object is too wide, leans, or its shape says too
+            little.
     """
-    width_axis, width, height = _narrow_side(obj)
-    opening = float(cell.gripper.widths[:, 1].max())
-    if width > opening:
+    shape = _only_shape(obj)
+    at = object_pose @ shape.pose
+    size = _extents(obj.name, shape.geometry)
+    vertical = int(np.argmax(np.abs(at.rotation[2])))
+    lean = math.degrees(math.acos(min(1.0, abs(float(at.rotation[2, vertical])))))
+    if lean > MAX_LEAN and not isinstance(shape.geometry, Sphere):
         raise StepFailed(
             "INVALID_OBJECT_NAME",
-            f"'{obj.name}' is {width * 1e3:.0f} mm wide, the gripper opens {opening * 1e3:.0f} mm:"
+            f"'{obj.name}' leans by {lean:.0f} degrees, which is no way to take it from above:"
             " give a `grasp_pose`",
         )
+    narrow = min((axis for axis in (1, 0, 2) if axis != vertical), key=lambda axis: size[axis])
+    opening = float(cell.gripper.widths[:, 1].max())
+    if size[narrow] > opening:
+        raise StepFailed(
+            "INVALID_OBJECT_NAME",
+            f"'{obj.name}' is {size[narrow] * 1e3:.0f} mm wide, the gripper opens"
+            f" {opening * 1e3:.0f} mm: give a `grasp_pose`",
+        )
     approach, closing = gripper_axes(cell)
-    side = object_pose.rotation @ width_axis
-    side = np.array([side[0], side[1], 0.0])
+    side = at.rotation[:, narrow].copy()
+    side[2] = 0.0
     side /= np.linalg.norm(side)
-    down = np.array([0.0, 0.0, -1.0])
-    rotation = _align(approach, closing, down, side)
+    rotation = _align(approach, closing, np.array([0.0, 0.0, -1.0]), side)
+    height = size[vertical]
     depth = min(GRASP_DEPTH, height / 2)
-    top = object_pose.translation + np.array([0.0, 0.0, height / 2 - depth])
-    return SE3(rotation, top)
+    return SE3(rotation, at.translation + np.array([0.0, 0.0, height / 2 - depth]))
 
 
-def _narrow_side(obj: WorldObject) -> tuple[FloatArray, float, float]:
-    """Body axis across which the object is narrow, its width there, its height (z) [m]."""
+def grasp_point(obj: WorldObject, object_pose: SE3) -> FloatArray:
+    """Point of an object that a gripper from the side closes on: its shape's middle, shape (3,)."""
+    if len(obj.shapes) != 1:
+        return object_pose.translation
+    return (object_pose @ obj.shapes[0].pose).translation
+
+
+def _only_shape(obj: WorldObject) -> Shape:
     if len(obj.shapes) == 1:
-        match obj.shapes[0].geometry:
-            case Box(size=(x, y, z)):
-                return (np.array([1.0, 0, 0]), x, z) if x <= y else (np.array([0, 1.0, 0]), y, z)
-            case Cylinder(radius=radius, length=length):
-                return np.array([0, 1.0, 0]), 2 * radius, length
-            case Capsule(radius=radius, length=length):
-                return np.array([0, 1.0, 0]), 2 * radius, length + 2 * radius
-            case Sphere(radius=radius):
-                return np.array([0, 1.0, 0]), 2 * radius, 2 * radius
-            case _:
-                pass
+        return obj.shapes[0]
     raise StepFailed(
-        "INVALID_OBJECT_NAME", f"'{obj.name}' has no simple shape: give a `grasp_pose`"
+        "INVALID_OBJECT_NAME", f"'{obj.name}' has {len(obj.shapes)} shapes: give a `grasp_pose`"
     )
+
+
+def _extents(name: str, geometry: Geometry) -> tuple[float, float, float]:
+    """Size of a shape along its own axes [m]."""
+    match geometry:
+        case Box(size=size):
+            return size
+        case Cylinder(radius=radius, length=length):
+            return 2 * radius, 2 * radius, length
+        case Capsule(radius=radius, length=length):
+            return 2 * radius, 2 * radius, length + 2 * radius
+        case Sphere(radius=radius):
+            return 2 * radius, 2 * radius, 2 * radius
+        case _:
+            raise StepFailed(
+                "INVALID_OBJECT_NAME", f"'{name}' has no simple shape: give a `grasp_pose`"
+            )
 
 
 def _align(
@@ -90,3 +115,25 @@ def _align(
 def pitch_of(rotation: FloatArray) -> float:
     """Angle of a frame's x axis below the horizontal [rad]."""
     return -math.asin(float(np.clip(rotation[2, 0], -1.0, 1.0)))
+
+
+def pitched(rotation: FloatArray, pitch: float) -> FloatArray:
+    """A rotation turned about a level axis until its x axis is `pitch` below the horizontal [rad].
+
+    The heading stays; that of a vertical x axis is where its z axis, or the opposite, points.
+    """
+    x_axis = rotation[:, 0]
+    level = np.array([x_axis[0], x_axis[1], 0.0])
+    if np.linalg.norm(level) < 1e-6:
+        level = np.sign(-x_axis[2]) * np.array([rotation[0, 2], rotation[1, 2], 0.0])
+    level /= np.linalg.norm(level)
+    wanted = math.cos(pitch) * level - math.sin(pitch) * np.array([0.0, 0.0, 1.0])
+    across = np.cross(x_axis, wanted)
+    about = np.array([-level[1], level[0], 0.0])
+    angle = math.atan2(float(across @ about), float(x_axis @ wanted))
+    return turn_about(about, angle) @ rotation
+
+
+def turn_about(axis: FloatArray, angle: float) -> FloatArray:
+    """Rotation about a unit axis by an angle [rad], shape (3, 3)."""
+    return rotation_from_quat_wxyz([math.cos(angle / 2), *(math.sin(angle / 2) * axis)])

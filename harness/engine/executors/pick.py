@@ -7,9 +7,10 @@ import math
 import numpy as np
 
 from harness.core.spatial import SE3
+from harness.core.types import FloatArray
 from harness.engine.cell import Cell
 from harness.engine.goals import TcpGoal, group_of
-from harness.engine.grasping import gripper_axes, top_grasp
+from harness.engine.grasping import grasp_point, gripper_axes, top_grasp
 from harness.engine.program import ProgramStep
 from harness.engine.registry import execute
 from harness.spec.poses import Direction, Pose, Position
@@ -64,7 +65,8 @@ def grasp_goal(step: Pick, cell: Cell) -> TcpGoal:
     if arm_has_six_joints(cell, step.group) and step.pitch is None:
         obj = cell.presence[step.object].obj
         return TcpGoal(world_pose_spec(top_grasp(obj, object_pose, cell)))
-    x, y, z = (float(value) for value in object_pose.translation)
+    point = grasp_point(cell.presence[step.object].obj, object_pose)
+    x, y, z = (float(value) for value in point)
     return TcpGoal(Position(xyz=(x, y, z)), step.pitch or 0.0)
 
 
@@ -80,12 +82,18 @@ def back_off(target: TcpGoal, distance: float, step: Pick, cell: Cell) -> TcpGoa
         return TcpGoal(world_pose_spec(SE3(at.rotation, at.translation - distance * along)))
     point, pitch = np.array(target.target.xyz), float(target.pitch or 0.0)
     if along is None:
-        away = point - cell.frame(cell.description.base_link).translation
+        away = point - _turning_axis(cell, step.group)
         heading = math.atan2(away[1], away[0])
         level = math.cos(pitch)
         along = np.array([level * math.cos(heading), level * math.sin(heading), -math.sin(pitch)])
     x, y, z = (float(value) for value in point - distance * along)
     return TcpGoal(Position(xyz=(x, y, z)), pitch)
+
+
+def _turning_axis(cell: Cell, group: str | None) -> FloatArray:
+    """A point on the axis about which the arm turns to a heading: its first joint's, shape (3,)."""
+    first = cell.description.groups[group_of(cell, group)].joint_names[0]
+    return cell.frame(cell.description.joint_by_name[first].child).translation
 
 
 def arm_has_six_joints(cell: Cell, group: str | None) -> bool:
