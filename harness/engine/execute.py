@@ -41,6 +41,7 @@ class _Runner:
     on_step: OnStep
     keep_going: bool = False
     records: list[StepRecord] = field(default_factory=list[StepRecord])
+    depth: int = 0
 
     def run(self, steps: Sequence[ProgramStep]) -> None:
         """Carry out steps in order; the first unexpected failure ends it."""
@@ -73,17 +74,20 @@ class _Runner:
             result=notes.result,
         )
         self.on_step("step_finished", step, self.records[place])
-        if status == "failed" and not self.keep_going:
+        if status == "failed" and not (self.keep_going and self.depth == 0):
             code = failure.code if failure else "FAILURE"
             raise _RunEndedError(failure or StepFailed(code, message))
 
     def _attempt(self, step: ProgramStep) -> StepFailed | None:
+        self.depth += 1
         try:
             execute(step.spec, self.cell)
         except StepFailed as failure:
             return failure
         except _RunEndedError as ended:
             return ended.failure
+        finally:
+            self.depth -= 1
         return None
 
 
@@ -107,7 +111,8 @@ def execute_program(
         simulator: At the start state, with every object of the program prepared and the world's
             present.
         on_step: Called before and after each step.
-        keep_going: Whether a failed step lets the next one begin all the same.
+        keep_going: Whether a failed step of the file lets the next one begin all the same; a step
+            made of others ends with the first of them that fails.
     """
     cell = Cell(
         description=program.description,

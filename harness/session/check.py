@@ -46,8 +46,7 @@ def check_file(
             _loc(program, record.path),
             f"{record.error_code}: {record.message}",
         )
-        for record in records
-        if unexpected(record)
+        for record in unexpected(records)
     ]
     return CheckResult(program.title, (), tuple(dict.fromkeys(predicted)), len(program.steps))
 
