@@ -12,6 +12,9 @@ from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
 
+LONGEST_RUN = 600.0
+"""Simulated time of one run at most [s]: a file cannot fill the machine's memory or its day."""
+
 
 @dataclass(frozen=True, eq=False)
 class JointGoal:
@@ -260,7 +263,11 @@ class GripperResult:
 
 
 class Simulator(Protocol):
-    """The physics; time only moves inside these calls, and every sample of it is recorded."""
+    """The physics; time only moves inside these calls, and every sample of it is recorded.
+
+    A call that would take the run beyond `LONGEST_RUN`, or its record beyond what the memory is
+    meant for, raises StepFailed TIMED_OUT.
+    """
 
     @property
     def time(self) -> float:

@@ -27,7 +27,7 @@ class Problems:
         self._found: dict[Loc, Problem] = {}
 
     def add(self, loc: Loc, message: str, hint: str = "") -> None:
-        """Note a problem at a place of the file; what else is wrong there follows from the first."""
+        """Note a problem at a place of the file; others at the same place follow from the first."""
         self._found.setdefault(loc, self._locate(loc, message, hint))
 
     def unknown(

@@ -25,6 +25,7 @@ from harness.spec.steps import (
     Ptp,
     Release,
     RemoveObject,
+    Wait,
 )
 
 SPECIAL_BODIES = ("robot",)
@@ -88,8 +89,17 @@ def _move_to(step: MoveTo, at: At) -> None:
 @check.handles(Ptp)
 def _ptp(step: Ptp, at: At) -> None:
     _check_goal(step, step.group, at)
-    if step.duration is not None and not (step.joints or step.named_target):
-        at.scope.problems.add(at.key("duration"), "`duration` goes with `joints` or a named state")
+    if step.duration is not None:
+        at.scope.take_time(step.duration, at.key("duration"))
+        if not (step.joints or step.named_target):
+            at.scope.problems.add(
+                at.key("duration"), "`duration` goes with `joints` or a named state"
+            )
+
+
+@check.handles(Wait)
+def _wait(step: Wait, at: At) -> None:
+    at.scope.take_time(step.duration, at.key("duration"))
 
 
 @check.handles(Lin)
@@ -162,7 +172,9 @@ def _check_graspable(name: str, at: At) -> None:
         scope.problems.add(at.key("object"), f"'{name}' is static: it cannot be picked up")
     if obj is not None and not obj.in_planning:
         scope.problems.add(
-            at.key("object"), f"'{name}' is unknown to the planner, so it cannot be attached"
+            at.key("object"),
+            f"'{name}' is unknown to the planner, so it cannot be attached",
+            "name an object that is `in: both`",
         )
 
 

@@ -32,6 +32,9 @@ CHECK_EVERY = 50
 SETTLE_EVERY = 10
 """Samples between looks at whether a goal is reached or everything is at rest."""
 
+SETTLE_FOR = 0.06
+"""What is slower than a limit for so long is at rest: a turning point of a swing is shorter [s]."""
+
 ABORT_HOLD = 0.2
 """Time for which an aborted arm is held where it was [s]."""
 
@@ -108,6 +111,7 @@ class MujocoSimulator:
             StepFailed: CONTROL_FAILED; a joint left the tolerances of the controller.
         """
         columns = self._actuated_columns(trajectory.joint_names)
+        self._recording.refuse_beyond(int(trajectory.duration / self._timestep))
         points = sample_trajectory(trajectory, self._timestep)
         whole = self.whole(points, columns)
         controls = self._controls(whole)
@@ -137,14 +141,26 @@ class MujocoSimulator:
         self.hold_samples(round(duration / self._timestep))
 
     def settle(self, max_velocity: float, timeout: float) -> bool:
-        """Hold until joints and objects are slower than a limit for ten samples on end."""
-        for _ in range(max(1, int(np.ceil(timeout / self._timestep / SETTLE_EVERY)))):
+        """Hold until joints and objects have been slower than a limit for `SETTLE_FOR`.
+
+        Raises:
+            StepFailed: TIMED_OUT; says what still moves, and how fast.
+        """
+        name, speed, calm = "", 0.0, 0.0
+        tick = SETTLE_EVERY * self._timestep
+        for _ in range(max(1, int(np.ceil(timeout / tick)))):
             first = self._recording.count
             self.hold_samples(SETTLE_EVERY)
-            moving = (self._recording.joint_velocities, self._recording.object_velocities)
-            if all(np.abs(speeds(first)).max(initial=0.0) < max_velocity for speeds in moving):
+            name, speed = self._recording.fastest(first)
+            calm = calm + tick if speed < max_velocity else 0.0
+            if calm > SETTLE_FOR - 0.5 * self._timestep:
                 return True
-        return False
+        raise StepFailed(
+            "TIMED_OUT",
+            f"{name} still moves with {speed:.3g} after {timeout:g} s;"
+            f" at rest is slower than {max_velocity:g} m/s (or rad/s) for {SETTLE_FOR:g} s",
+            {"moving": name, "speed": speed, "limit": max_velocity, "timeout": timeout},
+        )
 
     def add_object(self, name: str, pose: SE3) -> None:
         """Let a prepared object appear at T_world_object."""
@@ -177,6 +193,7 @@ class MujocoSimulator:
 
     def hold_samples(self, count: int) -> None:
         """Hold the last commands for some samples."""
+        self._recording.refuse_beyond(count)
         shape = (count, len(self._command))
         self._recording.advance(
             np.broadcast_to(self._control, (count + 1, len(self._command))),

@@ -9,13 +9,17 @@ from collections.abc import Mapping
 import mujoco
 import numpy as np
 
-from harness.core.errors import SimulationDiverged
+from harness.core.errors import SimulationDiverged, StepFailed
 from harness.core.types import FloatArray
+from harness.ports import LONGEST_RUN
 from harness.recording.run import Signals
 from harness.simulation.model import PhysicsModel
 
 ROWS = 4096
 """Samples by which the arrays grow."""
+
+MOST_BYTES = 2**30
+"""Largest record of states, sensors and contacts; judging it takes about four times as much."""
 
 CONTACTS_PER_ROW = 24
 """Contacts that fit into the first arrays for each sample; more make them grow sooner."""
@@ -99,6 +103,32 @@ class Recording:
         self._refuse_divergence(first)
         self._record_forces_of_last_row()
 
+    def refuse_beyond(self, steps: int) -> None:
+        """See that some more samples may be recorded.
+
+        Raises:
+            StepFailed: TIMED_OUT; the run would be longer than `LONGEST_RUN`, or fill the memory.
+        """
+        end = (self.count - 1 + steps) * self.timestep
+        if end > LONGEST_RUN * (1 + 1e-9):
+            raise StepFailed(
+                "TIMED_OUT",
+                f"the run would go on to t={end:.0f} s; it may take {LONGEST_RUN:g} s of simulated"
+                " time: shorten it, or make it several scenarios",
+                {"end": end, "limit": LONGEST_RUN},
+            )
+        rows = (self._qpos, self._qvel, self._sensors, self._commands, self._command_velocities)
+        per_row = 8 * (1 + sum(array.shape[1] for array in rows))
+        size = (self.count + steps) * per_row + 16 * self._contacts
+        if size > MOST_BYTES:
+            raise StepFailed(
+                "TIMED_OUT",
+                f"the record of the run would grow to {size / 2**20:.0f} MiB by t={end:.1f} s, and"
+                f" {MOST_BYTES / 2**20:.0f} MiB are the limit: use fewer objects that move, a"
+                " longer time step, or several scenarios",
+                {"bytes": size, "limit": MOST_BYTES},
+            )
+
     def _keep_contacts(self, data: mujoco.MjData, row: int) -> None:
         begin = self._contacts
         self._contacts = end = begin + data.ncon
@@ -155,11 +185,23 @@ class Recording:
         """Measured velocities from a sample on, description order, shape (N, n)."""
         return self._qvel[first : self.count, self._physics.dof]
 
-    def object_velocities(self, first: int) -> FloatArray:
-        """Velocities of all free objects from a sample on, shape (N, 6 * objects)."""
-        places = [place.dof for place in self._physics.objects.values() if place.dof >= 0]
-        columns = [dof + i for dof in places for i in range(6)]
-        return self._qvel[first : self.count, columns]
+    def fastest(self, first: int) -> tuple[str, float]:
+        """The joint or free object with the largest velocity component from a sample on.
+
+        Returns:
+            Its name, empty when nothing can move, and the component's size [m/s or rad/s].
+        """
+        dofs = [int(dof) for dof in self._physics.dof]
+        names = [joint.name for joint in self._physics.description.movable_joints]
+        for name, place in self._physics.objects.items():
+            if place.dof >= 0:
+                dofs += range(place.dof, place.dof + 6)
+                names += [name] * 6
+        speeds = np.abs(self._qvel[first : self.count, dofs]).max(axis=0)
+        if not len(dofs):
+            return "", 0.0
+        worst = int(np.argmax(speeds))
+        return names[worst], float(speeds[worst])
 
     def actuator_efforts(self) -> FloatArray:
         """Efforts of the actuated joints at the last sample, shape (m,)."""

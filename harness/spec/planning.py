@@ -10,7 +10,6 @@ from harness.spec.base import (
     Angle,
     Count,
     Duration,
-    Fraction,
     JointValue,
     Name,
     NonNegativeAngle,
@@ -20,6 +19,9 @@ from harness.spec.base import (
     SpecModel,
 )
 from harness.spec.poses import Pose, Position
+
+Scaling = Annotated[Number, Field(ge=0.001, le=1)]
+"""Share of a limit; below a thousandth a motion would take hours."""
 
 
 class Planning(SpecModel):
@@ -34,8 +36,8 @@ class Planning(SpecModel):
     )
     max_state_checks: Annotated[Count, Field(ge=1, le=10_000_000)] | None = None
     planning_attempts: Annotated[Count, Field(ge=1, le=100)] | None = None
-    max_velocity_scaling_factor: Fraction | None = None
-    max_acceleration_scaling_factor: Fraction | None = None
+    max_velocity_scaling_factor: Scaling | None = None
+    max_acceleration_scaling_factor: Scaling | None = None
     padding: NonNegativeLength | None = Field(
         default=None,
         description="Distance kept between the robot, what it holds, and every object [m].",

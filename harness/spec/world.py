@@ -8,12 +8,12 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from harness.spec.base import (
     Color,
+    Duration,
     Flag,
     Length,
     Mass,
     Name,
     Number,
-    PositiveDuration,
     PositiveLength,
     SpecModel,
     Xyz,
@@ -159,7 +159,7 @@ class LightSpec(SpecModel):
 class PhysicsSpec(SpecModel):
     """Of the simulation."""
 
-    timestep: Annotated[PositiveDuration, Field(le=0.02)] = 0.001
+    timestep: Annotated[Duration, Field(ge=1e-4, le=0.02)] = 0.001
     gravity: tuple[Length, Length, Length] = (0.0, 0.0, -9.8)
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
 from harness.simulation.mujoco_simulator import MujocoSimulator
 from tests.simulation.physics_scenes import a_box, a_cylinder, move_arm
@@ -52,10 +53,37 @@ def test_a_static_object_can_be_moved_under_a_falling_one(ur3e):
     assert shelf[-1] == -0.3
 
 
-def test_settling_gives_up_on_what_keeps_moving(ur3e):
+def test_settling_gives_up_on_what_keeps_moving_and_names_it(ur3e):
     simulator = MujocoSimulator(ur3e, a_scene()[2:3], ("later",))
-    assert not simulator.settle(0.01, timeout=0.2)  # it falls: there is no table
+    with pytest.raises(StepFailed, match=r"later still moves with 1\.96 after 0\.2 s") as caught:
+        simulator.settle(0.01, timeout=0.2)  # it falls: there is no table
+    assert caught.value.code == "TIMED_OUT"
     assert simulator.time == pytest.approx(0.2)
+
+
+def test_what_has_settled_is_at_rest_for_the_expectations_too(ur3e):
+    """A box that hits the table stands still for a moment before the judge's 50 ms are over."""
+    simulator = MujocoSimulator(ur3e, a_scene(), ("Table",))
+    simulator.add_object("later", SE3.from_xyz_rpy((0.32, 0.2, 1.3)))
+    assert simulator.settle(1e-3, timeout=3.0)
+    heights = simulator.finish().object_poses["later"][-51:, 2]
+    assert float(np.ptp(heights)) < 0.05 * 1e-3
+
+
+def test_a_run_is_bounded_in_simulated_time(ur3e):
+    simulator = MujocoSimulator(ur3e, (), ())
+    with pytest.raises(StepFailed, match="it may take 600 s of simulated time") as caught:
+        simulator.hold(1e9)
+    assert caught.value.code == "TIMED_OUT"
+    assert simulator.sample_count == 1
+
+
+def test_a_run_is_bounded_in_memory(ur3e):
+    boxes = [a_box(f"box{i}", (0.02, 0.02, 0.02), (i, 0, 0.01), mass=0.01) for i in range(150)]
+    simulator = MujocoSimulator(ur3e, boxes, (), gravity=(0, 0, 0))
+    with pytest.raises(StepFailed, match="MiB are the limit: use fewer objects"):
+        simulator.hold(590.0)
+    assert simulator.sample_count == 1
 
 
 def test_every_signal_has_a_row_for_every_sample_from_time_zero(ur3e):
