@@ -56,7 +56,7 @@ class ObjectCheck(CheckFields):
 
     short = "object"
 
-    object: Name
+    object: Name = Field(description="Its name.")
 
 
 class Lifted(ObjectCheck):
@@ -91,39 +91,47 @@ class Placed(ObjectCheck):
     on: Name | None = Field(
         default=None, description="The supporting object; default: any but the robot."
     )
-    pose: Pose | None = None
+    pose: Pose | None = Field(
+        default=None, description="Where it shall stand; anywhere if not given."
+    )
     tolerance: PoseTolerance | None = Field(
         default=None, description="Of `pose`; default 1 cm, turns about the vertical free."
     )
-    max_velocity: Annotated[LinearVelocity, Field(gt=0)] = 0.005
+    max_velocity: Annotated[LinearVelocity, Field(gt=0)] = Field(
+        default=0.005, description="Slower than this is still [m/s]."
+    )
 
 
 class On(ObjectCheck):
     """The object stands on another: in contact, above it, its weight carried by it."""
 
     check: Literal["on"] = "on"
-    support: Name
+    support: Name = Field(description="What it stands on.")
 
 
 class In(ObjectCheck):
     """The object's origin is inside another object's shape."""
 
     check: Literal["in"] = "in"
-    container: Name
+    container: Name = Field(description="What it is in.")
 
 
 class Displaced(ObjectCheck):
     """The object is away from where it started."""
 
     check: Literal["displaced"] = "displaced"
-    at_least: PositiveLength = 0.01
+    at_least: PositiveLength = Field(
+        default=0.01, description="Distance from where it was at the start [m]."
+    )
 
 
 class Upright(ObjectCheck):
     """The object's z axis points up."""
 
     check: Literal["upright"] = "upright"
-    tolerance: Annotated[Angle, Field(gt=0)] = 0.1
+    tolerance: Annotated[Angle, Field(gt=0)] = Field(
+        default=0.1, description="Angle to the vertical [rad]."
+    )
 
 
 class Static(CheckFields):
@@ -135,8 +143,12 @@ class Static(CheckFields):
     object: Name | None = Field(
         default=None, description="Default: every dynamic object and the robot."
     )
-    max_velocity: Annotated[LinearVelocity, Field(gt=0)] = 0.005
-    max_angular_velocity: Annotated[AngularVelocity, Field(gt=0)] = 0.05
+    max_velocity: Annotated[LinearVelocity, Field(gt=0)] = Field(
+        default=0.005, description="[m/s]; of joints [rad/s] or [m/s]."
+    )
+    max_angular_velocity: Annotated[AngularVelocity, Field(gt=0)] = Field(
+        default=0.05, description="Of objects [rad/s]."
+    )
 
 
 class Between(CheckFields):
@@ -144,7 +156,9 @@ class Between(CheckFields):
 
     short = "between"
 
-    between: tuple[Name, Name]
+    between: tuple[Name, Name] = Field(
+        description="Two of: a link, an object, `robot`, `gripper`, `any`."
+    )
 
 
 class InContact(Between):
@@ -177,32 +191,34 @@ class Clearance(CheckFields):
     between: tuple[Name, Name] = Field(
         default=("robot", "any"), description="`robot`, a held object's name, an object, `any`."
     )
-    at_least: NonNegativeLength
+    at_least: NonNegativeLength = Field(description="Smallest distance allowed [m].")
 
 
 class TcpPose(CheckFields):
     """The TCP, or another link, stands at a pose."""
 
     check: Literal["tcp_pose"] = "tcp_pose"
-    pose: Pose
-    link: Name | None = None
-    tolerance: PoseTolerance = PoseTolerance()
-    position_only: Flag = False
+    pose: Pose = Field(description="Where it shall stand.")
+    link: Name | None = Field(default=None, description="Default: the TCP.")
+    tolerance: PoseTolerance = Field(
+        default=PoseTolerance(), description="Default: 1 mm, 0.01 rad."
+    )
+    position_only: Flag = Field(default=False, description="Turned as it may.")
 
 
 class Line(SpecModel):
     """A straight line between two points."""
 
-    start: Pose
-    end: Pose
+    start: Pose = Field(description="Only its position counts.")
+    end: Pose = Field(description="Only its position counts.")
 
 
 class Arc(SpecModel):
     """An arc from start to end through a point."""
 
-    start: Pose
-    interim: Pose
-    end: Pose
+    start: Pose = Field(description="Only its position counts.")
+    interim: Pose = Field(description="A point between.")
+    end: Pose = Field(description="Only its position counts.")
 
 
 class TcpPath(CheckFields):
@@ -210,17 +226,21 @@ class TcpPath(CheckFields):
 
     judged = "always"
     check: Literal["tcp_path"] = "tcp_path"
-    line: Line | None = None
-    arc: Arc | None = None
-    max_deviation: PositiveLength = 0.001
+    line: Line | None = Field(default=None, description="Either this")
+    arc: Arc | None = Field(default=None, description="or this.")
+    max_deviation: PositiveLength = Field(default=0.001, description="Largest distance to it [m].")
 
 
 class Joints(CheckFields):
     """Joints stand at positions."""
 
     check: Literal["joints"] = "joints"
-    positions: Annotated[dict[Name, JointValue], Field(min_length=1)]
-    tolerance: Annotated[JointValue, Field(gt=0)] = 0.01
+    positions: Annotated[dict[Name, JointValue], Field(min_length=1)] = Field(
+        description="By name; the others stand as they may."
+    )
+    tolerance: Annotated[JointValue, Field(gt=0)] = Field(
+        default=0.01, description="Of each joint."
+    )
 
 
 class NamedTarget(CheckFields):
@@ -229,9 +249,11 @@ class NamedTarget(CheckFields):
     short = "state"
 
     check: Literal["named_target"] = "named_target"
-    state: Name
-    group: Name | None = None
-    tolerance: Annotated[JointValue, Field(gt=0)] = 0.01
+    state: Name = Field(description="An SRDF group state.")
+    group: Name | None = Field(default=None, description="Default: the arm.")
+    tolerance: Annotated[JointValue, Field(gt=0)] = Field(
+        default=0.01, description="Of each joint."
+    )
 
 
 class GripperState(CheckFields):
@@ -240,10 +262,14 @@ class GripperState(CheckFields):
     short = "named_target"
 
     check: Literal["gripper"] = "gripper"
-    named_target: Name | None = None
-    position: JointValue | None = None
-    width: NonNegativeLength | None = None
-    tolerance: Annotated[JointValue, Field(gt=0)] = 0.02
+    named_target: Name | None = Field(
+        default=None, description="An SRDF group state of the gripper."
+    )
+    position: JointValue | None = Field(default=None, description="Of the gripper's joint.")
+    width: NonNegativeLength | None = Field(default=None, description="Gap between the pads [m].")
+    tolerance: Annotated[JointValue, Field(gt=0)] = Field(
+        default=0.02, description="Of the joint, or of the width."
+    )
     stalled: Flag | None = Field(default=None, description="What the last gripper step reported.")
 
     @model_validator(mode="after")
@@ -263,10 +289,10 @@ class WithinLimits(CheckFields):
 
     judged = "always"
     check: Literal["within_limits"] = "within_limits"
-    position: Flag = True
-    velocity: Flag = True
+    position: Flag = Field(default=True, description="Measured positions.")
+    velocity: Flag = Field(default=True, description="Measured velocities.")
     acceleration: Flag = Field(default=False, description="Of the commanded trajectory.")
-    effort: Flag = True
+    effort: Flag = Field(default=True, description="Efforts of the motors.")
 
 
 class TrackingError(CheckFields):
@@ -276,7 +302,9 @@ class TrackingError(CheckFields):
 
     judged = "always"
     check: Literal["tracking_error"] = "tracking_error"
-    max: Annotated[JointValue, Field(gt=0)] = 0.05
+    max: Annotated[JointValue, Field(gt=0)] = Field(
+        default=0.05, description="Of the worst joint: measured position against command."
+    )
 
 
 class Effort(CheckFields):
@@ -286,7 +314,9 @@ class Effort(CheckFields):
 
     judged = "always"
     check: Literal["effort"] = "effort"
-    max_fraction: Annotated[Number, Field(gt=0)] = 1.0
+    max_fraction: Annotated[Number, Field(gt=0)] = Field(
+        default=1.0, description="Of the worst joint; 1 is its limit."
+    )
 
 
 class DurationCheck(CheckFields):
@@ -295,8 +325,8 @@ class DurationCheck(CheckFields):
     short = "at_most"
 
     check: Literal["duration"] = "duration"
-    at_most: Duration | None = None
-    at_least: Duration | None = None
+    at_most: Duration | None = Field(default=None, description="Simulated time [s].")
+    at_least: Duration | None = Field(default=None, description="Simulated time [s].")
 
     @model_validator(mode="after")
     def _one(self) -> DurationCheck:
@@ -311,7 +341,7 @@ class PathLength(CheckFields):
     short = "at_most"
 
     check: Literal["path_length"] = "path_length"
-    at_most: PositiveLength
+    at_most: PositiveLength = Field(description="[m]")
 
 
 class FractionCheck(CheckFields):
@@ -320,7 +350,9 @@ class FractionCheck(CheckFields):
     short = "at_least"
 
     check: Literal["fraction"] = "fraction"
-    at_least: Annotated[Number, Field(ge=0, le=1)] = 1.0
+    at_least: Annotated[Number, Field(ge=0, le=1)] = Field(
+        default=1.0, description="Share of the path."
+    )
 
 
 class Sees(CheckFields):
@@ -328,11 +360,13 @@ class Sees(CheckFields):
 
     judged = "eventually"
     check: Literal["sees"] = "sees"
-    camera: Name
-    object: Name | None = None
-    color: Color | None = None
-    marker: Count | None = None
-    min_fraction: Annotated[Number, Field(ge=0, le=1)] = 0.001
+    camera: Name = Field(description="Its name.")
+    object: Name | None = Field(default=None, description="An object's pixels.")
+    color: Color | None = Field(default=None, description="A blob of this colour.")
+    marker: Count | None = Field(default=None, description="An ArUco marker's number.")
+    min_fraction: Annotated[Number, Field(ge=0, le=1)] = Field(
+        default=0.001, description="Share of the image's pixels."
+    )
 
 
 class Slip(ObjectCheck):
@@ -340,7 +374,7 @@ class Slip(ObjectCheck):
 
     judged = "always"
     check: Literal["slip"] = "slip"
-    max_distance: PositiveLength = 0.003
+    max_distance: PositiveLength = Field(default=0.003, description="[m]")
     max_rotation: Annotated[Angle, Field(gt=0)] = Field(
         default=0.05235987755982988,
         description="Turns about the axis of a round object do not count.",

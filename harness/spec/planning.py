@@ -27,20 +27,33 @@ Scaling = Annotated[Number, Field(ge=0.001, le=1)]
 class Planning(SpecModel):
     """Planning parameters; what is not given comes from the scenario, then from the defaults."""
 
-    pipeline: Literal["ompl", "pilz_industrial_motion_planner"] | None = None
+    pipeline: Literal["ompl", "pilz_industrial_motion_planner"] | None = Field(
+        default=None,
+        description="Only `ompl`, the default; Pilz's planners are the steps `ptp` and `lin`.",
+    )
     planner_id: Name | None = Field(
-        default=None, description="`RRTConnect`, or MoveIt's configuration name."
+        default=None, description="Default `RRTConnect`; `harness list planners` has the others."
     )
     planning_time: Annotated[Duration, Field(gt=0)] | None = Field(
         default=None, description="Converted to state checks at a fixed rate; never a wall clock."
     )
-    max_state_checks: Annotated[Count, Field(ge=1, le=10_000_000)] | None = None
-    planning_attempts: Annotated[Count, Field(ge=1, le=100)] | None = None
-    max_velocity_scaling_factor: Scaling | None = None
-    max_acceleration_scaling_factor: Scaling | None = None
+    max_state_checks: Annotated[Count, Field(ge=1, le=10_000_000)] | None = Field(
+        default=None,
+        description="Budget of a search: states checked for collision; default 200000.",
+    )
+    planning_attempts: Annotated[Count, Field(ge=1, le=100)] | None = Field(
+        default=None,
+        description="Searches at most, each with its own seed, until one succeeds; default 1.",
+    )
+    max_velocity_scaling_factor: Scaling | None = Field(
+        default=None, description="Share of the joints' velocity limits; default 0.3."
+    )
+    max_acceleration_scaling_factor: Scaling | None = Field(
+        default=None, description="Share of the joints' acceleration limits; default 0.3."
+    )
     padding: NonNegativeLength | None = Field(
         default=None,
-        description="Distance kept between the robot, what it holds, and every object [m].",
+        description="Kept between every object and the robot with what it holds [m]; default 2 mm.",
     )
     parameters: dict[Name, Number] | None = Field(
         default=None, description="Of the planner: `range` ..."
@@ -50,30 +63,34 @@ class Planning(SpecModel):
 class OrientationConstraint(SpecModel):
     """Keep a link turned as given, within a tolerance about each axis."""
 
-    link: Name | None = None
-    pose: Pose
-    tolerance: tuple[NonNegativeAngle, NonNegativeAngle, NonNegativeAngle]
+    link: Name | None = Field(default=None, description="Default: the TCP.")
+    pose: Pose = Field(description="Its rotation.")
+    tolerance: tuple[NonNegativeAngle, NonNegativeAngle, NonNegativeAngle] = Field(
+        description="About x, y, z [rad]."
+    )
 
 
 class PositionConstraint(SpecModel):
     """Keep a link's origin inside a box."""
 
-    link: Name | None = None
-    center: Position
-    size: tuple[PositiveLength, PositiveLength, PositiveLength]
+    link: Name | None = Field(default=None, description="Default: the TCP.")
+    center: Position = Field(description="Of the box.")
+    size: tuple[PositiveLength, PositiveLength, PositiveLength] = Field(
+        description="Full size of the box [m]."
+    )
 
 
 class JointConstraint(SpecModel):
     """Keep a joint near a position."""
 
-    position: JointValue
-    tolerance_above: Annotated[Angle, Field(ge=0)]
-    tolerance_below: Annotated[Angle, Field(ge=0)]
+    position: JointValue = Field(description="Where it shall stay.")
+    tolerance_above: Annotated[Angle, Field(ge=0)] = Field(description="So much more.")
+    tolerance_below: Annotated[Angle, Field(ge=0)] = Field(description="So much less.")
 
 
 class PathConstraints(SpecModel):
     """moveit_msgs/Constraints held along the path."""
 
-    orientation: OrientationConstraint | None = None
-    position: PositionConstraint | None = None
-    joints: dict[Name, JointConstraint] | None = None
+    orientation: OrientationConstraint | None = Field(default=None, description="Of a link.")
+    position: PositionConstraint | None = Field(default=None, description="Of a link.")
+    joints: dict[Name, JointConstraint] | None = Field(default=None, description="By name.")

@@ -9,20 +9,55 @@ from typing import Annotated, Any, Literal, Union, cast, get_args, get_origin
 from pydantic import BeforeValidator
 from pydantic.fields import FieldInfo
 
+from harness.core.errors import ErrorCode
 from harness.spec.annotations import bare, is_model, keys_of
 from harness.spec.base import SpecModel
 from harness.spec.checks import CheckFields
 from harness.spec.language import BESIDE_CHECK, BESIDE_VERB, PREDICATES, TEMPORAL, VERBS
+from harness.spec.scenario import Scenario
 from harness.spec.steps import Step, StepFields
 from harness.spec.units import MEANINGS
+from harness.spec.world import WorldSpec
 
 JUDGED = {
-    "at_end": "Bare, judged at the last sample of its step or run.",
-    "always": "Bare, judged over every sample of its step or run.",
-    "eventually": "Bare, true if it is true at some sample of its step or run.",
+    "at_end": "Bare, it must hold at the last sample of its step or run.",
+    "always": "Bare, it must hold at every sample of its step or run.",
+    "eventually": "Bare, it must hold at some sample of its step or run.",
 }
 NOT_YET = "*Not yet available.*"
 KINDS: dict[Any, str] = {str: "text", float: "number", int: "whole number", bool: "true or false"}
+
+
+VALUES = """Numbers are SI and radians; where a unit stands in brackets, text with another one may
+be written: `5 cm`, `90 deg`, `200 ms`. `${name}` stands for a parameter of the file. Only keys
+marked as required must be given."""
+STEPS_HEAD = """A step is one verb with its content, and what stands beside it:
+
+```yaml
+- move_to:
+    pose: {frame: base_link, xyz: [0.32, -0.17, 0.3], rpy: [180 deg, 0, 0]}
+  id: above
+  expect: [{tcp_pose: {pose: {frame: base_link, xyz: [0.32, -0.17, 0.3]}, position_only: true}}]
+```"""
+EXPECTATIONS_HEAD = """An expectation is a predicate, bare or inside a temporal word. Under a
+step's `expect` it is judged over that step, under the file's over the whole run: its window.
+
+```yaml
+expect:
+  - lifted: {object: green_cylinder, above: 5 cm, for: 1 s}
+  - always: within_limits
+  - never: {collision: {between: [robot, Table]}}
+```
+
+Every verdict has a margin: how far it was from failing. What was never observed does not pass."""
+
+
+def scenario_reference() -> str:
+    """The keys of a scenario file and of a world file."""
+    parts = ["# Scenario and world files", VALUES]
+    for title, model in (("Scenario file", Scenario), ("World file", WorldSpec)):
+        parts += [f"## {title}", _sentence(model), _table(keys_of(model).items())]
+    return "\n\n".join([*parts, *_parts((Scenario, WorldSpec))]) + "\n"
 
 
 def steps_reference(available: Collection[type] | None = None) -> str:
@@ -32,7 +67,9 @@ def steps_reference(available: Collection[type] | None = None) -> str:
         available: Models of the steps that can be executed; None leaves that out.
     """
     beside = _table((key, keys_of(StepFields)[key]) for key in BESIDE_VERB)
-    parts = ["# Steps", "Beside every verb may stand:", beside]
+    parts = ["# Steps", STEPS_HEAD, VALUES, _contents(VERBS, available)]
+    parts += ["Beside every verb may stand:", beside]
+    parts.append(f"Error codes are {', '.join(f'`{code}`' for code in get_args(ErrorCode))}.")
     for verb, model in VERBS.items():
         parts += _section(verb, model, BESIDE_VERB, available, ())
     parts += _parts(VERBS.values())
@@ -46,14 +83,26 @@ def expectations_reference(available: Collection[type] | None = None) -> str:
         available: Models of the predicates that can be judged; None leaves that out.
     """
     beside = _table((key, keys_of(CheckFields)[key]) for key in BESIDE_CHECK)
-    parts = ["# Expectations", "Inside or beside every word may stand:", beside]
-    parts += ["## Around predicates", _words({w: _sentence(m) for w, m in TEMPORAL.items()})]
+    parts = ["# Expectations", EXPECTATIONS_HEAD, VALUES, _contents(PREDICATES, available)]
+    parts += ["Inside or beside every word may stand:", beside]
+    parts += ["## Temporal words", _words({w: _sentence(m) for w, m in TEMPORAL.items()})]
     parts.append("`{always: A, until: B}`: A holds until B does, and B does.")
     for word, model in PREDICATES.items():
         judged = model.judged if issubclass(model, CheckFields) else "at_end"
         parts += _section(word, model, BESIDE_CHECK, available, (JUDGED[judged],))
     parts += _parts(PREDICATES.values())
     return "\n\n".join(parts) + "\n"
+
+
+def _contents(words: Mapping[str, type[SpecModel]], available: Collection[type] | None) -> str:
+    """Links to the sections, those not yet available last."""
+    now = [word for word, model in words.items() if available is None or model in available]
+    later = [word for word in words if word not in now]
+    links = {word: f"[`{word}`](#{word})" for word in words}
+    lines = [" · ".join(links[word] for word in now)]
+    if later:
+        lines.append("Not yet available: " + " · ".join(links[word] for word in later))
+    return "\n\n".join(lines)
 
 
 def _section(
@@ -152,7 +201,7 @@ def _default(field: FieldInfo) -> str:
     if field.is_required():
         return "required"
     value = field.get_default(call_default_factory=True)
-    if value is None or value == () or value == {} or isinstance(value, SpecModel):
+    if value in (None, "", (), {}) or isinstance(value, SpecModel):
         return ""
     if isinstance(value, bool):
         return f"`{str(value).lower()}`"

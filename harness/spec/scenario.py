@@ -30,18 +30,26 @@ class StartState(SpecModel):
 
     short = "named_target"
 
-    named_target: Name | None = None
-    joints: dict[Name, JointValue] | None = None
+    named_target: Name | None = Field(default=None, description="An SRDF group state of the arm.")
+    joints: dict[Name, JointValue] | None = Field(
+        default=None, description="Joint positions by name."
+    )
 
 
 class JointLimits(SpecModel):
     """MoveIt's joint_limits.yaml words; narrows what the robot's description says."""
 
-    min_position: JointValue | None = None
-    max_position: JointValue | None = None
-    max_velocity: Annotated[JointVelocity, Field(gt=0)] | None = None
-    max_acceleration: Annotated[JointAcceleration, Field(gt=0)] | None = None
-    max_effort: Annotated[JointEffort, Field(gt=0)] | None = None
+    min_position: JointValue | None = Field(default=None, description="Lowest position.")
+    max_position: JointValue | None = Field(default=None, description="Highest position.")
+    max_velocity: Annotated[JointVelocity, Field(gt=0)] | None = Field(
+        default=None, description="Largest speed."
+    )
+    max_acceleration: Annotated[JointAcceleration, Field(gt=0)] | None = Field(
+        default=None, description="Largest acceleration."
+    )
+    max_effort: Annotated[JointEffort, Field(gt=0)] | None = Field(
+        default=None, description="Largest effort."
+    )
 
 
 class RobotSpec(SpecModel):
@@ -52,21 +60,27 @@ class RobotSpec(SpecModel):
     model: str | None = Field(
         default=None, description="A name under robots/, or a path to such a folder."
     )
-    urdf: str | None = None
-    xacro: str | None = None
+    urdf: str | None = Field(default=None, description="A file; not yet available.")
+    xacro: str | None = Field(default=None, description="A file; not yet available.")
     args: dict[Name, Any] = Field(default_factory=dict, description="Of the xacro file.")
-    mjcf: str | None = None
-    srdf: str | None = None
+    mjcf: str | None = Field(default=None, description="A file; not yet available.")
+    srdf: str | None = Field(default=None, description="With `urdf`, `xacro` or `mjcf`.")
     gripper: str | None = Field(
         default=None, description="A gripper's name, mounted on the arm's flange."
     )
     base: Pose = Field(default=Pose(), description="Where the base stands in the world.")
-    kinematics: str | None = Field(default=None, description="A UR calibration file.")
-    joint_limits: dict[Name, JointLimits] = Field(default_factory=dict)
+    kinematics: str | None = Field(
+        default=None, description="A UR calibration file; not yet available."
+    )
+    joint_limits: dict[Name, JointLimits] = Field(
+        default_factory=dict, description="By joint; narrower than the robot's own."
+    )
     named_states: dict[Name, dict[Name, dict[Name, JointValue]]] = Field(
         default_factory=dict, description="Extra group states: group -> state -> joint -> position."
     )
-    start_state: StartState | None = None
+    start_state: StartState | None = Field(
+        default=None, description="Default: from the robot's folder."
+    )
 
     @model_validator(mode="before")
     @classmethod
@@ -90,32 +104,52 @@ class RobotSpec(SpecModel):
 class Expected(SpecModel):
     """A success rate to be shown by sampled cases."""
 
-    at_least: Fraction
-    confidence: Annotated[Number, Field(gt=0, lt=1)] = 0.95
+    at_least: Fraction = Field(description="Share of the cases that pass.")
+    confidence: Annotated[Number, Field(gt=0, lt=1)] = Field(
+        default=0.95, description="With which this is to be shown."
+    )
 
 
 class Scenario(SpecModel):
     """One test of an arm application."""
 
     scenario: Annotated[str, Field(min_length=1, max_length=200)] = Field(description="Its title.")
-    description: str = ""
+    description: str = Field(default="", description="For people.")
     tags: tuple[Name, ...] = Field(default=(), description="pytest marks.")
-    points: Annotated[Number, Field(ge=0)] | None = None
+    points: Annotated[Number, Field(ge=0)] | None = Field(
+        default=None, description="Of a graded scenario."
+    )
     verifies: tuple[str, ...] = Field(default=(), description="Requirements.")
-    robot: RobotSpec
+    robot: RobotSpec = Field(description="A model's name, or its keys.")
     world: str = Field(
-        default="empty", description="A name under worlds/, a .yaml path, or an .sdf path."
+        default="empty", description="A name under worlds/, or the path of a .yaml file."
     )
     objects: tuple[ObjectSpec, ...] = Field(
         default=(), description="Added to, or replacing, the world's."
     )
-    seed: Annotated[Count, Field(ge=0, le=2**31 - 1)] = 0
+    seed: Annotated[Count, Field(ge=0, le=2**31 - 1)] = Field(
+        default=0, description="Of everything random; each step's seed follows from it."
+    )
     params: dict[Name, Any] = Field(default_factory=dict, description="For ${name} in the file.")
-    planning: Planning = Planning()
-    deterministic: Flag = True
-    steps: Annotated[tuple[Step, ...], Field(min_length=1)]
+    planning: Planning = Field(
+        default=Planning(), description="For all steps that do not say otherwise."
+    )
+    deterministic: Flag = Field(
+        default=True, description="`false` allows planners that cannot be repeated."
+    )
+    steps: Annotated[tuple[Step, ...], Field(min_length=1)] = Field(
+        description="What the arm does, in order."
+    )
     expect: tuple[Expectation, ...] = Field(default=(), description="Judged over the whole run.")
-    parametrize: dict[str, Any] | list[Any] | None = None
-    randomize: dict[str, Any] | None = None
-    samples: Annotated[Count, Field(ge=1, le=100_000)] | None = None
-    expect_rate: Expected | None = None
+    parametrize: dict[str, Any] | list[Any] | None = Field(
+        default=None, description="Cases over values of the file; not yet available."
+    )
+    randomize: dict[str, Any] | None = Field(
+        default=None, description="Distributions of values of the file; not yet available."
+    )
+    samples: Annotated[Count, Field(ge=1, le=100_000)] | None = Field(
+        default=None, description="How many random cases; not yet available."
+    )
+    expect_rate: Expected | None = Field(
+        default=None, description="Of random cases; not yet available."
+    )

@@ -46,7 +46,16 @@ DRAFT = "http://json-schema.org/draft-07/schema#"
 
 def schema_text() -> str:
     """The scenario file's schema as text; the same for the same version of the program."""
-    return json.dumps(scenario_schema(), indent=1, ensure_ascii=False) + "\n"
+    return _text(scenario_schema())
+
+
+def world_schema_text() -> str:
+    """The world file's schema as text."""
+    return _text(world_schema())
+
+
+def _text(schema: Schema) -> str:
+    return json.dumps(schema, indent=1, ensure_ascii=False) + "\n"
 
 
 def scenario_schema() -> Schema:

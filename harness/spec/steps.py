@@ -65,9 +65,15 @@ class MoveTo(GoalFields, StepFields):
 class CartesianLimits(SpecModel):
     """Pilz's cartesian limits."""
 
-    max_trans_vel: Annotated[LinearVelocity, Field(gt=0)] | None = None
-    max_trans_acc: Annotated[LinearAcceleration, Field(gt=0)] | None = None
-    max_rot_vel: Annotated[AngularVelocity, Field(gt=0)] | None = None
+    max_trans_vel: Annotated[LinearVelocity, Field(gt=0)] | None = Field(
+        default=None, description="Speed of the link [m/s]."
+    )
+    max_trans_acc: Annotated[LinearAcceleration, Field(gt=0)] | None = Field(
+        default=None, description="Acceleration of the link [m/s**2]."
+    )
+    max_rot_vel: Annotated[AngularVelocity, Field(gt=0)] | None = Field(
+        default=None, description="Turning speed of the link [rad/s]."
+    )
 
 
 class Ptp(GoalFields, StepFields):
@@ -83,18 +89,22 @@ class Lin(GoalFields, StepFields):
     """Pilz LIN: the link moves on a straight line."""
 
     do: Literal["lin"] = "lin"
-    cartesian_limits: CartesianLimits | None = None
+    cartesian_limits: CartesianLimits | None = Field(
+        default=None, description="Not yet available; the scaling factors of `planning` apply."
+    )
 
 
 class Circ(StepFields):
     """Pilz CIRC: an arc to `pose`, through `interim` or about `center`."""
 
     do: Literal["circ"] = "circ"
-    pose: Pose
-    link: Name | None = None
+    pose: Pose = Field(description="Where the arc ends.")
+    link: Name | None = Field(default=None, description="Default: the TCP.")
     interim: Pose | None = Field(default=None, description="A point on the arc.")
     center: Pose | None = Field(default=None, description="The arc's centre.")
-    cartesian_limits: CartesianLimits | None = None
+    cartesian_limits: CartesianLimits | None = Field(
+        default=None, description="Speed along the arc."
+    )
 
     @model_validator(mode="after")
     def _one_auxiliary(self) -> Circ:
@@ -145,29 +155,43 @@ class MoveRelative(StepFields):
 class JumpThreshold(SpecModel):
     """Largest joint step between neighbouring waypoints."""
 
-    revolute: Annotated[Angle, Field(gt=0)] = 0.5
-    prismatic: PositiveLength = 0.1
+    revolute: Annotated[Angle, Field(gt=0)] = Field(
+        default=0.5, description="Of a turning joint [rad]."
+    )
+    prismatic: PositiveLength = Field(default=0.1, description="Of a sliding joint [m].")
 
 
 class CartesianPath(StepFields):
     """MoveIt's computeCartesianPath: straight segments through waypoints."""
 
     do: Literal["cartesian_path"] = "cartesian_path"
-    waypoints: Annotated[tuple[Pose, ...], Field(min_length=1)]
-    link: Name | None = None
-    max_step: PositiveLength = 0.005
-    precision: PositiveLength = 0.001
-    min_fraction: Fraction = 1.0
-    jump_threshold: JumpThreshold = JumpThreshold()
+    waypoints: Annotated[tuple[Pose, ...], Field(min_length=1)] = Field(
+        description="Poses of the link, in order."
+    )
+    link: Name | None = Field(default=None, description="Default: the TCP.")
+    max_step: PositiveLength = Field(
+        default=0.005, description="Distance between the poses solved for [m]."
+    )
+    precision: PositiveLength = Field(
+        default=0.001, description="Largest deviation from the straight line [m]."
+    )
+    min_fraction: Fraction = Field(
+        default=1.0, description="Share of the path that must be reached."
+    )
+    jump_threshold: JumpThreshold = Field(
+        default=JumpThreshold(), description="Refuses a path on which a joint jumps."
+    )
 
 
 class SequenceItem(SpecModel):
     """One motion of a sequence, and how it blends into the next."""
 
-    ptp: GoalFields | None = None
-    lin: GoalFields | None = None
-    circ: Circ | None = None
-    blend_radius: NonNegativeLength = 0.0
+    ptp: GoalFields | None = Field(default=None, description="A joint motion.")
+    lin: GoalFields | None = Field(default=None, description="A straight line.")
+    circ: Circ | None = Field(default=None, description="An arc.")
+    blend_radius: NonNegativeLength = Field(
+        default=0.0, description="Where the next motion may begin before the end of this one [m]."
+    )
 
     @model_validator(mode="after")
     def _one_motion(self) -> SequenceItem:
@@ -183,7 +207,7 @@ class Sequence(StepFields):
     short_is_list = True
 
     do: Literal["sequence"] = "sequence"
-    items: Annotated[tuple[SequenceItem, ...], Field(min_length=1)]
+    items: Annotated[tuple[SequenceItem, ...], Field(min_length=1)] = Field(description="In order.")
 
 
 class Gripper(StepFields):
@@ -215,11 +239,14 @@ class Grasp(StepFields):
     short = "object"
 
     do: Literal["grasp"] = "grasp"
-    object: Name
+    object: Name = Field(description="Its name.")
     mode: GripperAction = Field(
         default="friction", description="`weld` fixes it in the physics too."
     )
-    max_effort: Annotated[JointEffort, Field(gt=0)] | None = None
+    max_effort: Annotated[JointEffort, Field(gt=0)] | None = Field(
+        default=None,
+        description="Effort limit of the gripper's joint while it holds; default from the robot.",
+    )
     position: JointValue | None = Field(
         default=None, description="Closes to here at most; default closed."
     )
@@ -235,7 +262,9 @@ class Release(StepFields):
     named_target: Name | None = Field(
         default=None, description="Default: the gripper's open position."
     )
-    position: JointValue | None = None
+    position: JointValue | None = Field(
+        default=None, description="Of the gripper's joint; instead of `named_target`."
+    )
 
 
 class AttachObject(StepFields):
@@ -263,7 +292,7 @@ class DetachObject(StepFields):
     short = "object"
 
     do: Literal["detach_object"] = "detach_object"
-    object: Name
+    object: Name = Field(description="Its name.")
 
 
 class AddObject(StepFields):
@@ -273,7 +302,9 @@ class AddObject(StepFields):
     short_is_list = True
 
     do: Literal["add_object"] = "add_object"
-    objects: Annotated[tuple[ObjectSpec, ...], Field(min_length=1)]
+    objects: Annotated[tuple[ObjectSpec, ...], Field(min_length=1)] = Field(
+        description="One or several; a physical one falls from where it is put."
+    )
 
 
 class RemoveObject(StepFields):
@@ -283,39 +314,45 @@ class RemoveObject(StepFields):
     short_is_list = True
 
     do: Literal["remove_object"] = "remove_object"
-    objects: Annotated[tuple[Name, ...], Field(min_length=1)]
+    objects: Annotated[tuple[Name, ...], Field(min_length=1)] = Field(description="Their names.")
 
 
 class MoveObject(StepFields):
     """Put an object somewhere else, at rest."""
 
     do: Literal["move_object"] = "move_object"
-    object: Name
-    pose: Pose
+    object: Name = Field(description="Its name.")
+    pose: Pose = Field(description="Where it shall be.")
 
 
 class ClearObjects(StepFields):
     """Remove what steps added; with `world: true` the world's objects too."""
 
     do: Literal["clear_objects"] = "clear_objects"
-    world: Flag = False
+    world: Flag = Field(default=False, description="The world's objects too.")
 
 
 class AllowCollisions(StepFields):
     """Allow collisions of pairs while the nested steps run."""
 
     do: Literal["allow_collisions"] = "allow_collisions"
-    pairs: Annotated[tuple[tuple[Name, Name], ...], Field(min_length=1)]
-    during: Annotated[tuple[Step, ...], Field(min_length=1)]
+    pairs: Annotated[tuple[tuple[Name, Name], ...], Field(min_length=1)] = Field(
+        description="Two names each: links or objects."
+    )
+    during: Annotated[tuple[Step, ...], Field(min_length=1)] = Field(
+        description="The steps for which this holds."
+    )
 
 
 class Travel(SpecModel):
     """A straight move of a pick or place."""
 
-    direction: Direction | None = None
-    min_distance: PositiveLength | None = None
-    max_distance: PositiveLength | None = None
-    distance: PositiveLength | None = None
+    direction: Direction | None = Field(
+        default=None, description="Default: as said where this stands."
+    )
+    min_distance: PositiveLength | None = Field(default=None, description="At least so far [m].")
+    max_distance: PositiveLength | None = Field(default=None, description="At most so far [m].")
+    distance: PositiveLength | None = Field(default=None, description="Exactly so far [m].")
 
 
 class Pick(StepFields):
@@ -324,7 +361,7 @@ class Pick(StepFields):
     short = "object"
 
     do: Literal["pick"] = "pick"
-    object: Name
+    object: Name = Field(description="Its name.")
     grasp_pose: Pose | None = Field(
         default=None, description="Of the TCP; default: from the object's shape."
     )
@@ -333,8 +370,11 @@ class Pick(StepFields):
     )
     approach: Travel | None = Field(default=None, description="Default: 10 cm along the gripper.")
     lift: Travel | None = Field(default=None, description="Default: 10 cm up.")
-    mode: GripperAction = "friction"
-    max_effort: Annotated[JointEffort, Field(gt=0)] | None = None
+    mode: GripperAction = Field(default="friction", description="How it is held: see `grasp`.")
+    max_effort: Annotated[JointEffort, Field(gt=0)] | None = Field(
+        default=None,
+        description="Effort limit of the gripper's joint while it holds; default from the robot.",
+    )
 
 
 class Place(StepFields):
@@ -343,7 +383,7 @@ class Place(StepFields):
     do: Literal["place"] = "place"
     object: Name | None = Field(default=None, description="Default: what was picked last.")
     pose: Pose = Field(description="Where the object shall stand.")
-    approach: Travel | None = None
+    approach: Travel | None = Field(default=None, description="Default: 10 cm straight down.")
     retreat: Travel | None = Field(
         default=None, description="Default: 3 to 10 cm back along the gripper."
     )
@@ -355,8 +395,10 @@ class Capture(StepFields):
     short = "camera"
 
     do: Literal["capture"] = "capture"
-    camera: Name
-    kinds: tuple[Literal["color", "depth", "segmentation"], ...] = ("color",)
+    camera: Name = Field(description="Its name.")
+    kinds: tuple[Literal["color", "depth", "segmentation"], ...] = Field(
+        default=("color",), description="Which images."
+    )
 
 
 class Wait(StepFields):
@@ -365,7 +407,7 @@ class Wait(StepFields):
     short = "duration"
 
     do: Literal["wait"] = "wait"
-    duration: PositiveDuration
+    duration: PositiveDuration = Field(description="[s]")
 
 
 class Settle(StepFields):
@@ -383,20 +425,30 @@ class Inject(StepFields):
     """A fault, with a receipt."""
 
     do: Literal["inject"] = "inject"
-    friction: dict[Name, Annotated[Number, Field(ge=0)]] | None = None
-    gripper_effort: Fraction | None = None
-    joint_stall: Name | None = None
-    push: dict[Name, tuple[Force, Force, Force]] | None = None
-    sensor_noise: Annotated[Angle, Field(ge=0)] | None = None
-    command_latency: Duration | None = None
+    friction: dict[Name, Annotated[Number, Field(ge=0)]] | None = Field(
+        default=None, description="Object -> sliding friction."
+    )
+    gripper_effort: Fraction | None = Field(
+        default=None, description="Share of the effort that is left."
+    )
+    joint_stall: Name | None = Field(default=None, description="The joint that no longer moves.")
+    push: dict[Name, tuple[Force, Force, Force]] | None = Field(
+        default=None, description="Object -> force [N] along the world's x, y, z."
+    )
+    sensor_noise: Annotated[Angle, Field(ge=0)] | None = Field(
+        default=None, description="Standard deviation of measured joint positions [rad]."
+    )
+    command_latency: Duration | None = Field(
+        default=None, description="Commands arrive so much later [s]."
+    )
 
 
 class Repeat(StepFields):
     """The same steps several times."""
 
     do: Literal["repeat"] = "repeat"
-    times: Annotated[Count, Field(ge=1, le=1000)]
-    steps: Annotated[tuple[Step, ...], Field(min_length=1)]
+    times: Annotated[Count, Field(ge=1, le=1000)] = Field(description="How often.")
+    steps: Annotated[tuple[Step, ...], Field(min_length=1)] = Field(description="What is repeated.")
 
 
 class Parallel(StepFields):
@@ -406,7 +458,9 @@ class Parallel(StepFields):
     short_is_list = True
 
     do: Literal["parallel"] = "parallel"
-    steps: Annotated[tuple[Step, ...], Field(min_length=2)]
+    steps: Annotated[tuple[Step, ...], Field(min_length=2)] = Field(
+        description="What is done at once."
+    )
 
 
 class Include(StepFields):
@@ -415,8 +469,8 @@ class Include(StepFields):
     short = "file"
 
     do: Literal["include"] = "include"
-    file: str
-    params: dict[Name, Any] = Field(default_factory=dict)
+    file: str = Field(description="Path from this file.")
+    params: dict[Name, Any] = Field(default_factory=dict, description="For `${name}` in that file.")
 
 
 AnyStep = (

@@ -25,27 +25,29 @@ from harness.spec.poses import Pose
 class BoxSpec(SpecModel):
     """Full size along x, y, z [m]."""
 
-    size: tuple[PositiveLength, PositiveLength, PositiveLength]
+    size: tuple[PositiveLength, PositiveLength, PositiveLength] = Field(
+        description="Full size along x, y, z [m]."
+    )
 
 
 class CylinderSpec(SpecModel):
     """About its z axis [m]."""
 
-    radius: PositiveLength
-    length: PositiveLength
+    radius: PositiveLength = Field(description="[m]")
+    length: PositiveLength = Field(description="[m]")
 
 
 class SphereSpec(SpecModel):
     """A radius [m]."""
 
-    radius: PositiveLength
+    radius: PositiveLength = Field(description="[m]")
 
 
 class CapsuleSpec(SpecModel):
     """About its z axis; `length` is the cylindrical part [m]."""
 
-    radius: PositiveLength
-    length: PositiveLength
+    radius: PositiveLength = Field(description="[m]")
+    length: PositiveLength = Field(description="Without the round ends [m].")
 
 
 class PlaneSpec(SpecModel):
@@ -55,19 +57,22 @@ class PlaneSpec(SpecModel):
 class MeshSpec(SpecModel):
     """A triangle mesh file beside the world or scenario file."""
 
-    file: str
+    file: str = Field(description="Path from the file that names it.")
     scale: Annotated[
         Annotated[Number, Tag("one")] | Annotated[tuple[Number, Number, Number], Tag("many")],
         Discriminator(kind_of),
-    ] = 1.0
+    ] = Field(
+        default=1.0,
+        description="Of the file's numbers to metres; one number, or one for each axis.",
+    )
 
 
 class ShapeSpec(SpecModel):
     """Exactly one geometry, placed on its object."""
 
-    name: Name | None = None
+    name: Name | None = Field(default=None, description="For people.")
     pose: Pose = Field(default=Pose(), description="On the object; its frame word is ignored.")
-    color: Color | None = None
+    color: Color | None = Field(default=None, description="Red, green, blue, opacity from 0 to 1.")
     box: BoxSpec | None = None
     cylinder: CylinderSpec | None = None
     sphere: SphereSpec | None = None
@@ -88,9 +93,13 @@ class ShapeSpec(SpecModel):
 class FrictionSpec(SpecModel):
     """Coulomb friction of the surface; a contact takes the smaller of its two."""
 
-    sliding: Annotated[Number, Field(ge=0)] = 1.0
-    torsional: Annotated[Number, Field(ge=0)] = 0.005
-    rolling: Annotated[Number, Field(ge=0)] = 0.0001
+    sliding: Annotated[Number, Field(ge=0)] = Field(default=1.0, description="Along the surface.")
+    torsional: Annotated[Number, Field(ge=0)] = Field(
+        default=0.005, description="About the contact's normal [m]."
+    )
+    rolling: Annotated[Number, Field(ge=0)] = Field(
+        default=0.0001, description="Against rolling [m]."
+    )
 
 
 class InertiaSpec(SpecModel):
@@ -107,8 +116,10 @@ class InertiaSpec(SpecModel):
 class ObjectSpec(SpecModel):
     """An object: one geometry beside its keys, or several under `shapes`."""
 
-    name: Name
-    pose: Pose = Pose()
+    name: Name = Field(description="Unique in the scene.")
+    pose: Pose = Field(
+        default=Pose(), description="Where it stands at the start; its origin is its centre."
+    )
     static: Flag = Field(default=False, description="Fixed in the world.")
     box: BoxSpec | None = None
     cylinder: CylinderSpec | None = None
@@ -116,11 +127,15 @@ class ObjectSpec(SpecModel):
     capsule: CapsuleSpec | None = None
     plane: PlaneSpec | None = None
     mesh: MeshSpec | None = None
-    shapes: tuple[ShapeSpec, ...] = ()
+    shapes: tuple[ShapeSpec, ...] = Field(
+        default=(), description="Several geometries of one object."
+    )
     mass: Mass | None = Field(
         default=None, description="[kg]; default from the volume at 1000 kg/m^3."
     )
-    center_of_mass: Xyz = (0.0, 0.0, 0.0)
+    center_of_mass: Xyz = Field(
+        default=(0.0, 0.0, 0.0), description="From the object's origin [m]."
+    )
     inertia: InertiaSpec | None = Field(default=None, description="Default: of the solid shape.")
     friction: (
         Annotated[
@@ -129,7 +144,7 @@ class ObjectSpec(SpecModel):
         ]
         | None
     ) = Field(default=None, description="Sliding friction alone, or all three.")
-    color: Color | None = None
+    color: Color | None = Field(default=None, description="Red, green, blue, opacity from 0 to 1.")
     in_: Literal["planning", "simulation", "both"] = Field(
         default="both",
         alias="in",
@@ -151,23 +166,27 @@ class ObjectSpec(SpecModel):
 class LightSpec(SpecModel):
     """A directional light."""
 
-    direction: tuple[Number, Number, Number] = (-0.5, 0.1, -0.9)
-    diffuse: Color = (0.8, 0.8, 0.8, 1.0)
-    casts_shadow: Flag = True
+    direction: tuple[Number, Number, Number] = Field(
+        default=(-0.5, 0.1, -0.9), description="Where it shines to."
+    )
+    diffuse: Color = Field(
+        default=(0.8, 0.8, 0.8, 1.0), description="Red, green, blue, opacity from 0 to 1."
+    )
+    casts_shadow: Flag = Field(default=True, description="In pictures.")
 
 
 class PhysicsSpec(SpecModel):
     """Of the simulation."""
 
-    timestep: Annotated[Duration, Field(ge=1e-4, le=0.02)] = 0.001
-    gravity: tuple[Length, Length, Length] = (0.0, 0.0, -9.8)
+    timestep: Annotated[Duration, Field(ge=1e-4, le=0.02)] = Field(default=0.001, description="[s]")
+    gravity: tuple[Length, Length, Length] = Field(default=(0.0, 0.0, -9.8), description="[m/s**2]")
 
 
 class WorldSpec(SpecModel):
-    """A world file."""
+    """What stands around the robot, and the physics it stands in."""
 
-    world: Name
-    description: str = ""
-    objects: tuple[ObjectSpec, ...] = ()
-    lights: tuple[LightSpec, ...] = ()
-    physics: PhysicsSpec = PhysicsSpec()
+    world: Name = Field(description="Its title.")
+    description: str = Field(default="", description="For people.")
+    objects: tuple[ObjectSpec, ...] = Field(default=(), description="What stands in it.")
+    lights: tuple[LightSpec, ...] = Field(default=(), description="For pictures.")
+    physics: PhysicsSpec = Field(default=PhysicsSpec(), description="Time step and gravity.")

@@ -111,5 +111,5 @@ def test_the_reference_says_when_a_bare_predicate_is_judged():
     text = expectations_reference()
     assert all(f"\n## `{predicate}`\n" in text for predicate in PREDICATES)
     clearance = text.split("## `clearance`")[1].split("##")[0]
-    assert "judged over every sample" in clearance
+    assert "it must hold at every sample" in clearance
     assert "Not yet available" not in text

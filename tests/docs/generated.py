@@ -1,0 +1,32 @@
+"""The files that the models say: schemas and reference pages. Run as a script, it renews them."""
+
+from pathlib import Path
+
+import harness.engine.executors
+from harness.assertions.judge import EXECUTED
+from harness.engine.registry import execute
+from harness.spec.language import VERBS
+from harness.spec.reference import expectations_reference, scenario_reference, steps_reference
+from harness.spec.schema import schema_text, world_schema_text
+
+del harness
+
+ROOT = Path(__file__).parents[2]
+RENEW = "python tests/docs/generated.py"
+
+
+def generated():
+    """Path in the repository -> what its file must hold."""
+    executed = {model for model in VERBS.values() if model in execute}
+    return {
+        "scenarios/scenario.schema.json": schema_text(),
+        "scenarios/world.schema.json": world_schema_text(),
+        "scenarios/SCENARIO.md": scenario_reference(),
+        "scenarios/STEPS.md": steps_reference(executed),
+        "scenarios/EXPECTATIONS.md": expectations_reference(EXECUTED),
+    }
+
+
+if __name__ == "__main__":
+    for name, text in generated().items():
+        (ROOT / name).write_text(text, encoding="utf-8")

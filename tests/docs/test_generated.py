@@ -1,0 +1,60 @@
+"""Schemas and reference pages in the repository are those that the models say."""
+
+import json
+import re
+
+import jsonschema
+import pytest
+
+from harness.cli.main import main
+from harness.core.resources import data_folder
+from harness.spec.source import Source
+from harness.spec.yaml_file import parse_yaml
+from tests.docs.generated import RENEW, ROOT, generated
+
+FILES = [
+    *sorted(data_folder("scenarios").rglob("*.scenario.yaml")),
+    *sorted(data_folder("worlds").glob("*.yaml")),
+]
+MODELINE = re.compile(r"# yaml-language-server: \$schema=(\S+)\n")
+
+
+@pytest.mark.parametrize("name", generated())
+def test_a_generated_file_is_current(name):
+    said = generated()[name]
+    written = (ROOT / name).read_text(encoding="utf-8")
+    assert written == said, f"{name} is not what the models say; renew it: {RENEW}"
+
+
+def test_the_schema_command_writes_the_committed_schema(tmp_path):
+    assert main(["schema", "--write", str(tmp_path / "written.json")]) == 0
+    written = (tmp_path / "written.json").read_text(encoding="utf-8")
+    assert written == (ROOT / "scenarios/scenario.schema.json").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+def test_a_bundled_file_names_a_schema_beside_it_and_validates(path):
+    text = path.read_text(encoding="utf-8")
+    named = MODELINE.match(text)
+    assert named, f"{path.name} does not begin with the line that editors read"
+    schema = json.loads((path.parent / named[1]).read_text(encoding="utf-8"))
+    content = parse_yaml(text, Source.of_text("", text)).plain()
+    jsonschema.Draft7Validator(schema).validate(content)
+    broken = {**content, "worl": "empty"}
+    assert not jsonschema.Draft7Validator(schema).is_valid(broken)
+
+
+@pytest.mark.parametrize("name", [name for name in generated() if name.endswith(".md")])
+def test_a_reference_pages_links_lead_to_its_headings(name):
+    text = generated()[name]
+    headings = {line.lstrip("# `").rstrip("`").lower() for line in re.findall("(?m)^#+ .*", text)}
+    links = set(re.findall(r"\]\(#([^)]+)\)", text))
+    assert links
+    assert links <= headings
+
+
+@pytest.mark.parametrize("name", [name for name in generated() if name.endswith(".md")])
+def test_a_reference_page_says_what_every_required_key_means(name):
+    rows = re.findall(r"(?m)^\| (`\w+`) \|.*\| required \| (.*?) ?\|$", generated()[name])
+    assert rows
+    assert not [key for key, meaning in rows if not meaning and not re.fullmatch("`i..`", key)]
