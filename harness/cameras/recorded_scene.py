@@ -9,7 +9,7 @@ import numpy as np
 from harness.cameras.robot_poses import link_poses
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
-from harness.recording.run import ObjectRecord, Run, StepRecord
+from harness.recording.run import Run, StepRecord
 from harness.robot.description import RobotDescription
 
 
@@ -22,8 +22,8 @@ def poses_at(
 ) -> dict[str, SE3]:
     """T_world_body of every link and of every object that was there.
 
-    Simulated objects stand where the physics had them, planning-only ones where they were added, or
-    on the link they were attached to.
+    Simulated objects stand where the physics had them, others where the planner believed
+    them.
 
     Args:
         description: The robot.
@@ -33,36 +33,39 @@ def poses_at(
         step: Which of several steps that share the sample is meant; what steps without duration
             change in the moment a motion ends has not happened at its end.
     """
-    moment = float(run.signals.times[sample]) if step is None else step.end_time
-    is_motion = step is not None and step.end_time > step.start_time
     poses = link_poses(description, run.signals.joint_positions[sample])
-    final = float(run.signals.times[-1])
-    attached = {
-        record.object: poses[record.link] @ SE3.from_vector(record.pose_in_link)
-        for record in run.attachments
-        if _holds(record.start_time, record.end_time, moment, final)
-        or (is_motion and record.end_time == moment)
-    }
-    records = {record.name: record for record in run.objects}
+    there = _present_after(run, step)
+    seen = sample if step is None or step.end_time > step.start_time else sample + 1
     for obj in world_objects:
         recorded = run.signals.object_poses.get(obj.name)
-        record = records.get(obj.name)
-        if recorded is not None:
-            if np.isfinite(recorded[sample]).all():
-                poses[obj.name] = SE3.from_vector(recorded[sample])
-        elif obj.name in attached:
-            poses[obj.name] = attached[obj.name]
-        elif record is not None and _is_present(record, moment, final, is_motion=is_motion):
-            poses[obj.name] = SE3.from_vector(record.pose) if record.pose else obj.pose
+        if recorded is None or (there is not None and obj.name not in there):
+            continue
+        # what a step without duration changed shows in the next sample, if there is one
+        rows = recorded[[min(seen, len(recorded) - 1), sample]]
+        finite = np.flatnonzero(np.isfinite(rows).all(axis=1))
+        if len(finite):
+            poses[obj.name] = SE3.from_vector(rows[finite[0]])
     return poses
 
 
-def _is_present(record: ObjectRecord, moment: float, final: float, *, is_motion: bool) -> bool:
-    if is_motion:
-        return any(start < moment <= end for start, end in record.present)
-    return any(_holds(start, end, moment, final) for start, end in record.present)
+def _present_after(run: Run, step: StepRecord | None) -> set[str] | None:
+    """Objects in the scene once a step is over; None when no step is meant.
 
-
-def _holds(start: float, end: float, moment: float, final: float) -> bool:
-    """Whether an interval holds after what happened at a moment; ends of the run count as open."""
-    return start <= moment and (moment < end or end >= final)
+    Several steps may share a moment, so this follows what each did rather than when it did.
+    """
+    if step is None:
+        return None
+    places = [each.path for each in run.steps]
+    last = places.index(step.path)
+    changes = [
+        (place, kind, name)
+        for place, each in enumerate(run.steps)
+        for kind in ("added", "removed")
+        for name in each.result.get(kind, ())
+    ]
+    first = {name: kind for _, kind, name in reversed(changes)}
+    there = {name for name in run.signals.object_poses if first.get(name) != "added"}
+    for place, kind, name in changes:
+        if place <= last:
+            (there.add if kind == "added" else there.discard)(name)
+    return there

@@ -34,6 +34,21 @@ class Presence:
         return bool(self.intervals) and self.intervals[-1][1] == float("inf")
 
 
+@dataclass(frozen=True, eq=False)
+class Belief:
+    """Where the planning scene has an object from a sample on.
+
+    Attributes:
+        sample: Index into the recorded samples.
+        link: That carries it; empty when it stands in the world.
+        pose: T_link_object, or T_world_object; None when it is in the scene no more.
+    """
+
+    sample: int
+    link: str
+    pose: SE3 | None
+
+
 @dataclass
 class StepNotes:
     """What an executor leaves in its step's record."""
@@ -61,6 +76,7 @@ class Cell:
     presence: dict[str, Presence] = field(default_factory=dict[str, Presence])
     attachments: list[AttachmentRecord] = field(default_factory=list[AttachmentRecord])
     held: list[str] = field(default_factory=list[str])
+    beliefs: dict[str, list[Belief]] = field(default_factory=dict[str, list[Belief]])
     notes: StepNotes = field(default_factory=StepNotes)
     step: ProgramStep | None = None
     seed: int = 0
@@ -132,8 +148,10 @@ class Cell:
         known = self.presence.get(obj.name)
         if known is None:
             known = self.presence[obj.name] = Presence(obj, pose, added_by_step=True)
+        self.notes.result.setdefault("added", []).append(obj.name)
         known.pose = pose
         known.intervals.append([self.simulator.time, float("inf")])
+        self.believe(name=obj.name, pose=pose)
         if obj.in_simulation:
             self.simulator.add_object(obj.name, pose)
         if obj.in_planning:
@@ -146,11 +164,38 @@ class Cell:
             raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is not in the scene now")
         if name in self.scene.attached():
             raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is attached: detach it first")
+        self.notes.result.setdefault("removed", []).append(name)
         presence.intervals[-1][1] = self.simulator.time
+        self.believe(name, None)
         if name in self.scene.object_names():
             self.scene.remove_object(name)
         if presence.obj.in_simulation:
             self.simulator.remove_object(name)
+
+    def move_in_scene(self, name: str, pose: SE3) -> None:
+        """Put an object somewhere else, at rest, in planning scene and physics."""
+        presence = self.presence.get(name)
+        if presence is None or not presence.is_there:
+            raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is not in the scene now")
+        if name in self.scene.attached():
+            raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is attached: detach it first")
+        presence.pose = pose
+        presence.intervals[-1][1] = self.simulator.time
+        presence.intervals.append([self.simulator.time, float("inf")])
+        self.believe(name, pose)
+        if presence.obj.in_simulation:
+            self.simulator.move_object(name, pose)
+        if name in self.scene.object_names():
+            self.scene.move_object(name, pose)
+
+    def believe(self, name: str, pose: SE3 | None, link: str = "") -> None:
+        """Note where an object of the planning scene alone stands from now on."""
+        presence = self.presence.get(name)
+        if presence is None or presence.obj.in_simulation:
+            return
+        # what is gone was still there at the present sample, what comes is there already
+        sample = self.simulator.sample_count - (0 if pose is None else 1)
+        self.beliefs.setdefault(name, []).append(Belief(sample, link, pose))
 
     def attach(
         self, name: str, link: str, touch_links: Sequence[str], represents: str | None = None
@@ -161,6 +206,7 @@ class Cell:
         if name in self.scene.attached():
             raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is attached already")
         pose = self.scene.attach_object(name, link, touch_links, self.planning_start())
+        self.believe(name, pose, link)
         if represents is not None and represents in self.scene.object_names():
             self.scene.remove_object(represents)
         record = AttachmentRecord(
@@ -180,7 +226,7 @@ class Cell:
         """Let go of an attached object; what it stood for is in the planning scene again."""
         if name not in self.scene.attached():
             raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is not attached")
-        self.scene.detach_object(name, self.planning_start())
+        self.believe(name, self.scene.detach_object(name, self.planning_start()))
         for index, record in enumerate(self.attachments):
             if record.object == name and record.end_time == float("inf"):
                 self.attachments[index] = replace(record, end_time=self.simulator.time)

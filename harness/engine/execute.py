@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from harness.core.errors import StepFailed
 from harness.engine import executors as executors
-from harness.engine.cell import Cell, Presence, StepNotes
+from harness.engine.cell import Belief, Cell, Presence, StepNotes
 from harness.engine.program import Program, ProgramStep
 from harness.engine.registry import execute
 from harness.ports import Kinematics, MotionPlanner, PlanningScene, Simulator
@@ -19,11 +19,16 @@ OnStep = Callable[[Literal["step_started", "step_finished"], ProgramStep, StepRe
 
 @dataclass(frozen=True)
 class Execution:
-    """What executing a program leaves, besides the simulator's signals."""
+    """What executing a program leaves, besides the simulator's signals.
+
+    Attributes:
+        beliefs: Where objects of the planning scene alone stood, in order of time.
+    """
 
     steps: tuple[StepRecord, ...]
     objects: tuple[ObjectRecord, ...]
     attachments: tuple[AttachmentRecord, ...]
+    beliefs: Mapping[str, Sequence[Belief]]
     ended_early: str
 
 
@@ -125,6 +130,7 @@ def execute_program(
     )
     for obj in program.world.objects:
         cell.presence[obj.name] = Presence(obj, obj.pose, [[0.0, float("inf")]])
+        cell.believe(obj.name, obj.pose)
         if obj.in_planning:
             scene.add_object(obj, obj.pose)
     runner = _Runner(cell, on_step, keep_going)
@@ -142,6 +148,7 @@ def execute_program(
             replace(record, end_time=min(record.end_time, simulator.time))
             for record in cell.attachments
         ),
+        beliefs=cell.beliefs,
         ended_early=ended_early,
     )
 

@@ -93,8 +93,8 @@ class ObjectRecord:
 
     Attributes:
         present: Intervals [(from, to)] of simulation time in which it was in the scene [s].
-        pose: T_world_object when it was added (xyz, quat wxyz); empty when unknown. Objects of the
-            planning scene alone are not recorded and stand there.
+        pose: T_world_object when it was added or put somewhere last (xyz, quat wxyz); empty when
+            unknown.
         mass: [kg]; NaN when unknown.
     """
 
@@ -250,7 +250,8 @@ class Signals:
         joint_command_velocities: Commanded velocities, shape (N, n); NaN for mimic joints.
         tcp_pose: T_world_tcp, shape (N, 7): xyz, quat wxyz.
         frames: T_world_link of the links that expectations observe, (N, 7) each.
-        object_poses: T_world_object of simulated objects, (N, 7) each; NaN while absent.
+        object_poses: T_world_object, (N, 7) each; NaN while absent. Simulated objects as the physics
+            had them, those of the planning scene alone as the planner believed them.
         contact_forces: Normal force [N] between two bodies that ever touched, (N,) each; keys are
             (body, body), robot link first, else sorted. Zero means no contact.
         clearances: Distance [m] between the robot (key `robot`), or a held object (its name), and

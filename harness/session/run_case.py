@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -17,6 +18,7 @@ from harness.recording.digest import digest
 from harness.recording.run import Outcome, Run, Signals, StepRecord, Verdict
 from harness.recording.store import write_run
 from harness.reporting.result import CaseResult, ProgressEvent, StepLine
+from harness.session.beliefs import believed_poses
 from harness.session.prepare import Prepared, prepare
 from harness.session.record import run_record
 from harness.session.timing import Clock
@@ -140,7 +142,10 @@ def _execute(
             _step_teller(program, on_progress, simulator),
         )
     with clock.part("judge"):
-        signals = _observe(prepared, simulator.finish(), execution, needed.clearance_cutoff)
+        signals = simulator.finish()
+        believed = believed_poses(execution.beliefs, signals.joint_positions, prepared.kinematics)
+        signals = replace(signals, object_poses={**signals.object_poses, **believed})
+        signals = _observe(prepared, signals, execution, needed.clearance_cutoff)
     # what is not physics in execution is planning
     executed = clock.seconds.pop("execute")
     clock.seconds["plan"] = max(0.0, executed - clock.seconds.get("simulate", 0.0))

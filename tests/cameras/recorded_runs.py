@@ -45,6 +45,9 @@ def a_run(description):
     red = np.tile(RED_BOX.pose.as_vector(), (count, 1))
     red[1, 2] += 0.2
     red[2:] = np.nan
+    believed = np.tile(IMAGINED.pose.as_vector(), (count, 1))
+    believed[2] = np.nan
+    believed[3, 2] += 0.5
     ground = np.tile(GROUND.pose.as_vector(), (count, 1))
     nothing = np.zeros((count, len(description.joint_names)))
     signals = Signals(
@@ -55,7 +58,7 @@ def a_run(description):
         joint_commands=positions,
         joint_command_velocities=nothing,
         tcp_pose=np.zeros((count, 7)),
-        object_poses={"red_box": red, "ground": ground},
+        object_poses={"red_box": red, "ground": ground, "imagined": believed},
     )
     steps = tuple(
         StepRecord(f"step {i}", f"steps[{i}]", "wait", f"wait {i}", i, "passed", i, i, i, i + 1)

@@ -144,25 +144,32 @@ def test_link_poses_are_those_of_pinocchio(ur3e):
         np.testing.assert_allclose(poses[link].rotation, expected.rotation, atol=1e-9)
 
 
-def test_an_attached_object_is_drawn_where_the_planner_believes_it(ur3e):
-    poses = poses_at(ur3e, OBJECTS, a_run(ur3e), 3)
-    tip = poses[ur3e.tcp_link]
-    np.testing.assert_allclose(
-        poses["imagined"].translation, tip.translation + 0.1 * tip.rotation[:, 2]
-    )
-    assert "imagined" not in poses_at(ur3e, OBJECTS, a_run(ur3e), 2)
-    assert "red_box" not in poses
-
-
-def test_what_a_step_without_duration_adds_is_not_there_at_the_end_of_the_motion_before(ur3e):
+def test_an_object_of_the_planner_alone_is_drawn_where_it_is_believed(ur3e):
     run = a_run(ur3e)
-    (record,) = run.objects
-    appears = replace(record, present=((1.0, 3.0),))
-    run = replace(run, objects=(appears,))
-    motion = replace(run.steps[1], start_time=0.0, end_time=1.0)
-    instant = replace(run.steps[1], start_time=1.0, end_time=1.0)
-    assert "imagined" not in poses_at(ur3e, OBJECTS, run, 1, motion)
-    assert "imagined" in poses_at(ur3e, OBJECTS, run, 1, instant)
+    start = IMAGINED.pose.translation
+    np.testing.assert_allclose(poses_at(ur3e, OBJECTS, run, 0)["imagined"].translation, start)
+    assert "imagined" not in poses_at(ur3e, OBJECTS, run, 2)
+    carried = poses_at(ur3e, OBJECTS, run, 3)
+    np.testing.assert_allclose(carried["imagined"].translation, np.add(start, (0, 0, 0.5)))
+    assert "red_box" not in carried
+
+
+def test_of_steps_at_one_moment_each_shows_what_was_there_after_it(ur3e):
+    """A motion ends; at that moment one step adds an object, and another takes it out again."""
+    run = a_run(ur3e)
+    motion, adding, removing = (
+        replace(
+            run.steps[1], path=f"steps[{number}]", end_time=1.0, start_time=start, result=result
+        )
+        for number, start, result in (
+            (0, 0.0, {}),
+            (1, 1.0, {"added": ["imagined"]}),
+            (2, 1.0, {"removed": ["imagined"]}),
+        )
+    )
+    run = replace(run, steps=(motion, adding, removing))
+    shown = ["imagined" in poses_at(ur3e, OBJECTS, run, 1, step) for step in run.steps]
+    assert shown == [False, True, False]
 
 
 def test_the_overview_holds_every_point():

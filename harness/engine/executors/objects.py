@@ -16,7 +16,6 @@ def add_object(step: AddObject, cell: Cell) -> None:
         if presence is not None and presence.is_there:
             raise StepFailed("INVALID_OBJECT_NAME", f"'{spec.name}' is in the scene already")
         cell.add_to_scene(cell.later_objects[spec.name], cell.world_pose(spec.pose))
-    cell.notes.result["added"] = [spec.name for spec in step.objects]
 
 
 @execute.handles(RemoveObject)
@@ -24,23 +23,13 @@ def remove_object(step: RemoveObject, cell: Cell) -> None:
     """Take objects out."""
     for name in step.objects:
         cell.remove_from_scene(name)
-    cell.notes.result["removed"] = list(step.objects)
 
 
 @execute.handles(MoveObject)
 def move_object(step: MoveObject, cell: Cell) -> None:
     """Put an object somewhere else, at rest, in planning scene and physics."""
-    presence = cell.presence.get(step.object)
-    if presence is None or not presence.is_there:
-        raise StepFailed("INVALID_OBJECT_NAME", f"'{step.object}' is not in the scene now")
-    if step.object in cell.scene.attached():
-        raise StepFailed("INVALID_OBJECT_NAME", f"'{step.object}' is attached: detach it first")
-    pose = cell.world_pose(step.pose)
-    presence.pose = pose
-    if presence.obj.in_simulation:
-        cell.simulator.move_object(step.object, pose)
-    if step.object in cell.scene.object_names():
-        cell.scene.move_object(step.object, pose)
+    cell.move_in_scene(step.object, cell.world_pose(step.pose))
+    cell.notes.result["moved"] = [step.object]
 
 
 @execute.handles(ClearObjects)
@@ -55,4 +44,3 @@ def clear_objects(step: ClearObjects, cell: Cell) -> None:
     ]
     for name in gone:
         cell.remove_from_scene(name)
-    cell.notes.result["removed"] = gone
