@@ -165,6 +165,9 @@ def _tell(
         for runs in _repeats(arguments, results):
             say(f"{runs[0].file}: {repeats(runs, style)}")
     say(summary(list(results.values()), seconds, style))
+    written = [result.report_dir for result in results.values() if result.report_dir]
+    if written:
+        say(f"report: {written[0]}" if len(written) == 1 else f"reports: {arguments.report_dir}")
 
 
 def _command(arguments: argparse.Namespace, job: CaseJob) -> str:
