@@ -1,7 +1,7 @@
 # Short names for those who have make; the README's commands need none.
 PYTHON ?= python3
 
-.PHONY: demo test lint sweep bench
+.PHONY: demo test lint sweep bench docs
 
 demo: .venv/.installed
 	.venv/bin/harness run scenarios/lessons/03_ur_sixteen_steps.scenario.yaml
@@ -20,6 +20,9 @@ sweep: .venv/.installed
 
 bench: .venv/.installed
 	.venv/bin/python -m pytest -m benchmark -s
+
+docs: .venv/.installed
+	.venv/bin/python tests/docs/generated.py
 
 .venv/.installed: pyproject.toml
 	$(PYTHON) -m venv .venv

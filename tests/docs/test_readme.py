@@ -1,0 +1,80 @@
+"""What the README shows is what is there."""
+
+import re
+import shlex
+from pathlib import Path
+
+import cv2
+import pytest
+
+from harness.cli.main import main
+from tests.docs.generated import ROOT
+
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+FOLDERS = ("scenarios", "robots", "worlds")
+PAGES = [ROOT / "README.md", *(page for name in FOLDERS for page in (ROOT / name).glob("**/*.md"))]
+ROBOT = "robot: {model: ur3e, gripper: rh_p12_rn_a, base: {xyz: [0, 0, 1.02]}}"
+LINK = re.compile(r"\[[^\]]*\]\(([^)#\s]+)(?:#[^)]*)?\)")
+
+
+def blocks(language):
+    return re.findall(rf"(?ms)^```{language}\n(.*?)^```$", README)
+
+
+def test_the_scenario_shown_is_the_file_named_above_it():
+    [shown] = blocks("yaml")
+    named = re.findall(r"`(scenarios/\S+\.scenario\.yaml)`", README.split(shown)[0])[-1]
+    assert shown == (ROOT / named).read_text(encoding="utf-8")
+
+
+def test_the_picture_is_there_and_small():
+    [name] = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", README)
+    assert (ROOT / name).stat().st_size < 200_000
+    assert cv2.imread(str(ROOT / name)).shape == (480, 640, 3)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_links_of_a_page_lead_somewhere(page):
+    links = [link for link in LINK.findall(page.read_text(encoding="utf-8")) if ":" not in link]
+    assert not [link for link in links if not (page.parent / link).exists()]
+
+
+def test_the_command_table_is_what_the_program_offers(capsys):
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    offered = re.findall(r"(?m)^    (\w+) +\w+", capsys.readouterr().out)
+    assert re.findall(r"(?m)^\| `harness (\w+)", README) == offered
+
+
+def test_options_named_in_the_command_table_exist(capsys):
+    for command, text in re.findall(r"(?m)^\| `harness (\w+).*?\| (.*) \|$", README):
+        with pytest.raises(SystemExit):
+            main([command, "--help"])
+        said = capsys.readouterr().out
+        for option in re.findall(r"`(--?[a-z][a-z-]*)", text):
+            assert option in said, f"harness {command} has no {option}"
+
+
+def test_files_named_in_commands_exist():
+    for line in "".join(blocks("sh")).splitlines():
+        for word in shlex.split(line, comments=True):
+            if word.startswith("scenarios/"):
+                assert (ROOT / word).exists(), word
+
+
+def test_every_lesson_has_its_line():
+    lessons = ROOT / "scenarios/lessons"
+    told = re.findall(r"\]\(([^)/]+\.scenario\.yaml)\)", (lessons / "README.md").read_text())
+    assert told == sorted(path.name for path in Path(lessons).glob("*.scenario.yaml"))
+
+
+def test_a_misspelt_file_is_refused_as_shown(tmp_path, monkeypatch, capsys):
+    [shown] = [block for block in blocks("text") if block.startswith("$ harness check")]
+    command, _, said = shown.partition("\n")
+    quoted = dict(re.findall(r"(?m)^ +(\d+) \| (.*)$", said))
+    rows = {"1": "scenario: x", "2": ROBOT, "3": "world: lesson_ur", "4": "steps:", "7": "expect:"}
+    text = "\n".join((rows | quoted)[str(number + 1)] for number in range(8))
+    monkeypatch.chdir(tmp_path)
+    Path("typo.scenario.yaml").write_text(text + "\n")
+    assert main(shlex.split(command)[2:]) == 2
+    assert capsys.readouterr().out == said
