@@ -152,7 +152,7 @@ class Scope:
         """A named state of a group."""
         states = self.description.states_of(group)
         if state not in states and group in self.description.groups:
-            self.problems.unknown(loc, f"named state of '{group}'", state, states)
+            self.problems.unknown(loc, f"named state of {group} called", state, states)
 
     def check_joint(self, name: str, loc: Loc, group: str | None = None) -> None:
         """A movable joint, of a group if one is given."""
