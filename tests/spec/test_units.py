@@ -3,7 +3,7 @@ import math
 import pytest
 
 from harness.spec.mistakes import MistakeError
-from harness.spec.units import quantity
+from harness.spec.units import COMMON, quantity
 
 
 @pytest.mark.parametrize(
@@ -28,6 +28,16 @@ from harness.spec.units import quantity
 )
 def test_text_with_a_unit_becomes_an_si_number(text, units, value):
     assert quantity(*units)(text) == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("target", "unit"), [(target, unit) for target, factors in COMMON.items() for unit in factors]
+)
+def test_a_common_unit_is_to_the_bit_what_pint_says(target, unit, monkeypatch):
+    texts = [f"{number} {unit}" for number in ("1", "0.1", "3", "12.7", "-1e-3")]
+    quick = [quantity(target)(text) for text in texts]
+    monkeypatch.setattr("harness.spec.units.COMMON", {})
+    assert quick == [quantity(target)(text) for text in texts]
 
 
 @pytest.mark.parametrize("number", [0, 5, -2.5, 1e-9])
