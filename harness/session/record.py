@@ -8,7 +8,6 @@ from harness.engine.execute import Execution
 from harness.engine.program import Program
 from harness.ports import Kinematics
 from harness.recording.run import (
-    Finding,
     GripperRecord,
     JointRecord,
     RobotRecord,
@@ -16,6 +15,7 @@ from harness.recording.run import (
     Signals,
 )
 from harness.robot.description import RobotDescription
+from harness.session.findings import findings_of
 
 LIBRARIES = ("armharness", "mujoco", "pin", "coal", "ompl", "toppra", "numpy")
 
@@ -86,7 +86,6 @@ def run_record(
     file: str,
     source: str,
     resolved: str,
-    findings: tuple[Finding, ...] = (),
 ) -> Run:
     """Everything that happened, in one noun."""
     return Run(
@@ -102,7 +101,7 @@ def run_record(
         gravity=program.world.gravity,
         timestep=program.world.timestep,
         allowed_contacts=tuple(sorted(program.description.allowed_collisions)),
-        findings=findings,
+        findings=findings_of(execution.steps),
         source=source,
         resolved=resolved,
         versions={name: version(name) for name in LIBRARIES},

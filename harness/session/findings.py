@@ -1,0 +1,34 @@
+"""What a person should know of a run that is no verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from harness.recording.run import Finding, StepRecord
+
+
+def findings_of(steps: Sequence[StepRecord]) -> tuple[Finding, ...]:
+    """Pairs that a motion was let start nearer than planned, as an object on the table it leaves.
+
+    Task Constructor allows the pair object-support while lifting; here it may stay as near as it
+    stood, and no nearer.
+    """
+    found: list[Finding] = []
+    for step in steps:
+        lowered: Sequence[dict[str, Any]] = step.explanation.get("lowered_margins", ())
+        for entry in lowered:
+            first, second = entry["pair"]
+            distance = float(entry["start_distance"]) * 1e3
+            stood = f"{-distance:.1f} mm deep" if distance < 0 else f"{distance:.1f} mm apart"
+            found.append(
+                Finding(
+                    kind="lowered_margin",
+                    message=f"{first} and {second} stood {stood} when the motion began, and were"
+                    " let stay so near, no nearer",
+                    time=step.start_time,
+                    step=step.id,
+                    values=entry,
+                )
+            )
+    return tuple(found)
