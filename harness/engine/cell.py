@@ -76,6 +76,9 @@ class Cell:
     presence: dict[str, Presence] = field(default_factory=dict[str, Presence])
     attachments: list[AttachmentRecord] = field(default_factory=list[AttachmentRecord])
     held: list[str] = field(default_factory=list[str])
+    allowed: list[Sequence[tuple[str, str]]] = field(
+        default_factory=list[Sequence[tuple[str, str]]]
+    )
     beliefs: dict[str, list[Belief]] = field(default_factory=dict[str, list[Belief]])
     notes: StepNotes = field(default_factory=StepNotes)
     step: ProgramStep | None = None

@@ -13,8 +13,12 @@ def allow_collisions(step: AllowCollisions, cell: Cell) -> None:
     current, notes = cell.current, cell.notes
     notes.result["allowed_collisions"] = [list(pair) for pair in step.pairs]
     cell.scene.set_allowed(step.pairs, allowed=True)
+    cell.allowed.append(step.pairs)
     try:
         cell.run_steps(current.children)
     finally:
+        cell.allowed.pop()
         cell.scene.set_allowed(step.pairs, allowed=False)
+        for around in cell.allowed:  # may name the same pairs
+            cell.scene.set_allowed(around, allowed=True)
         cell.step, cell.notes = current, notes

@@ -1,0 +1,127 @@
+"""Steps that are expected to fail, steps in steps, and what check predicts of them."""
+
+from tests.engine.front_door import check, failures, run
+
+OUT_OF_REACH = "{pose: {frame: base_link, xyz: [0.9, 0, 0.3], rpy: [180 deg, 0, 0]}}"
+IN_THE_TABLE = "{pose: {frame: base_link, xyz: [0.35, 0.05, -0.03], rpy: [180 deg, 0, 0]}}"
+CLEAR = "clear_objects: {world: true}"
+SLAB = "{name: slab, box: {size: [1, 1, 0.02]}, static: true, pose: {xyz: [0.5, 0, 1.0]}}"
+
+
+def statuses(result):
+    return [(step.id, step.status, step.error_code) for step in result.steps]
+
+
+def test_another_failure_than_the_expected_one_ends_the_run(tmp_path):
+    steps = f"- move_to: {OUT_OF_REACH}\n  expect_error: GOAL_IN_COLLISION\n- wait: 1"
+    result, _ = run(tmp_path, steps)
+    assert result.outcome == "failed"
+    assert statuses(result) == [
+        ("steps[0]", "failed", "NO_IK_SOLUTION"),
+        ("steps[1]", "not_reached", ""),
+    ]
+    assert result.steps[0].message.startswith(
+        "expected GOAL_IN_COLLISION, but it failed with NO_IK"
+    )
+    (predicted,) = check(tmp_path, steps).predicted
+    assert predicted.line == 5
+
+
+def test_success_where_a_failure_is_expected_is_a_failure(tmp_path):
+    result, _ = run(tmp_path, "- wait: 0.01\n  expect_error: TIMED_OUT")
+    assert result.outcome == "failed"
+    assert result.steps[0].message == "expected to fail with TIMED_OUT, but it succeeded"
+
+
+def test_a_step_made_of_others_may_be_expected_to_fail_inside(tmp_path):
+    """And check, which goes on after a failure, predicts nothing else."""
+    steps = """
+    - pick: far
+      expect_error: NO_IK_SOLUTION
+    - wait: 0.01
+    """
+    rest = "objects: [{name: far, box: {size: [0.04, 0.04, 0.1]}, pose: {xyz: [2, 0, 0.05]}}]"
+    result, _ = run(tmp_path, steps, rest=rest)
+    assert result.outcome == "passed"
+    assert statuses(result) == [
+        ("steps[0]", "expected_error", "NO_IK_SOLUTION"),
+        ("steps[0].open", "passed", ""),
+        ("steps[0].reach", "failed", "NO_IK_SOLUTION"),
+        ("steps[1]", "passed", ""),
+    ]
+    assert check(tmp_path, steps, rest=rest).predicted == ()
+
+
+def test_check_tells_each_failure_once_and_goes_on_to_the_next_step(tmp_path):
+    steps = f"""
+    - pick: far
+    - allow_collisions:
+        pairs: [[robot, far]]
+        during:
+          - move_to: {OUT_OF_REACH}
+    """
+    rest = "objects: [{name: far, box: {size: [0.04, 0.04, 0.1]}, pose: {xyz: [2, 0, 0.05]}}]"
+    predicted = check(tmp_path, steps, rest=rest).predicted
+    assert [problem.line for problem in predicted] == [5, 9]
+    assert all(problem.message.startswith("NO_IK_SOLUTION: ") for problem in predicted)
+
+
+def test_collisions_are_allowed_within_and_checked_again_after_whatever_happened(tmp_path):
+    steps = f"""
+    - add_object: {SLAB}
+    - move_to: {IN_THE_TABLE}
+      expect_error: GOAL_IN_COLLISION
+    - allow_collisions:
+        pairs: [[robot, slab]]
+        during:
+          - allow_collisions: {{pairs: [[robot, slab]], during: [{{wait: 0.01}}]}}
+          - move_to: {OUT_OF_REACH}
+      expect_error: NO_IK_SOLUTION
+    - move_to: {IN_THE_TABLE}
+      expect_error: GOAL_IN_COLLISION
+    """
+    result, _ = run(tmp_path, steps)
+    assert result.outcome == "passed", [step.message for step in result.steps]
+
+
+def test_what_was_allowed_outside_is_still_allowed_after_an_inner_block(tmp_path):
+    steps = f"""
+    - add_object: {SLAB.replace("static: true,", "static: true, in: planning,")}
+    - allow_collisions:
+        pairs: [[robot, slab]]
+        during:
+          - allow_collisions: {{pairs: [[robot, slab]], during: [{{wait: 0.01}}]}}
+          - move_to: {IN_THE_TABLE}
+    """
+    result, _ = run(tmp_path, steps)
+    assert result.outcome == "passed", [step.message for step in result.steps]
+
+
+def test_a_step_without_duration_is_judged_at_its_one_sample(tmp_path):
+    steps = """
+    - clear_objects: {}
+      expect:
+        - named_target: home
+        - duration: {at_most: 0.001}
+        - always: within_limits
+        - static: {for: 0.1 s}
+    """
+    result, _ = run(tmp_path, steps, robot="{model: ur3e, start_state: home}")
+    (failure,) = failures(result)
+    assert failure.startswith(
+        "failed: static, for 0.1 s: judged over 0.000 s, which leaves no room"
+    )
+
+
+def test_a_run_that_would_take_too_long_ends_with_the_limit(tmp_path):
+    """At a time step of 20 ms: the limit is of time, not of samples."""
+    (tmp_path / "coarse.yaml").write_text(
+        "world: coarse\nphysics: {timestep: 0.02}\n"
+        "objects: [{name: ball, sphere: {radius: 0.1}, pose: {xyz: [2, 0, 1.0e+6]}}]\n"
+    )
+    steps = "- settle: {max_velocity: 1 um/s}\n  timeout: 1 hour"
+    result, _ = run(tmp_path, steps, robot="{gripper: rh_p12_rn_a}", world="coarse.yaml")
+    (step,) = result.steps
+    assert step.error_code == "TIMED_OUT"
+    assert "it may take 600 s of simulated time" in step.message
+    assert step.sim_time == 600.0
