@@ -192,17 +192,19 @@ def _steps_of(run: Run, verbs: tuple[str, ...]) -> BoolArray:
 def _gripping(run: Run, link: str, name: str) -> BoolArray:
     """Samples at which a gripper link touches an object because it grips it, shape (N,).
 
-    A grip begins with a contact while the gripper moves (`gripper`, `grasp`, `release`) or while
-    the object is attached. It lasts while the contact does and the object is attached, or all
-    finger sides touch it, or the arm rests. A finger that knocks against an object on its way is a
-    collision, and so is one that drags it along after letting go.
+    A grip begins with a contact while the gripper moves (`gripper`, `grasp`, `release`). It lasts
+    while the contact does and the object is attached, or all finger sides touch it, or the arm
+    rests. A finger that knocks against an object on its way is a collision, whatever the planning
+    scene says of the object, and so is one that drags it along after letting go.
     """
     gripper = run.robot.gripper
     hand = frozenset[str]() if gripper is None else finger_links(gripper) | {gripper.palm_link}
     if link not in hand:
         return np.zeros(len(run.signals.times), dtype=bool)
-    begins = attached(run, name) | _steps_of(run, GRIPPING_VERBS)
-    lasts = begins | held_by_fingers(run, name) | _steps_of(run, RESTING_VERBS)
+    begins = _steps_of(run, GRIPPING_VERBS)
+    lasts = (
+        begins | attached(run, name) | held_by_fingers(run, name) | _steps_of(run, RESTING_VERBS)
+    )
     contact = debounced(run, force_between(run, hand, {name})) > 0
     mask = np.zeros(len(contact), dtype=bool)
     for start, stop in episodes(contact & lasts):

@@ -194,4 +194,6 @@ def _held(terms: _Terms, values: FloatArray, times: FloatArray, decision: Decisi
     if terms.hold is None or terms.word == "never" or decision.holds:
         return ""
     longest = longest_hold(np.nan_to_num(values, nan=-1.0), times)
+    if longest >= terms.hold:
+        return f"; it held for {amount(terms.hold, 's')}, but not when it was asked to"
     return f"; held for {amount(longest, 's')} at most, {amount(terms.hold, 's')} asked for"

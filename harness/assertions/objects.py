@@ -179,6 +179,8 @@ def _calm(window: Window, speed: FloatArray) -> FloatArray:
 
 
 def _against(measure: Measure) -> str:
+    if measure.comparison == "==":
+        return measure.name
     value, limit = amount(measure.value, measure.unit), amount(measure.limit, measure.unit)
     detail = f" of {measure.detail}" if measure.detail else ""
     return f"{measure.name}{detail} {value} against {limit}"

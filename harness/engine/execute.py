@@ -144,10 +144,7 @@ def execute_program(
     return Execution(
         steps=records,
         objects=tuple(_object_record(presence, simulator) for presence in cell.presence.values()),
-        attachments=tuple(
-            replace(record, end_time=min(record.end_time, simulator.time))
-            for record in cell.attachments
-        ),
+        attachments=tuple(cell.attachments),
         beliefs=cell.beliefs,
         ended_early=ended_early,
     )

@@ -113,6 +113,7 @@ class AttachmentRecord:
     """An object fixed to a link in the planning scene, from one time to another.
 
     Attributes:
+        end_time: When it was let go [s]; inf when that did not happen.
         pose_in_link: T_link_object at attaching, as the planner believes it (xyz, quat wxyz).
         represents: The simulated object it stands for; its own name when it is that object.
     """
@@ -250,8 +251,8 @@ class Signals:
         joint_command_velocities: Commanded velocities, shape (N, n); NaN for mimic joints.
         tcp_pose: T_world_tcp, shape (N, 7): xyz, quat wxyz.
         frames: T_world_link of the links that expectations observe, (N, 7) each.
-        object_poses: T_world_object, (N, 7) each; NaN while absent. Simulated objects as the physics
-            had them, those of the planning scene alone as the planner believed them.
+        object_poses: T_world_object, (N, 7) each; NaN while absent. Simulated objects as the
+            physics had them, those of the planning scene alone as the planner believed them.
         contact_forces: Normal force [N] between two bodies that ever touched, (N,) each; keys are
             (body, body), robot link first, else sorted. Zero means no contact.
         clearances: Distance [m] between the robot (key `robot`), or a held object (its name), and

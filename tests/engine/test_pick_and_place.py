@@ -1,0 +1,148 @@
+"""pick, place and lin, on objects and arms of several kinds, in the physics."""
+
+import numpy as np
+import pytest
+
+from harness.engine.grasping import pitched
+from tests.engine.front_door import UR, failures, run
+
+OM = "{model: open_manipulator_x, base: {xyz: [0, 0, 1.02]}}"
+
+
+def test_a_can_with_its_origin_at_the_foot_is_picked_and_placed(tmp_path):
+    result, record = run(
+        tmp_path,
+        """
+        - move_to: mogi_home
+        - pick: coke_can_steel
+          expect: [{lifted: {object: coke_can_steel, above: 9 cm}}]
+        - place: {pose: {frame: base_link, xyz: [0.3, 0.05, -0.005]}}
+        - settle: {}
+          expect:
+            - placed: {object: coke_can_steel, pose: {frame: base_link, xyz: [0.3, 0.05, -0.005]}}
+        - place: {pose: {frame: base_link, xyz: [0.3, 0.05, -0.005]}}
+          expect_error: INVALID_OBJECT_NAME
+        - pick: beer_0
+          expect_error: INVALID_OBJECT_NAME
+        """,
+        robot=UR,
+        world="lesson_ur",
+        rest="expect: [{never: collision}]",
+    )
+    assert result.outcome == "passed", failures(result)
+    children = [
+        step.id for step in record.steps if step.path.startswith(("steps[1].", "steps[2]."))
+    ]
+    assert children == [
+        *(f"steps[1].{part}" for part in ("open", "reach", "approach", "grasp", "lift")),
+        *(f"steps[2].{part}" for part in ("reach", "lower", "release", "retreat")),
+    ]
+    messages = [step.message for step in record.steps if step.status == "expected_error"]
+    assert messages[0] == "nothing is held, so nothing can be placed"
+    assert messages[1].startswith("'beer_0' is 110 mm wide, the gripper opens 107 mm")
+
+
+@pytest.mark.parametrize("turn", ["[90 deg, 0, 0]", "[0, 90 deg, 40 deg]"])
+def test_a_lying_bar_is_taken_across_its_narrow_level_side(tmp_path, turn):
+    result, _ = run(
+        tmp_path,
+        """
+        - remove_object: [green_cylinder, coke_can_steel, red_box]
+        - settle: {}
+        - move_to: mogi_home
+        - pick: {object: bar, lift: {distance: 5 cm}}
+          expect: [{lifted: {object: bar, above: 4 cm}}]
+        """,
+        robot=UR,
+        world="lesson_ur",
+        rest=f"""
+        objects:
+          - name: bar
+            shapes: [{{box: {{size: [4 cm, 5 cm, 12 cm]}}, pose: {{xyz: [0, 0, 6 cm]}}}}]
+            pose: {{xyz: [0.25, 0.0, 1.041], rpy: {turn}}}
+        """,
+    )
+    assert result.outcome == "passed", (failures(result), [s.message for s in result.steps])
+
+
+def test_an_object_that_leans_needs_a_grasp_pose(tmp_path):
+    result, _ = run(
+        tmp_path,
+        "- pick: post\n  expect_error: INVALID_OBJECT_NAME",
+        robot=UR,
+        rest="""
+        objects:
+          - name: post
+            box: {size: [0.04, 0.04, 0.1]}
+            pose: {xyz: [0.3, 0, 1.3], rpy: [0.5, 0, 0]}
+        """,
+    )
+    assert result.outcome == "passed"
+    assert "'post' leans by 29 degrees" in result.steps[0].message
+
+
+def test_an_arm_of_four_joints_follows_a_line_off_its_plane(tmp_path):
+    """Its yaw follows from the point: the one it started with cannot be kept."""
+    result, _ = run(
+        tmp_path,
+        """
+        - move_to: {position: {frame: link1, xyz: [0.2, 0.05, 0.1]}, pitch: 0.3}
+        - lin: {position: {frame: link1, xyz: [0.2, -0.03, 0.12]}}
+          expect:
+            - tcp_pose: {pose: {frame: link1, xyz: [0.2, -0.03, 0.12]}, position_only: true}
+        """,
+        robot=OM,
+    )
+    assert result.outcome == "passed", [step.message for step in result.steps]
+
+
+def test_a_line_to_a_position_with_a_pitch_ends_at_that_pitch(tmp_path):
+    result, record = run(
+        tmp_path,
+        """
+        - move_to: mogi_home
+        - lin: {position: {frame: base_link, xyz: [0.3, -0.1, 0.3]}, pitch: 60 deg}
+        """,
+        robot=UR,
+    )
+    assert result.outcome == "passed", [step.message for step in result.steps]
+    x, y, z, w = (record.signals.tcp_pose[-1, i] for i in (4, 5, 6, 3))
+    down = -2 * (x * z - w * y)  # of the link's x axis
+    assert np.degrees(np.arcsin(down)) == pytest.approx(60, abs=0.1)
+
+
+@pytest.mark.parametrize("pitch", [-1.2, 0.0, 0.7, np.pi / 2])
+def test_a_pitched_rotation_keeps_its_heading(pitch):
+    heading = 0.8
+    cosine, sine = np.cos(heading), np.sin(heading)
+    level = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
+    turned = pitched(level, pitch)
+    np.testing.assert_allclose(turned @ turned.T, np.eye(3), atol=1e-12)
+    np.testing.assert_allclose(
+        turned[:, 0],
+        [np.cos(pitch) * cosine, np.cos(pitch) * sine, -np.sin(pitch)],
+        atol=1e-12,
+    )
+    np.testing.assert_allclose(pitched(turned, 0.0), level, atol=1e-12)
+
+
+def test_a_grasp_that_misses_says_where_the_object_is(tmp_path):
+    result, _ = run(
+        tmp_path, "- grasp: red_box\n  expect_error: CONTROL_FAILED", robot=UR, world="lesson_ur"
+    )
+    assert result.outcome == "passed"
+    assert "did not touch 'red_box' when the gripper closed" in result.steps[0].message
+    assert "mm from the TCP, in the TCP's axes" in result.steps[0].message
+
+
+def test_what_stays_attached_to_the_end_is_not_released(tmp_path):
+    result, _ = run(
+        tmp_path,
+        "- attach_object: red_box\n- wait: 0.1 s",
+        robot=UR,
+        world="lesson_ur",
+        rest="expect: [{released: red_box}, {placed: red_box}]",
+    )
+    first, second = failures(result)
+    assert first.endswith("attached in the planning scene at t=0.100 s")
+    assert "attached in the planning scene" in second
