@@ -86,6 +86,15 @@ def attached(run: Run, name: str) -> BoolArray:
     return mask
 
 
+def weld_note(run: Run, name: str) -> str:
+    """What a verdict says of an object that a grasp with `mode: weld` fixed in the physics too."""
+    welded = any(
+        step.result.get("mode") == "weld" and step.result.get("attached") == name
+        for step in run.steps
+    )
+    return "; welded to the hand by `mode: weld`" if welded else ""
+
+
 def in_hand(run: Run, name: str) -> BoolArray:
     """Samples at which an object is attached, or between all finger sides, shape (N,)."""
     mask = attached(run, name)

@@ -10,6 +10,7 @@ from harness.assertions.contacts import (
     bodies_touching,
     held_by_fingers,
     side_forces,
+    weld_note,
 )
 from harness.assertions.pose_arrays import (
     angle_between,
@@ -64,7 +65,8 @@ def grasped(check: Grasped, window: Window) -> MarginSignal:
         if relevant[index]:
             moved = amount(float(slip[0].values[index]), "m")
             turned = amount(float(slip[1].values[index]), "rad")
-            return f"{forces}; {name} moved {moved} and turned {turned} in the hand"
+            drift = f"{name} moved {moved} and turned {turned} in the hand"
+            return f"{forces}; {drift}{weld_note(run, name)}"
         return f"{forces}; {name} is not between the fingers{_planners_belief(run, name)}"
 
     return all_of(window, parts, text, present=window.cut(present(run, name)))

@@ -11,6 +11,7 @@ from harness.assertions.contacts import (
     gripper_of,
     held_by_fingers,
     side_forces,
+    weld_note,
 )
 from harness.assertions.poses import object_poses, present, start_poses
 from harness.assertions.registry import Evidence, MarginSignal, signal
@@ -53,6 +54,7 @@ def lifted(check: Lifted, window: Window) -> MarginSignal:
             text += f"; {name} touches {' and '.join(carriers)}"
         elif not alone_in_hand[sample]:
             text += f"; nothing holds {name}"
+        text += weld_note(run, name)
         if not object_record(run, name).in_simulation:
             text += f"; {name} is not in the physics"
         measures = [Measure("height gained", height, check.above, ">=", "m", time, name)]

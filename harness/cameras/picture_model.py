@@ -20,6 +20,10 @@ SOLID_GROUP = 0
 TRANSLUCENT_GROUP = 1
 FLOOR = "floor"
 
+MUJOCO_SUFFIXES = (".stl", ".msh")
+OBJ_SUFFIX = ".obj"
+"""Mesh files that can be drawn: those that MuJoCo reads, and the one that is read here."""
+
 GHOST_ALPHA = 0.3
 """Opacity of objects that are in the planner's belief alone."""
 
@@ -95,6 +99,16 @@ def build_picture_model(
     return PictureModel(model, mujoco.MjData(model), mocap, geoms, model.geom_rgba.copy())
 
 
+def undrawn(description: RobotDescription, objects: Sequence[WorldObject]) -> tuple[str, ...]:
+    """Names of mesh files that cannot be drawn, sorted."""
+    looks = [link.visuals for link in description.links]
+    looks += [obj.visuals or obj.shapes for obj in objects]
+    shapes = [shape.geometry for look in looks for shape in look]
+    meshes = [geometry.path for geometry in shapes if isinstance(geometry, Mesh)]
+    known = {*MUJOCO_SUFFIXES, OBJ_SUFFIX}
+    return tuple(sorted({path.name for path in meshes if path.suffix.lower() not in known}))
+
+
 def _add_body(spec: mujoco.MjSpec, name: str, shapes: Sequence[Shape], *, ghost: bool) -> None:
     drawn = [shape for shape in shapes if not isinstance(shape.geometry, Plane)]
     if not drawn:
@@ -119,13 +133,13 @@ def _pieces(spec: mujoco.MjSpec, shape: Shape) -> list[tuple[Geometry | str, Rgb
         return [(geometry, None)]
     key = f"{geometry.path}|{geometry.scale}"
     suffix = geometry.path.suffix.lower()
-    if suffix in {".stl", ".msh"}:
+    if suffix in MUJOCO_SUFFIXES:
         if spec.mesh(key) is None:
             asset = spec.add_mesh(name=key, file=str(geometry.path), scale=geometry.scale)
             asset.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
         return [(key, None)]
-    if suffix != ".obj":
-        return []
+    if suffix != OBJ_SUFFIX:
+        return []  # `undrawn` names it
     pieces: list[tuple[Geometry | str, Rgba | None]] = []
     for number, part in enumerate(load_obj(geometry)):
         name = f"{key}|{number}"

@@ -10,7 +10,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from harness.cameras.picture_model import build_picture_model
+from harness.cameras.picture_model import build_picture_model, undrawn
 from harness.cameras.recorded_scene import poses_at
 from harness.cameras.renderer import Renderer, make_renderer
 from harness.cameras.robot_poses import link_poses
@@ -38,7 +38,7 @@ class StillsReport:
     Attributes:
         backend: `egl`, `osmesa` or `rays`; empty when no step was executed.
         files: In order of the steps.
-        note: One line for a person when the best backend was not there; else empty.
+        note: One line for a person on what is not drawn as well as it could be; else empty.
     """
 
     backend: str
@@ -88,10 +88,13 @@ def save_stills(
             _write(files[-1], renderer, viewpoint, step, f"{number}/{len(steps)}")
     finally:
         renderer.close()
-    note = ""
+    notes: list[str] = []
     if renderer.backend == "rays" and backend == "auto":
-        note = "pictures by the ray camera: this machine has neither EGL nor OSMesa"
-    return StillsReport(renderer.backend, tuple(files), note)
+        notes.append("pictures by the ray camera: this machine has neither EGL nor OSMesa")
+    missing = undrawn(description, world_objects)
+    if missing:
+        notes.append(f"not in the pictures: {', '.join(missing)}; save them as OBJ or STL")
+    return StillsReport(renderer.backend, tuple(files), "; ".join(notes))
 
 
 def overview(

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from harness.core.errors import Problem
+from harness.core.errors import Problem, RobotError
+from harness.core.geometry import Mesh
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.engine import executors as executors
@@ -62,6 +63,7 @@ class Sources:
         judged: Expectation models that can be judged.
         check_planner: Normalises a planner's name, or raises ValueError with what there is.
         checks_per_second: What a second of `planning_time` buys, in state checks.
+        check_mesh: Raises RobotError for a mesh file that cannot be used.
     """
 
     scenario: Scenario
@@ -74,6 +76,7 @@ class Sources:
     judged: frozenset[type]
     check_planner: Callable[[str], str]
     checks_per_second: int
+    check_mesh: Callable[[Mesh], None]
 
 
 def compile_scenario(sources: Sources) -> Program:
@@ -171,7 +174,7 @@ class _Compiler:
                     f"'{spec.name}' has a pose in '{spec.pose.frame}', not in the world"
                 )
             try:
-                resolved[spec.name] = resolve_object(spec, spec.pose.se3(), self.sources.world_dir)
+                resolved[spec.name] = self._object(spec, spec.pose.se3(), self.sources.world_dir)
             except ObjectUnusableError as unusable:
                 problems.append(f"object '{spec.name}': {unusable}")
         if problems:
@@ -198,10 +201,21 @@ class _Compiler:
                 (*loc, "name"), f"'{spec.name}' is a robot link's name", "choose another"
             )
         try:
-            return resolve_object(spec, pose, self.sources.base_dir)
+            return self._object(spec, pose, self.sources.base_dir)
         except ObjectUnusableError as unusable:
             self.problems.add(loc, f"object '{spec.name}': {unusable}")
             return None
+
+    def _object(self, spec: ObjectSpec, pose: SE3, folder: Path) -> WorldObject:
+        """The object, its mesh files looked into; raises ObjectUnusableError."""
+        obj = resolve_object(spec, pose, folder)
+        for shape in obj.shapes:
+            if isinstance(shape.geometry, Mesh):
+                try:
+                    self.sources.check_mesh(shape.geometry)
+                except RobotError as error:
+                    raise ObjectUnusableError(str(error)) from error
+        return obj
 
     def _later_object(self, spec: ObjectSpec, loc: Loc) -> None:
         """Prepare an object that a step adds; the same object may come and go, another may not."""

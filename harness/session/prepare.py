@@ -9,6 +9,7 @@ from pathlib import Path
 
 from harness.assertions.judge import EXECUTED
 from harness.core.errors import Problem, RobotError, SpecError
+from harness.core.geometry import Mesh
 from harness.engine.compile import Sources, compile_scenario
 from harness.engine.program import Loc, Program
 from harness.planning.backend import make_planning
@@ -90,6 +91,7 @@ def _prepared(loaded: LoadedScenario) -> Prepared:
         judged=EXECUTED,
         check_planner=resolve_planner_id,
         checks_per_second=STATE_CHECKS_PER_SECOND,
+        check_mesh=_check_mesh,
     )
     return Prepared(loaded, compile_scenario(sources), scene, kinematics, planner)
 
@@ -118,3 +120,9 @@ def _world(loaded: LoadedScenario) -> LoadedWorld:
             else loaded.lines.problem(("world",), problem.message, problem.hint)
             for problem in error.problems
         ) from error
+
+
+def _check_mesh(geometry: Mesh) -> None:
+    from harness.simulation.mesh_check import check_mesh  # physics: few files have meshes
+
+    check_mesh(geometry)

@@ -16,6 +16,7 @@ from harness.cameras.renderer import make_renderer
 from harness.cameras.robot_poses import link_poses
 from harness.cameras.stills import overview, save_stills
 from harness.cameras.viewpoint import fit_viewpoint
+from harness.core.geometry import Mesh, Shape
 from tests.cameras.recorded_runs import IMAGINED, OBJECTS, RED_BOX, a_run
 
 SIZE = 640, 480
@@ -183,3 +184,11 @@ def test_the_overview_holds_every_point():
     assert rows.max() < SIZE[1]
     filled = max(np.ptp(columns) / SIZE[0], np.ptp(rows) / SIZE[1])
     assert filled > 0.7
+
+
+def test_a_mesh_that_cannot_be_drawn_is_named_in_the_note(ur3e, tmp_path):
+    collada = Shape(Mesh(tmp_path / "mug.dae"), rgba=(1, 0, 0, 1))
+    mug = replace(IMAGINED, name="mug", shapes=(collada,))
+    assert save_stills(ur3e, OBJECTS, a_run(ur3e), tmp_path / "a", backend="rays").note == ""
+    report = save_stills(ur3e, (*OBJECTS, mug), a_run(ur3e), tmp_path / "b", backend="rays")
+    assert report.note == "not in the pictures: mug.dae; save them as OBJ or STL"

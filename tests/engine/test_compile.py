@@ -132,3 +132,19 @@ def test_a_step_overrides_the_scenarios_planning_key_by_key(tmp_path):
     assert first.options.max_state_checks > 1000
     assert first.options.padding == second.options.padding == 0.01
     assert first.options.velocity_scaling == 0.5
+
+
+@pytest.mark.parametrize(
+    ("file", "content", "reason"),
+    [
+        ("mug.dae", "<COLLADA/>", "mug.dae: collision meshes must be STL or OBJ files"),
+        ("mug.stl", "solid nothing", "mug.stl cannot be used: stl_decoder: invalid header"),
+        ("mug.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "mug.obj cannot be used: at least 4"),
+    ],
+)
+def test_a_mesh_that_cannot_be_used_is_told_at_its_object(tmp_path, file, content, reason):
+    (tmp_path / file).write_text(content)
+    rest = f"objects:\n- {{name: mug, mesh: {{file: {file}}}, static: true}}\n"
+    ((line, message),) = problems(tmp_path, "- wait: 1", rest=rest)
+    assert line == 7
+    assert message.startswith(f"object 'mug': {reason}")

@@ -146,3 +146,26 @@ def test_what_stays_attached_to_the_end_is_not_released(tmp_path):
     first, second = failures(result)
     assert first.endswith("attached in the planning scene at t=0.100 s")
     assert "attached in the planning scene" in second
+
+
+def test_a_welded_grasp_says_so_in_its_verdicts(tmp_path):
+    """Without friction nothing could be lifted: the report must tell what held it."""
+    result, _ = run(
+        tmp_path,
+        """
+        - move_to: mogi_home
+        - pick: {object: soap, mode: weld}
+          expect: [{lifted: {object: soap, above: 9 cm}}, {grasped: soap}]
+        """,
+        robot=UR,
+        world="lesson_ur",
+        rest="""
+        objects:
+          - name: soap
+            box: {size: [4 cm, 4 cm, 10 cm]}
+            friction: 0
+            pose: {xyz: [0.3, -0.3, 1.066]}
+        """,
+    )
+    assert result.outcome == "passed", failures(result)
+    assert all("welded to the hand by `mode: weld`" in v.reason for v in result.verdicts)

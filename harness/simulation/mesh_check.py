@@ -1,0 +1,27 @@
+"""Whether a mesh file can be used, told before anything is built from it."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import mujoco
+
+from harness.core.errors import RobotError
+from harness.core.geometry import Mesh
+from harness.simulation.geoms import add_mesh
+
+
+def check_mesh(geometry: Mesh) -> None:
+    """See that a mesh file has a solid that things can touch.
+
+    Raises:
+        RobotError: It is of a kind that is not read, damaged, or flat; says which.
+    """
+    spec = mujoco.MjSpec()
+    try:
+        name = add_mesh(spec, geometry)
+        spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name)
+        spec.compile()
+    except ValueError as error:
+        reason = str(error).splitlines()[0].removeprefix("Error: ")
+        raise RobotError(f"{geometry.path.name} cannot be used: {reason}") from error
