@@ -226,9 +226,11 @@ class Cell:
             self.notes.result["represents"] = represents
 
     def detach(self, name: str) -> None:
-        """Let go of an attached object; what it stood for is in the planning scene again."""
+        """Let go of an attached object, also of its weld; what it stood for is in the scene again."""
         if name not in self.scene.attached():
             raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is not attached")
+        if self.presence[name].obj.in_simulation:
+            self.simulator.unweld(name)
         self.believe(name, self.scene.detach_object(name, self.planning_start()))
         for index, record in enumerate(self.attachments):
             if record.object == name and record.end_time == float("inf"):

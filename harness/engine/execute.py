@@ -14,6 +14,8 @@ from harness.engine.registry import execute
 from harness.ports import Kinematics, MotionPlanner, PlanningScene, Simulator
 from harness.recording.run import AttachmentRecord, ObjectRecord, StepRecord, StepStatus
 
+TIMEOUT_SLACK = 0.05  # [s] how often the physics is looked at while something is waited for
+
 OnStep = Callable[[Literal["step_started", "step_finished"], ProgramStep, StepRecord | None], None]
 
 
@@ -61,7 +63,7 @@ class _Runner:
         self.records.append(_not_reached(step))
         # the sample at the step's start belongs to it, so that no step is without samples
         start_time, start_index = cell.simulator.time, max(0, cell.simulator.sample_count - 1)
-        failure = self._attempt(step)
+        failure = self._attempt(step) or _too_long(step, cell.simulator.time - start_time)
         status, message = _judge_step(step, failure)
         notes = cell.notes
         self.records[place] = replace(
@@ -147,6 +149,18 @@ def execute_program(
         attachments=tuple(cell.attachments),
         beliefs=cell.beliefs,
         ended_early=ended_early,
+    )
+
+
+def _too_long(step: ProgramStep, seconds: float) -> StepFailed | None:
+    """The failure of a step that ended, but after its timeout."""
+    timeout = step.spec.timeout
+    if timeout is None or seconds <= timeout + TIMEOUT_SLACK:
+        return None
+    return StepFailed(
+        "TIMED_OUT",
+        f"the step took {seconds:.3f} s, its timeout is {timeout:g} s",
+        {"duration": seconds, "timeout": timeout},
     )
 
 

@@ -125,3 +125,25 @@ def test_a_run_that_would_take_too_long_ends_with_the_limit(tmp_path):
     assert step.error_code == "TIMED_OUT"
     assert "it may take 600 s of simulated time" in step.message
     assert step.sim_time == 600.0
+
+
+def test_a_step_that_takes_longer_than_its_timeout_fails_whatever_it_is_made_of(tmp_path):
+    steps = """
+    - wait: 1 s
+      timeout: 0.5 s
+      expect_error: TIMED_OUT
+    - gripper: closed
+      timeout: 0.1 s
+      expect_error: TIMED_OUT
+    - allow_collisions: {pairs: [[robot, robot]], during: [wait: 0.3 s, wait: 0.3 s]}
+      timeout: 0.5 s
+      expect_error: TIMED_OUT
+    - wait: 0.2 s
+      timeout: 0.2 s
+    """
+    result, _ = run(tmp_path, steps, robot="{gripper: rh_p12_rn_a}")
+    assert result.outcome == "passed", [step.message for step in result.steps]
+    messages = [step.message for step in result.steps if step.status == "expected_error"]
+    assert messages[0] == "the step took 1.000 s, its timeout is 0.5 s"
+    assert messages[1].startswith("'rh_r1_joint' is at ")
+    assert messages[2] == "the step took 0.600 s, its timeout is 0.5 s"

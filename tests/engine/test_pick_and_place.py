@@ -169,3 +169,22 @@ def test_a_welded_grasp_says_so_in_its_verdicts(tmp_path):
     )
     assert result.outcome == "passed", failures(result)
     assert all("welded to the hand by `mode: weld`" in v.reason for v in result.verdicts)
+
+
+def test_what_was_welded_falls_when_it_is_detached(tmp_path):
+    """A weld that outlived its attachment would let it hover, and `released` pass."""
+    result, _ = run(
+        tmp_path,
+        """
+        - move_to: mogi_home
+        - pick: {object: green_cylinder, mode: weld}
+        - gripper: open
+          expect: [{never: {placed: green_cylinder}}]
+        - detach_object: green_cylinder
+        - settle: {}
+          expect: [{released: green_cylinder}, {placed: {object: green_cylinder, on: Table_0}}]
+        """,
+        robot=UR,
+        world="lesson_ur",
+    )
+    assert result.outcome == "passed", failures(result)

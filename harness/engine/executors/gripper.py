@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.core.errors import StepFailed
 from harness.engine.cell import Cell
 from harness.engine.registry import execute
 from harness.ports import GripperResult
@@ -15,7 +16,11 @@ DEFAULT_TIMEOUT = 10.0  # [s] of simulation
 
 @execute.handles(Gripper)
 def gripper(step: Gripper, cell: Cell) -> None:
-    """Drive the gripper's joint until it arrives or stalls; a stall is no failure, as in ROS."""
+    """Drive the gripper's joint until it arrives or stalls; a stall is no failure, as in ROS.
+
+    Raises:
+        StepFailed: TIMED_OUT, when it does neither in time.
+    """
     hand = cell.gripper
     if step.named_target is not None:
         states = cell.description.states_of(hand.group)
@@ -24,10 +29,17 @@ def gripper(step: Gripper, cell: Cell) -> None:
         target = step.position
     else:
         target = position_for_width(hand, step.width or 0.0)
+    timeout = step.timeout or DEFAULT_TIMEOUT
     result = cell.simulator.command_gripper(
-        target, step.max_effort or hand.grip_effort, timeout=step.timeout or DEFAULT_TIMEOUT
+        target, step.max_effort or hand.grip_effort, timeout=timeout
     )
     note_result(cell, target, result)
+    if not (result.reached_goal or result.stalled):
+        raise StepFailed(
+            "TIMED_OUT",
+            f"'{hand.joint}' is at {result.position:.4g} and still moves towards {target:.4g}"
+            f" after {timeout:g} s",
+        )
 
 
 def position_for_width(hand: GripperDescription, width: float) -> float:
