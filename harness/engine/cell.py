@@ -226,7 +226,7 @@ class Cell:
             self.notes.result["represents"] = represents
 
     def detach(self, name: str) -> None:
-        """Let go of an attached object, also of its weld; what it stood for is in the scene again."""
+        """Let go of an attached object and its weld; what it stood for is in the scene again."""
         if name not in self.scene.attached():
             raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is not attached")
         if self.presence[name].obj.in_simulation:
