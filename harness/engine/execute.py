@@ -35,10 +35,15 @@ class Execution:
 
 
 class _RunEndedError(Exception):
-    """A step failed in a way that nothing expected; carries the failure up through nesting."""
+    """A step failed in a way that nothing expected; carries the failure up through nesting.
 
-    def __init__(self, failure: StepFailed) -> None:
-        self.failure = failure
+    Attributes:
+        failure: Of the innermost step.
+        summary: Of that step.
+    """
+
+    def __init__(self, failure: StepFailed, summary: str) -> None:
+        self.failure, self.summary = failure, summary
         super().__init__(str(failure))
 
 
@@ -63,7 +68,8 @@ class _Runner:
         self.records.append(_not_reached(step))
         # the sample at the step's start belongs to it, so that no step is without samples
         start_time, start_index = cell.simulator.time, max(0, cell.simulator.sample_count - 1)
-        failure = self._attempt(step) or _too_long(step, cell.simulator.time - start_time)
+        inner = self._attempt(step)
+        failure = _own(inner) or _too_long(step, cell.simulator.time - start_time)
         status, message = _judge_step(step, failure)
         notes = cell.notes
         self.records[place] = replace(
@@ -82,17 +88,16 @@ class _Runner:
         )
         self.on_step("step_finished", step, self.records[place])
         if status == "failed" and not (self.keep_going and self.depth == 0):
-            code = failure.code if failure else "FAILURE"
-            raise _RunEndedError(failure or StepFailed(code, message))
+            if isinstance(inner, _RunEndedError):
+                raise inner
+            raise _RunEndedError(failure or StepFailed("FAILURE", message), step.summary)
 
-    def _attempt(self, step: ProgramStep) -> StepFailed | None:
+    def _attempt(self, step: ProgramStep) -> StepFailed | _RunEndedError | None:
         self.depth += 1
         try:
             execute(step.spec, self.cell)
-        except StepFailed as failure:
+        except (StepFailed, _RunEndedError) as failure:
             return failure
-        except _RunEndedError as ended:
-            return ended.failure
         finally:
             self.depth -= 1
         return None
@@ -150,6 +155,13 @@ def execute_program(
         beliefs=cell.beliefs,
         ended_early=ended_early,
     )
+
+
+def _own(failure: StepFailed | _RunEndedError | None) -> StepFailed | None:
+    """A step's failure; one of a step inside it is told there, and here only where it is."""
+    if isinstance(failure, _RunEndedError):
+        return StepFailed(failure.failure.code, f"its step `{failure.summary}` failed")
+    return failure
 
 
 def _too_long(step: ProgramStep, seconds: float) -> StepFailed | None:

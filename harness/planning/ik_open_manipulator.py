@@ -83,6 +83,32 @@ def pitch_in_plane(heading: float, x_axis: FloatArray) -> float:
     return float(np.arctan2(-x_axis[2], forward))
 
 
+def pitches_below(heading: float, down: FloatArray, pitch: float) -> tuple[float, ...]:
+    """Pitches in the plane at a heading that point so far below the horizontal of the world.
+
+    The link's x axis at an in-plane pitch b is cos(b) forward - sin(b) up, in the base frame; its
+    part along `down` must be sin(pitch). On a level base that is `pitch`, pointing away from the
+    base, and pi - pitch, pointing to it.
+
+    Args:
+        heading: Of the plane [rad].
+        down: The world's downward direction in the base frame, shape (3,).
+        pitch: Below the horizontal [rad].
+
+    Returns:
+        Two angles [rad], or none where the plane is too steep for that pitch.
+    """
+    ahead = float(down[0] * np.cos(heading) + down[1] * np.sin(heading))
+    below = float(-down[2])
+    size, shift = float(np.hypot(ahead, below)), float(np.arctan2(below, ahead))
+    if size < abs(np.sin(pitch)) - 1e-12 or size == 0.0:
+        return ()
+    turn = float(np.arccos(np.clip(np.sin(pitch) / size, -1.0, 1.0)))
+    return tuple(
+        float(np.arctan2(np.sin(angle), np.cos(angle))) for angle in (shift - turn, shift + turn)
+    )
+
+
 def solve_planar(
     arm: PlanarArm, position: FloatArray, heading: float, pitch: float
 ) -> PlanarAnswer:

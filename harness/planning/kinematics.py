@@ -18,6 +18,7 @@ from harness.planning.ik_open_manipulator import (
     headings,
     is_planar_arm,
     pitch_in_plane,
+    pitches_below,
     solve_planar,
 )
 from harness.planning.ik_ur import UrGeometry, is_ur_like, solve_ur
@@ -189,7 +190,8 @@ class PinocchioKinematics:
                 x_axis = T_base_world.rotation @ goal.pose.rotation[:, 0]
                 pitches = [pitch_in_plane(heading, x_axis)]
             elif goal.pitch is not None:
-                pitches = [goal.pitch, np.pi - goal.pitch]  # pointing away from the base, or to it
+                down = T_base_world.rotation @ np.array([0.0, 0.0, -1.0])
+                pitches = list(pitches_below(heading, down, goal.pitch))
             else:
                 now = float(space.part(seed_positions)[1:].sum())
                 pitches = [now, *np.linspace(-np.pi, np.pi, PITCH_SAMPLES)]

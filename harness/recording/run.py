@@ -194,7 +194,8 @@ class Measure:
     def __str__(self) -> str:
         where = f" ({self.detail})" if self.detail else ""
         sign = self.comparison
-        said = f"{self.name}: {self.value:.6g} {self.unit} (must be {sign} {self.limit:.6g})"
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        said = f"{self.name}: {self.value:.6g}{unit} (must be {sign} {self.limit:.6g})"
         return f"{said} at t={self.time:.3f} s{where}"
 
 

@@ -178,7 +178,7 @@ def verdict_line(verdict: Verdict) -> str:
     """Status, margin and reason in one line."""
     text = verdict.status
     if not math.isnan(verdict.margin):
-        text += f" by {abs(verdict.margin):.4g} {verdict.unit}".rstrip()
+        text += f" by {abs(verdict.margin):.4g} {_unit(verdict.unit)}".rstrip()
     if not math.isnan(verdict.time):
         text += f" at t={verdict.time:.3f} s"
     return f"{text}: {verdict.reason}" if verdict.reason else text
@@ -189,9 +189,15 @@ def measure_text(measure: Measure) -> str:
     if math.isnan(measure.limit):
         where = f" ({measure.detail})" if measure.detail else ""
         return (
-            f"{measure.name}: {measure.value:.6g} {measure.unit} at t={measure.time:.3f} s{where}"
+            f"{measure.name}: {measure.value:.6g} {_unit(measure.unit)}".rstrip()
+            + f" at t={measure.time:.3f} s{where}"
         )
     return str(measure)
+
+
+def _unit(unit: str) -> str:
+    """A unit as it is written behind a number; of a plain number, nothing."""
+    return "" if unit == "1" else unit
 
 
 def summary(results: Sequence[CaseResult], seconds: float, style: Style = PLAIN) -> str:

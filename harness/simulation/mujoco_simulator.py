@@ -26,7 +26,7 @@ from harness.simulation.robot_mjcf import coupling
 from harness.simulation.servo import FeedForward
 from harness.simulation.set_points import SetPoints, sample_trajectory
 
-CHECK_EVERY = 50
+CHECK_EVERY = 100
 """Samples between looks at the path tolerance; the record tells the sample that broke it."""
 
 SETTLE_EVERY = 10

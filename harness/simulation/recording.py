@@ -160,7 +160,7 @@ class Recording:
     def _reserve(self, rows: int) -> None:
         if rows <= len(self._qpos):
             return
-        more = max(ROWS, rows - len(self._qpos))
+        more = max(len(self._qpos), rows - len(self._qpos))  # doubled, so that few copies are made
         for name in (
             "_qpos",
             "_qvel",

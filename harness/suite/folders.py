@@ -12,8 +12,8 @@ from harness.suite.discovery import SUFFIX
 def report_folders(files: Sequence[Path], root: Path) -> list[Path]:
     """The report folder of each file, no two the same and none inside another.
 
-    It repeats the file's path, without its suffix, below the bundled scenarios or else below the
-    working directory; of a file outside both, the whole path.
+    It repeats the file's path, without its suffix, below the working directory or else below the
+    bundled scenarios; of a file outside both, the whole path.
     """
     folders: list[Path] = []
     for file in files:
@@ -31,7 +31,7 @@ def _place(file: Path) -> Path:
     stem = absolute.name.removesuffix(SUFFIX).removesuffix(".yaml")
     if (absolute.parent / stem).is_dir():
         stem = absolute.name.removesuffix(".yaml")  # the plain name is the folder's beside it
-    for base in (data_folder("scenarios").resolve(), Path.cwd().resolve()):
+    for base in (Path.cwd().resolve(), data_folder("scenarios").resolve()):
         if absolute.is_relative_to(base):
             return absolute.parent.relative_to(base) / stem
     return absolute.parent.relative_to(absolute.anchor) / stem

@@ -22,7 +22,17 @@ from harness.core.errors import HarnessError
 from harness.suite.environment import use_one_thread
 from harness.suite.server import receive, send
 
-RUN_MODULES = ("harness.session", "mujoco", "pinocchio", "coal", "ompl.base", "toppra")
+RUN_MODULES = (
+    "harness.session",
+    "harness.session.timed_simulator",
+    "harness.planning.clearance",
+    "harness.cameras.stills",
+    "mujoco",
+    "pinocchio",
+    "coal",
+    "ompl.base",
+    "toppra",
+)
 """Everything that a run imports."""
 
 STOP_SECONDS = 5.0

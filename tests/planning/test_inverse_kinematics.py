@@ -9,6 +9,8 @@ from eaik.IK_HP import HPRobot
 from harness.core.spatial import SE3
 from harness.planning.kinematics import PinocchioKinematics
 from harness.ports import PoseGoal, PositionGoal
+from harness.robot.load import load_robot
+from harness.spec.scenario import RobotSpec
 from tests.planning.lesson import ARM, TCP, grasp_goal, open_manipulator, ur
 
 # Numeric inverse kinematics, 300 random starts, of ur_description 4.3.1 (the lesson's steps).
@@ -165,3 +167,22 @@ def test_link_poses_of_many_samples_are_those_of_pinocchio():
         for column, link in enumerate(description.link_names):
             expected = kinematics.link_pose(sample, link).as_vector()
             assert np.allclose(poses[row, column], expected, atol=1e-9)
+
+
+def test_a_pitch_is_against_the_horizontal_of_the_world_on_a_tilted_base_too():
+    base = {"xyz": [0.2, 0.1, 0.5], "rpy": [0.1, 0.4, 1.6]}
+    spec = RobotSpec.model_validate({"model": "open_manipulator_x", "base": base})
+    tilted = load_robot(spec)
+    kinematics = PinocchioKinematics(tilted)
+    start = tilted.start_positions()
+    here = kinematics.link_pose(start, tilted.tcp_link)
+    pitch = -float(np.arcsin(here.rotation[2, 0]))
+    goal = PositionGoal(tilted.tcp_link, here.translation, pitch)
+    solutions = kinematics.solve(tilted.arm_group, goal, start, 0)
+    assert solutions
+    for solution in solutions:
+        state = np.array(start)
+        state[list(tilted.group_indices(tilted.arm_group))] = solution
+        pose = kinematics.link_pose(state, tilted.tcp_link)
+        assert np.linalg.norm(pose.translation - here.translation) < 1e-6
+        assert -np.arcsin(pose.rotation[2, 0]) == pytest.approx(pitch, abs=1e-6)
