@@ -124,6 +124,8 @@ class CoalScene:
         found = self._find(name)
         if found.link is not None:
             raise StepFailed("INVALID_OBJECT_NAME", f"object '{name}' is attached to {found.link}")
+        if np.array_equal(found.pose.matrix(), pose.matrix()):
+            return
         self._objects[name] = replace(found, pose=pose)
         self._model = None
 
