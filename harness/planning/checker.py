@@ -54,7 +54,7 @@ class MotionChecker:
         self._pairs = model.pairs
         self._robot = model.robot.model
         self._data = self._robot.createData()
-        geometry = model.geometry
+        self._geometry = geometry = model.geometry  # kept: the manager below does not keep it
         self._geometry_data = geometry.createData()
         self._margins = self._choose_margins(start)
         requests = self._geometry_data.collisionRequests
