@@ -20,9 +20,9 @@ steps:
     id: believe
   - move_relative: {{direction: {{xyz: [0, 0, 1]}}, distance: 0.15}}
     id: lift
-  - wait: 1 s
+  - wait: 3 s
 expect:
-  - lifted: {{object: green_cylinder, above: 5 cm, for: 1 s}}
+  - lifted: {{object: green_cylinder, above: 5 cm, for: 2 s}}
   - grasped: green_cylinder
 """
 CLOSE = "gripper: {position: 0.62}"
