@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.assertions.contacts import TOUCH_FORCE, bodies_touching
+from harness.assertions.contacts import bodies_touching
 from harness.assertions.pose_arrays import rotate
 from harness.assertions.poses import object_poses
 from harness.assertions.window import NotObservable, object_record
@@ -64,14 +64,3 @@ def supports(run: Run, name: str) -> dict[str, FloatArray]:
         for body, force in bodies_touching(run, name).items()
         if body not in links
     }
-
-
-def carriers_at(run: Run, name: str, sample: int) -> list[str]:
-    """Bodies that are not the robot and touch an object at a sample, the strongest first."""
-    links = set(run.robot.link_names)
-    forces = {
-        body: float(force[sample])
-        for body, force in bodies_touching(run, name).items()
-        if body not in links and force[sample] > TOUCH_FORCE
-    }
-    return sorted(forces, key=lambda body: (-forces[body], body))

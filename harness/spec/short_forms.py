@@ -7,7 +7,6 @@ is left out, so that pydantic goes on with the rest. Every value keeps its place
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, get_args, get_origin
 
 from harness.core.errors import Problem
@@ -164,11 +163,6 @@ class _Shaper:
             return _tagged("check", found, entries)
         entries[UNTIL] = Entry(until.key, self.predicate(until.value))
         return _tagged("check", Words(UNTIL, found.entry, {}), entries)
-
-    def _take_apart(
-        self, item: Located, words: Mapping[str, type[SpecModel]], whole: str
-    ) -> Words | None:
-        return take_apart(item, words, BESIDE_CHECK, whole, "predicate", self.problems)
 
     def _not_content(self, found: Words, content: Located, model: type[SpecModel]) -> None:
         message = f"`{found.word}` takes a mapping, not {describe(content.plain())}"
