@@ -12,7 +12,12 @@ from harness.assertions.contacts import (
     side_forces,
     weld_note,
 )
-from harness.assertions.pose_arrays import (
+from harness.assertions.poses import is_round, link_poses, object_poses, present
+from harness.assertions.registry import MarginSignal, Part, all_of, signal
+from harness.assertions.temporal import episodes
+from harness.assertions.text import amount
+from harness.assertions.window import NotObservable, NotReached, Window, object_record
+from harness.core.pose_arrays import (
     angle_between,
     compose,
     conjugate,
@@ -21,11 +26,6 @@ from harness.assertions.pose_arrays import (
     rotate,
     rotation_angle,
 )
-from harness.assertions.poses import is_round, link_poses, object_poses, present
-from harness.assertions.registry import MarginSignal, Part, all_of, signal
-from harness.assertions.temporal import episodes
-from harness.assertions.text import amount
-from harness.assertions.window import NotObservable, NotReached, Window, object_record
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import Measure, Run
 from harness.spec.checks import Grasped, Released, Slip

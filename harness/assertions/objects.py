@@ -6,7 +6,13 @@ import numpy as np
 
 from harness.assertions.contacts import TOUCH_FORCE
 from harness.assertions.grasp import robot_contact
-from harness.assertions.pose_arrays import (
+from harness.assertions.poses import frame_poses, object_poses, present, speeds, start_poses
+from harness.assertions.registry import MarginSignal, Part, all_of, signal
+from harness.assertions.support import supports
+from harness.assertions.temporal import trailing_max
+from harness.assertions.text import amount
+from harness.assertions.window import Window, object_record
+from harness.core.pose_arrays import (
     angle_between,
     compose,
     conjugate,
@@ -14,12 +20,6 @@ from harness.assertions.pose_arrays import (
     rotate,
     rotation_vector,
 )
-from harness.assertions.poses import frame_poses, object_poses, present, speeds, start_poses
-from harness.assertions.registry import MarginSignal, Part, all_of, signal
-from harness.assertions.support import supports
-from harness.assertions.temporal import trailing_max
-from harness.assertions.text import amount
-from harness.assertions.window import Window, object_record
 from harness.core.types import FloatArray
 from harness.recording.run import Measure, Run
 from harness.spec.checks import Displaced, On, Placed, Static, Upright

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.assertions.pose_arrays import IDENTITY
 from harness.assertions.window import NotObservable, object_record
 from harness.core.geometry import Capsule, Cylinder, Sphere
+from harness.core.pose_arrays import IDENTITY
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import ObjectRecord, Run
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from harness.assertions.contacts import bodies_touching
-from harness.assertions.pose_arrays import rotate
 from harness.assertions.poses import object_poses
 from harness.assertions.window import NotObservable, object_record
 from harness.core.geometry import Box, Capsule, Cylinder, Sphere
+from harness.core.pose_arrays import rotate
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import ObjectRecord, Run
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.assertions.pose_arrays import compose, conjugate, quat_product, rotation_vector
 from harness.assertions.poses import frame_poses, link_poses
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
 from harness.assertions.text import amount
 from harness.assertions.window import Window
+from harness.core.pose_arrays import compose, conjugate, quat_product, rotation_vector
 from harness.recording.run import Measure
 from harness.spec.checks import PathLength, TcpPose
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from harness.assertions.pose_arrays import compose
+from harness.core.pose_arrays import compose
 from harness.core.types import FloatArray
 from harness.engine.cell import Belief
 from harness.ports import Kinematics

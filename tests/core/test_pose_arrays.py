@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from harness.assertions.pose_arrays import (
+from harness.assertions.support import lowest_points
+from harness.core.geometry import Box, Capsule, Cylinder, Shape, Sphere
+from harness.core.pose_arrays import (
     angle_between,
     compose,
     quat_product,
@@ -12,8 +14,6 @@ from harness.assertions.pose_arrays import (
     rotation_angle,
     rotation_vector,
 )
-from harness.assertions.support import lowest_points
-from harness.core.geometry import Box, Capsule, Cylinder, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.recording.run import ObjectRecord
 
