@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 
-from harness.core.geometry import Shape
+from harness.core.geometry import Rgba, Shape
 from harness.core.types import FloatArray, IntArray
 
 StepStatus = Literal["passed", "failed", "expected_error", "not_reached"]
@@ -53,6 +54,44 @@ class GripperRecord:
 
 
 @dataclass(frozen=True)
+class LinkPlacement:
+    """How a link hangs on its parent link.
+
+    Attributes:
+        pose: T_parent_link with its joint at zero (xyz, quat wxyz).
+        joint: The joint that moves it; empty when it is fixed.
+        slides: Whether that joint slides along the axis; else it turns about it.
+        axis: Unit vector in the link's frame.
+    """
+
+    link: str
+    parent: str
+    pose: Floats
+    joint: str = ""
+    slides: bool = False
+    axis: Floats = (0.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class MeshRecord:
+    """Triangles of one colour of a mesh file that links or objects look like.
+
+    Attributes:
+        path: Of the file, as `Shape.geometry` names it; it need not be there any more.
+        scale: As `Shape.geometry` says it; the vertices are scaled already.
+        vertices: Shape (V, 3) [m].
+        faces: Indices of vertices, shape (F, 3).
+        rgba: None where the file gives no colour: the shape's.
+    """
+
+    path: Path
+    scale: tuple[float, float, float]
+    vertices: FloatArray
+    faces: IntArray
+    rgba: Rgba | None = None
+
+
+@dataclass(frozen=True)
 class RobotRecord:
     """The robot as the run needs it.
 
@@ -65,6 +104,7 @@ class RobotRecord:
         urdf: The composed URDF.
         srdf: The composed SRDF.
         static_link_poses: T_world_link of `static_links` (xyz, quat wxyz).
+        placements: Every link but the root, parents first.
     """
 
     name: str
@@ -85,6 +125,7 @@ class RobotRecord:
     static_link_poses: Mapping[str, tuple[float, ...]] = field(
         default_factory=dict[str, tuple[float, ...]]
     )
+    placements: tuple[LinkPlacement, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -304,6 +345,7 @@ class Run:
         resolved: Text of the resolved scenario; runs again to the same digest.
         versions: Of every library that could change a number.
         ended_early: Why the run stopped before its last step; empty when it did not.
+        meshes: The triangles of mesh files, for pictures where the files are not.
     """
 
     scenario: str
@@ -323,3 +365,4 @@ class Run:
     resolved: str = ""
     versions: Mapping[str, str] = field(default_factory=dict[str, str])
     ended_early: str = ""
+    meshes: tuple[MeshRecord, ...] = ()

@@ -1,4 +1,4 @@
-"""A run's folder: `run.json`, `signals.npz`, `scenario.resolved.yaml`; whole, or not there."""
+"""A run's folder: its record, signals, visuals and resolved scenario; whole, or not there."""
 
 from __future__ import annotations
 
@@ -14,12 +14,14 @@ from typing import Any, get_type_hints
 import numpy as np
 
 from harness.core.errors import HarnessError
+from harness.core.geometry import Rgba
 from harness.recording.arrays import arrays_of, read_npz, signals_from, write_npz
 from harness.recording.plain import from_plain, to_plain
-from harness.recording.run import Outcome, Run, StepRecord, Verdict
+from harness.recording.run import MeshRecord, Outcome, Run, StepRecord, Verdict
 
 FORMAT = "armharness-run/1"
 RUN, SIGNALS, RESOLVED = "run.json", "signals.npz", "scenario.resolved.yaml"
+VISUALS = "visuals.npz"
 
 
 @dataclass(frozen=True)
@@ -74,6 +76,7 @@ def write_run(
         (temporary / RUN).write_text(text + "\n", encoding="utf-8")
         (temporary / RESOLVED).write_text(run.resolved, encoding="utf-8", newline="")
         write_npz(temporary / SIGNALS, arrays)
+        write_npz(temporary / VISUALS, _mesh_arrays(run))
         notes = extra(temporary) if extra is not None else ()
         _put_in_place(temporary, folder)
     except OSError as error:
@@ -103,6 +106,8 @@ def read_run(folder: Path) -> StoredRun:
                 f" this version reads {FORMAT!r}"
             )
         arrays = read_npz(folder / SIGNALS)
+        if (folder / VISUALS).is_file():
+            arrays |= read_npz(folder / VISUALS)
         return _stored(document, arrays, (folder / RESOLVED).read_bytes().decode("utf-8"))
     except (OSError, zipfile.BadZipFile, ValueError, TypeError, KeyError, AttributeError) as error:
         raise HarnessError(f"{folder} holds a damaged run: {error!r}") from error
@@ -122,7 +127,7 @@ def _document(
         entry.name
         for entry in fields(run)
         if entry.name
-        not in (*first, "seed", "steps", "findings", "versions", "signals", "resolved")
+        not in (*first, "seed", "steps", "findings", "versions", "signals", "resolved", "meshes")
     ]
     return {
         "format": FORMAT,
@@ -137,7 +142,32 @@ def _document(
         "wall_times": to_plain(wall_times),
         "clearance_cutoff": run.signals.clearance_cutoff,
         **{name: to_plain(getattr(run, name)) for name in rest},
+        "meshes": [
+            {name: to_plain(getattr(mesh, name)) for name in ("path", "scale", "rgba")}
+            for mesh in run.meshes
+        ],
     }
+
+
+def _mesh_arrays(run: Run) -> dict[str, np.ndarray[Any, Any]]:
+    arrays: dict[str, np.ndarray[Any, Any]] = {}
+    for index, mesh in enumerate(run.meshes):
+        arrays[f"meshes/{index}/vertices"] = mesh.vertices.astype(np.float32)
+        arrays[f"meshes/{index}/faces"] = mesh.faces.astype(np.int32)
+    return arrays
+
+
+def _meshes(plain: Sequence[Any], arrays: Mapping[str, Any]) -> tuple[MeshRecord, ...]:
+    return tuple(
+        MeshRecord(
+            path=Path(mesh["path"]),
+            scale=from_plain(mesh["scale"], tuple[float, float, float]),
+            vertices=arrays[f"meshes/{index}/vertices"].astype(np.float64),
+            faces=arrays[f"meshes/{index}/faces"].astype(np.int64),
+            rgba=from_plain(mesh["rgba"], Rgba | None),
+        )
+        for index, mesh in enumerate(plain)
+    )
 
 
 def _step(step: StepRecord, index: int, arrays: dict[str, np.ndarray[Any, Any]]) -> dict[str, Any]:
@@ -166,9 +196,10 @@ def _stored(document: dict[str, Any], arrays: dict[str, Any], resolved: str) -> 
     known = {
         name: from_plain(document[name], hints[name])
         for name in hints
-        if name in document and name != "signals"
+        if name in document and name not in {"signals", "meshes"}
     }
-    run = Run(**known, signals=signals, resolved=resolved)
+    meshes = _meshes(document.get("meshes", ()), arrays)
+    run = Run(**known, signals=signals, resolved=resolved, meshes=meshes)
     steps = tuple(replace(step, trajectory=_trajectory(step, arrays)) for step in run.steps)
     return StoredRun(
         run=replace(run, steps=steps),

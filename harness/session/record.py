@@ -10,6 +10,7 @@ from harness.ports import Kinematics
 from harness.recording.run import (
     GripperRecord,
     JointRecord,
+    LinkPlacement,
     RobotRecord,
     Run,
     Signals,
@@ -59,6 +60,17 @@ def robot_record(description: RobotDescription, kinematics: Kinematics) -> Robot
             name: tuple(float(x) for x in kinematics.link_pose(start, name).as_vector())
             for name in static
         },
+        placements=tuple(
+            LinkPlacement(
+                link=joint.child,
+                parent=joint.parent,
+                pose=tuple(float(x) for x in joint.pose.as_vector()),
+                joint=joint.name if joint.is_movable else "",
+                slides=joint.kind == "prismatic",
+                axis=tuple(float(x) for x in joint.axis),
+            )
+            for joint in description.joints
+        ),
     )
 
 

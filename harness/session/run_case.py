@@ -220,6 +220,7 @@ def _write(
     stills: bool,
 ) -> tuple[str, ...]:
     """Write the report folder; what a person should know of it comes back as notes."""
+    from harness.session.visuals import mesh_records
 
     def draw(target: Path) -> tuple[str, ...]:
         from harness.cameras.stills import save_stills
@@ -228,6 +229,7 @@ def _write(
         report = save_stills(program.description, program.all_objects(), run, target / "images")
         return (report.note,) if report.note else ()
 
+    run = replace(run, meshes=mesh_records(run))
     return write_run(
         folder, run, verdicts, outcome, fingerprint, dict(clock.seconds),
         extra=draw if stills else None,

@@ -17,7 +17,7 @@ from harness.core.spatial import SE3
 from harness.recording.arrays import arrays_of
 from harness.recording.digest import digest
 from harness.recording.plain import to_plain
-from harness.recording.run import Finding
+from harness.recording.run import Finding, MeshRecord
 from harness.recording.store import FORMAT, read_run, write_run
 from harness.spec.checks import Clearance, Grasped, Lifted, Static
 from tests.assertions.synthetic_run import ROBOT, attachment, lift_run, thing
@@ -29,6 +29,9 @@ EXPECTED = [
     PlacedExpectation(Clearance(at_least=0.01), "", 6),
     PlacedExpectation(Static(), "unknown", 7),
 ]
+
+TRIANGLE = np.array([[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, 0.25, 0.0]])
+RED = (1.0, 0.0, 0.0, 1.0)
 
 
 def full_run():
@@ -73,6 +76,10 @@ def full_run():
         resolved="scenario: by hand\r\nseed: 0 # ü\n",
         versions={"mujoco": "4.0.0"},
         ended_early="because",
+        meshes=(
+            MeshRecord(Path("a/b.stl"), (1.0, 1.0, 1.0), TRIANGLE, np.array([[0, 1, 2]])),
+            MeshRecord(Path("a/c.obj"), (2.0, 1.0, 1.0), TRIANGLE, np.array([[2, 1, 0]]), RED),
+        ),
     )
 
 
@@ -88,7 +95,7 @@ def names_in(folder):
 
 
 def assert_equal_runs(a, b):
-    left, right = (to_plain(replace(run, signals=None, steps=())) for run in (a, b))
+    left, right = (to_plain(replace(run, signals=None, steps=(), meshes=())) for run in (a, b))
     assert left == right
     for one, other in zip(a.steps, b.steps, strict=True):
         assert to_plain(replace(one, trajectory=None)) == to_plain(replace(other, trajectory=None))
@@ -96,6 +103,11 @@ def assert_equal_runs(a, b):
         for key, value in (one.trajectory or {}).items():
             assert type(other.trajectory[key]) is type(value)
             np.testing.assert_array_equal(other.trajectory[key], value)
+    assert len(a.meshes) == len(b.meshes)
+    for one, other in zip(a.meshes, b.meshes, strict=True):
+        assert (one.path, one.scale, one.rgba) == (other.path, other.scale, other.rgba)
+        np.testing.assert_array_equal(one.vertices, other.vertices)
+        np.testing.assert_array_equal(one.faces, other.faces)
     arrays, others = arrays_of(a.signals), arrays_of(b.signals)
     assert arrays.keys() == others.keys()
     for name, array in arrays.items():

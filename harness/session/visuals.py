@@ -1,0 +1,34 @@
+"""The triangles of every mesh file that the robot or an object looks like."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from harness.cameras.meshes import load_obj
+from harness.core.geometry import Mesh, Shape
+from harness.recording.run import MeshRecord, Run
+
+
+def mesh_records(run: Run) -> tuple[MeshRecord, ...]:
+    """What pictures of a run need when the mesh files are elsewhere.
+
+    Files that cannot be read for pictures are left out; the body then shows its other shapes.
+    """
+    records: list[MeshRecord] = []
+    for geometry in dict.fromkeys(_meshes(run)):
+        if geometry.path.suffix.lower() != ".obj":
+            continue
+        for part in load_obj(geometry):
+            records.append(
+                MeshRecord(geometry.path, geometry.scale, part.vertices, part.faces, part.rgba)
+            )
+    return tuple(records)
+
+
+def _meshes(run: Run) -> Iterator[Mesh]:
+    looks: Iterable[tuple[Shape, ...]] = (
+        *run.robot.link_visuals.values(),
+        *(obj.shapes for obj in run.objects),
+    )
+    for shapes in looks:
+        yield from (shape.geometry for shape in shapes if isinstance(shape.geometry, Mesh))
