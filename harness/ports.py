@@ -262,6 +262,37 @@ class GripperResult:
     contacts: Mapping[str, tuple[str, ...]]
 
 
+class Faults(Protocol):
+    """What can be broken in the physics while a run goes on.
+
+    Each call returns what stood before, so that a receipt can tell a fault from no change.
+    """
+
+    def set_friction(self, name: str, sliding: float) -> float:
+        """Change the sliding friction of an object's surface, its other frictions alike."""
+        ...
+
+    def weaken_gripper(self, share: float) -> float:
+        """Leave the gripper a share of its effort, (0, 1]."""
+        ...
+
+    def stall_joint(self, joint: str) -> bool:
+        """Hold a joint where it is for the rest of the run, whatever its motor does."""
+        ...
+
+    def push(self, name: str, force: FloatArray, duration: float) -> None:
+        """Push a free object at its centre of mass [N, world axes] for some time [s]."""
+        ...
+
+    def disturb_sensors(self, deviation: float, seed: int) -> float:
+        """Add white noise to the joint positions that the controllers measure [rad or m]."""
+        ...
+
+    def delay_commands(self, latency: float) -> float:
+        """Let set points reach the motors later [s]."""
+        ...
+
+
 class Simulator(Protocol):
     """The physics; time only moves inside these calls, and every sample of it is recorded.
 
@@ -277,6 +308,11 @@ class Simulator(Protocol):
     @property
     def sample_count(self) -> int:
         """Samples recorded so far."""
+        ...
+
+    @property
+    def faults(self) -> Faults:
+        """What can be broken."""
         ...
 
     def joint_positions(self) -> FloatArray:

@@ -30,8 +30,35 @@ from harness.recording.run import Signals
 from harness.robot.description import RobotDescription
 
 
+class DryFaults:
+    """The Faults port without physics: nothing breaks."""
+
+    def set_friction(self, name: str, sliding: float) -> float:
+        del name
+        return sliding
+
+    def weaken_gripper(self, share: float) -> float:
+        return share
+
+    def stall_joint(self, joint: str) -> bool:
+        del joint
+        return False
+
+    def push(self, name: str, force: FloatArray, duration: float) -> None:
+        del name, force, duration
+
+    def disturb_sensors(self, deviation: float, seed: int) -> float:
+        del seed
+        return deviation
+
+    def delay_commands(self, latency: float) -> float:
+        return latency
+
+
 class DrySimulator:
     """The Simulator port without physics: commands come true at once, time stands still."""
+
+    faults = DryFaults()
 
     def __init__(self, program: Program) -> None:
         self._description = program.description

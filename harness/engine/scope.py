@@ -123,11 +123,13 @@ class Scope:
             self.problems.unknown(loc, "planning group", name, self.description.groups)
         return name
 
-    def check_object(self, name: str, loc: Loc, *, simulated: bool = False) -> None:
+    def check_object(
+        self, name: str, loc: Loc, *, simulated: bool = False, is_key: bool = False
+    ) -> None:
         """An object of the world or of an earlier step, and one that the physics knows."""
         obj = self.objects.get(name)
         if obj is None:
-            self.problems.unknown(loc, "object", name, self.objects)
+            self.problems.unknown(loc, "object", name, self.objects, is_key=is_key)
         elif simulated and not obj.in_simulation:
             self.problems.add(
                 loc,

@@ -16,6 +16,7 @@ from harness.spec.steps import (
     DetachObject,
     Grasp,
     Gripper,
+    Inject,
     Lin,
     MoveObject,
     MoveRelative,
@@ -274,3 +275,37 @@ def _place(step: Place, at: At) -> None:
     name = step.object or next(reversed(at.scope.attached), None)
     if name is not None:
         at.scope.attached.pop(name, None)
+
+
+@check.handles(Inject)
+def _inject(step: Inject, at: At) -> None:
+    scope = at.scope
+    for name in step.friction or {}:
+        scope.check_object(name, at.key("friction", name), simulated=True, is_key=True)
+    for name in step.push or {}:
+        loc = at.key("push", name)
+        scope.check_object(name, loc, simulated=True, is_key=True)
+        if name in scope.objects:
+            scope.check_present(name, loc)
+            if scope.objects[name].is_static:
+                scope.problems.add(loc, f"'{name}' is static: no push moves it")
+    if step.push is not None:
+        scope.take_time(step.push_duration * len(step.push), at.key("push_duration"))
+    if step.gripper_effort is not None:
+        scope.check_gripper(at.key("gripper_effort"), "`gripper_effort`")
+    _check_stall(step.joint_stall, at)
+
+
+def _check_stall(name: str | None, at: At) -> None:
+    if name is None:
+        return
+    description = at.scope.description
+    joint = description.joint_by_name.get(name)
+    if joint is None:
+        at.scope.problems.unknown(at.key("joint_stall"), "joint", name, description.joint_names)
+    elif joint.mimic is not None:
+        at.scope.problems.add(
+            at.key("joint_stall"),
+            f"'{name}' follows '{joint.mimic.joint}'",
+            f"stall '{joint.mimic.joint}'",
+        )

@@ -14,6 +14,7 @@ from harness.spec.steps import (
     ClearObjects,
     Grasp,
     Gripper,
+    Inject,
     MoveRelative,
     RemoveObject,
     Wait,
@@ -60,11 +61,28 @@ def _content(step: AnyStep) -> str:
             return "with the world's" if step.world else ""
         case AllowCollisions():
             return ", ".join(f"{a}-{b}" for a, b in step.pairs)
+        case Inject():
+            return ", ".join(_faults(step))
         case Wait():
             return f"{step.duration:g} s"
         case _:
             name = getattr(step, "object", None)
             return name if isinstance(name, str) else ""
+
+
+def _faults(step: Inject) -> list[str]:
+    """`friction of green_cylinder 0.02`, and so on."""
+    said = [f"friction of {name} {value:g}" for name, value in (step.friction or {}).items()]
+    said += [f"push {name}" for name in step.push or {}]
+    if step.gripper_effort is not None:
+        said.append(f"gripper effort {step.gripper_effort:.0%}")
+    if step.joint_stall is not None:
+        said.append(f"stall {step.joint_stall}")
+    if step.sensor_noise is not None:
+        said.append(f"sensor noise {step.sensor_noise:g} rad")
+    if step.command_latency is not None:
+        said.append(f"latency {step.command_latency * 1e3:g} ms")
+    return said
 
 
 def _goal(goal: GoalFields) -> str:

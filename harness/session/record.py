@@ -17,6 +17,7 @@ from harness.recording.run import (
 )
 from harness.robot.description import RobotDescription
 from harness.session.findings import findings_of
+from harness.session.receipts import with_receipts
 
 LIBRARIES = ("armharness", "mujoco", "pin", "coal", "ompl", "toppra", "numpy")
 
@@ -100,20 +101,22 @@ def run_record(
     resolved: str,
 ) -> Run:
     """Everything that happened, in one noun."""
+    robot = robot_record(program.description, kinematics)
+    steps, findings = with_receipts(execution.steps, signals, robot, execution.objects)
     return Run(
         scenario=program.title,
         file=file,
         case="",
         seed=program.seed,
-        robot=robot_record(program.description, kinematics),
+        robot=robot,
         objects=execution.objects,
         attachments=execution.attachments,
-        steps=execution.steps,
+        steps=steps,
         signals=signals,
         gravity=program.world.gravity,
         timestep=program.world.timestep,
         allowed_contacts=tuple(sorted(program.description.allowed_collisions)),
-        findings=findings_of(execution.steps),
+        findings=(*findings_of(steps), *findings),
         source=source,
         resolved=resolved,
         versions={name: version(name) for name in LIBRARIES},

@@ -18,6 +18,7 @@ from harness.ports import GripperResult
 from harness.recording.run import Signals
 from harness.robot.description import RobotDescription
 from harness.simulation.contact_report import contact_words, strongest_contacts
+from harness.simulation.faults import Faults
 from harness.simulation.gripper_drive import GripperDrive
 from harness.simulation.model import build_model
 from harness.simulation.objects import Objects
@@ -76,6 +77,8 @@ class MujocoSimulator:
         self._command = description.start_positions()[self.physics.actuated]
         self._control = self._controls(self._still(self._command))[0]
         self._data.ctrl[:] = self._control
+        self._grip: tuple[int, float] | None = None  # actuator, effort it may press with
+        self.faults = Faults(self, self.physics, self._data)
         self._recording = Recording(self.physics, self._data)
         refresh(self._model, self._data)
         self._recording.start(self._command)
@@ -118,7 +121,7 @@ class MujocoSimulator:
         for begin in range(0, len(points) - 1, CHECK_EVERY):
             end = min(begin + CHECK_EVERY, len(points) - 1)
             first = self._recording.count
-            self._recording.advance(
+            self._advance(
                 controls[begin : end + 1],
                 whole.positions[begin + 1 : end + 1],
                 whole.velocities[begin + 1 : end + 1],
@@ -195,7 +198,7 @@ class MujocoSimulator:
         """Hold the last commands for some samples."""
         self._recording.refuse_beyond(count)
         shape = (count, len(self._command))
-        self._recording.advance(
+        self._advance(
             np.broadcast_to(self._control, (count + 1, len(self._command))),
             np.broadcast_to(self._command, shape),
             np.zeros(shape),
@@ -203,16 +206,23 @@ class MujocoSimulator:
 
     def limit_grip(self, actuator: int, effort: float) -> None:
         """Let a gripper press with some effort, beside what now holds its own weight."""
+        self._grip = actuator, effort
+        effort *= self.faults.grip_share
         largest = self.physics.servos.effort[actuator]
         still = np.zeros((1, len(self.physics.qpos)))
         weight = self._feed_forward(self.joint_positions()[None], still, still)[0, actuator]
         limits = np.clip([weight - effort, weight + effort], -largest, largest)
         self._model.actuator_forcerange[actuator] = limits
 
+    def press_again(self) -> None:
+        """Renew the gripper's effort limit."""
+        if self._grip is not None:
+            self.limit_grip(*self._grip)
+
     def follow(self, whole: SetPoints, begin: int, end: int) -> None:
         """Advance along set points of all actuated joints from row `begin` to row `end`."""
         part = SetPoints(*(rows[begin : end + 1] for rows in vars(whole).values()))
-        self._recording.advance(self._controls(part), part.positions[1:], part.velocities[1:])
+        self._advance(self._controls(part), part.positions[1:], part.velocities[1:])
         self._command = part.positions[-1]
 
     def whole(self, points: SetPoints, columns: IntArray) -> SetPoints:
@@ -224,6 +234,12 @@ class MujocoSimulator:
         velocities[:, columns] = points.velocities
         accelerations[:, columns] = points.accelerations
         return SetPoints(positions, velocities, accelerations)
+
+    def _advance(
+        self, controls: FloatArray, commands: FloatArray, command_velocities: FloatArray
+    ) -> None:
+        """Step with what reaches the motors of the controls; the record has what was commanded."""
+        self._recording.advance(self.faults.distorted(controls), commands, command_velocities)
 
     def _actuated_columns(self, joint_names: Sequence[str]) -> IntArray:
         places = [self.description.joint_index[name] for name in joint_names]
@@ -247,7 +263,8 @@ class MujocoSimulator:
     def _refuse_lag(self, first: int, wanted: FloatArray, columns: IntArray) -> None:
         tolerance = self.description.tracking.trajectory
         joints = self.physics.actuated[columns]
-        errors = np.abs(self._recording.joint_positions(first)[:, joints] - wanted)
+        noise = self.faults.measured_noise(len(wanted))[:, columns]
+        errors = np.abs(self._recording.joint_positions(first)[:, joints] + noise - wanted)
         beyond = np.flatnonzero((errors > tolerance).any(axis=1))
         if len(beyond):
             row = int(beyond[0])
@@ -258,7 +275,8 @@ class MujocoSimulator:
         joints = self.physics.actuated[columns]
         deadline = self.time + tracking.goal_time
         while True:
-            errors = np.abs(self.joint_positions()[joints] - goal)
+            noise = self.faults.measured_noise(1)[-1, columns]
+            errors = np.abs(self.joint_positions()[joints] + noise - goal)
             if (errors <= tracking.goal).all():
                 return
             if self.time >= deadline:

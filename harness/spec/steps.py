@@ -35,6 +35,7 @@ from harness.spec.poses import Direction, Pose
 from harness.spec.world import ObjectSpec
 
 GripperAction = Literal["friction", "weld"]
+PushForce = tuple[Force, Force, Force]
 
 
 class StepFields(SpecModel):
@@ -422,25 +423,46 @@ class Settle(StepFields):
 
 
 class Inject(StepFields):
-    """A fault, with a receipt."""
+    """A fault of the physics, with a receipt: `landed`, or `no_effect` and why.
+
+    A push lasts `push_duration`; every other fault lasts until another `inject` sets it back.
+    """
 
     do: Literal["inject"] = "inject"
-    friction: dict[Name, Annotated[Number, Field(ge=0)]] | None = Field(
-        default=None, description="Object -> sliding friction."
+    friction: dict[Name, Annotated[Number, Field(ge=0, le=100)]] | None = Field(
+        default=None, description="Object -> coefficient of sliding friction of its surface."
     )
     gripper_effort: Fraction | None = Field(
-        default=None, description="Share of the effort that is left."
+        default=None, description="Share of its effort that the gripper has left; 1 sets it back."
     )
-    joint_stall: Name | None = Field(default=None, description="The joint that no longer moves.")
-    push: dict[Name, tuple[Force, Force, Force]] | None = Field(
+    joint_stall: Name | None = Field(
+        default=None, description="The joint that stays where it is from now on."
+    )
+    push: dict[Name, PushForce] | None = Field(
         default=None, description="Object -> force [N] along the world's x, y, z."
     )
+    push_duration: PositiveDuration = Field(
+        default=0.1, description="How long a push lasts; the step takes so long [s]."
+    )
     sensor_noise: Annotated[Angle, Field(ge=0)] | None = Field(
-        default=None, description="Standard deviation of measured joint positions [rad]."
+        default=None,
+        description="Standard deviation of measured joint positions [rad or m]; 0 sets it back.",
     )
-    command_latency: Duration | None = Field(
-        default=None, description="Commands arrive so much later [s]."
+    command_latency: Annotated[Duration, Field(le=1)] | None = Field(
+        default=None, description="Commands reach the motors so much later [s]; 0 sets it back."
     )
+
+    @model_validator(mode="after")
+    def _any(self) -> Inject:
+        faults = self.model_fields_set - StepFields.model_fields.keys() - {"do", "push_duration"}
+        if not faults:
+            raise ValueError(
+                "say which fault: friction, gripper_effort, joint_stall, push, sensor_noise,"
+                " command_latency"
+            )
+        if "push_duration" in self.model_fields_set and self.push is None:
+            raise ValueError("`push_duration` goes with `push`")
+        return self
 
 
 class Repeat(StepFields):

@@ -1,0 +1,134 @@
+"""Breaks things in a running physics: surfaces, motors, sensors, the way of commands."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import mujoco
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.simulation.model import PhysicsModel
+
+STALL_SOLREF = (0.002, 1.0)
+"""Time constant [s] and damping ratio of the stop that holds a stalled joint."""
+
+STALL_SOLIMP = (0.9999, 0.9999, 0.001, 0.5, 2.0)
+"""Its impedance: no motor moves the joint by 1e-4 rad."""
+
+
+class Holding(Protocol):
+    """The part of the simulator that a push and a weak grip need."""
+
+    def hold(self, duration: float) -> None: ...
+    def press_again(self) -> None: ...
+
+
+class Faults:
+    """What is broken; the simulator asks `distorted` for what its motors really get."""
+
+    def __init__(self, simulator: Holding, physics: PhysicsModel, data: mujoco.MjData) -> None:
+        self._simulator = simulator
+        self._physics = physics
+        self._data = data
+        self.grip_share = 1.0
+        self._stalled: set[str] = set()
+        self._deviation = 0.0
+        self._latency = 0.0
+        self._waiting = np.empty((0, len(physics.actuated)))  # controls on their way, oldest first
+        self._rng = np.random.default_rng(0)
+        self.noise = np.zeros((1, len(physics.actuated)))  # of the samples advanced last
+
+    def set_friction(self, name: str, sliding: float) -> float:
+        """Change the sliding friction of an object's surface, its other frictions alike."""
+        model, place = self._physics.model, self._physics.objects[name]
+        old = place.obj.friction
+        before = float(model.geom_friction[place.geoms][0, 0])
+        ratio = sliding / old.sliding if old.sliding > 0 else 1.0
+        new = (sliding, old.torsional * ratio, old.rolling * ratio)
+        model.geom_friction[place.geoms] = new
+        self._rank_surfaces()
+        self._set_pair_frictions(range(place.geoms.start, place.geoms.stop))
+        return before
+
+    def weaken_gripper(self, share: float) -> float:
+        """Leave the gripper a share of its effort, now and for every later command."""
+        before, self.grip_share = self.grip_share, share
+        self._simulator.press_again()
+        return before
+
+    def stall_joint(self, joint: str) -> bool:
+        """Hold a joint where it is by closing its range; its motor goes on pulling."""
+        model, physics = self._physics.model, self._physics
+        index = physics.description.joint_index[joint]
+        mujoco_joint = int(model.dof_jntid[physics.dof[index]])
+        model.jnt_limited[mujoco_joint] = True
+        model.jnt_range[mujoco_joint] = float(self._data.qpos[physics.qpos[index]])
+        model.jnt_solref[mujoco_joint] = STALL_SOLREF
+        model.jnt_solimp[mujoco_joint] = STALL_SOLIMP
+        was_stalled = joint in self._stalled
+        self._stalled.add(joint)
+        return was_stalled
+
+    def push(self, name: str, force: FloatArray, duration: float) -> None:
+        """Push a free object at its centre of mass."""
+        body = self._physics.objects[name].body
+        self._data.xfrc_applied[body, :3] = force
+        self._simulator.hold(duration)
+        self._data.xfrc_applied[body] = 0.0
+
+    def disturb_sensors(self, deviation: float, seed: int) -> float:
+        """Add white noise to the positions that the servos and their tolerances see."""
+        before, self._deviation = self._deviation, deviation
+        self._rng = np.random.default_rng(seed)
+        self.noise = self._draw(1)
+        return before
+
+    def delay_commands(self, latency: float) -> float:
+        """Let set points wait on their way to the motors; the present ones fill the wait."""
+        before, self._latency = self._latency, latency
+        samples = round(latency / self._physics.model.opt.timestep)
+        self._waiting = np.tile(self._data.ctrl, (samples, 1))
+        return before
+
+    def distorted(self, controls: FloatArray) -> FloatArray:
+        """What the motors get for controls that are sent, shape (N + 1, m) both.
+
+        Noise of a measured position acts on a servo as its negative does in the control.
+        """
+        if not len(self._waiting) and not self._deviation:
+            return controls
+        count = len(controls) - 1
+        sent = np.concatenate([self._waiting, controls])
+        arrived, self._waiting = sent[: count + 1], sent[count : len(sent) - 1]
+        if self._deviation:
+            self.noise = np.concatenate([self.noise[-1:], self._draw(count)])
+            return arrived - self.noise
+        return arrived
+
+    def measured_noise(self, samples: int) -> FloatArray:
+        """Noise in the measurements of the last samples advanced, (samples, m), or zero alike."""
+        if not self._deviation:
+            return np.zeros((1, self.noise.shape[1]))
+        return self.noise[-samples:]
+
+    def _draw(self, samples: int) -> FloatArray:
+        return self._rng.normal(0.0, self._deviation, (samples, self.noise.shape[1]))
+
+    def _rank_surfaces(self) -> None:
+        """Give the most slippery surface the highest priority, as `Surfaces` does at the start."""
+        model = self._physics.model
+        frictions = [tuple(row) for row in model.geom_friction]
+        ranked = sorted(set(frictions), reverse=True)
+        model.geom_priority[:] = [ranked.index(friction) for friction in frictions]
+
+    def _set_pair_frictions(self, geoms: range) -> None:
+        model = self._physics.model
+        for pair in range(model.npair):
+            first, second = int(model.pair_geom1[pair]), int(model.pair_geom2[pair])
+            if first in geoms or second in geoms:
+                smaller = min(tuple(model.geom_friction[first]), tuple(model.geom_friction[second]))
+                sliding, torsional, rolling = smaller
+                model.pair_friction[pair] = sliding, sliding, torsional, rolling, rolling
