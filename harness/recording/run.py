@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from harness.core.camera import Camera
 from harness.core.geometry import Rgba, Shape
 from harness.core.types import FloatArray, IntArray
 
@@ -280,6 +281,65 @@ class Finding:
     values: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
 
+@dataclass(frozen=True)
+class CaptureRecord:
+    """Pictures that a camera took in one moment, all of the same recorded state.
+
+    Attributes:
+        camera: Name of one of `Run.cameras`.
+        time: Simulation time [s].
+        sample: Index into the signals.
+        step: Id of the `capture` step; empty when an expectation wanted to look.
+        backend: Who drew them: `rays`, the same on every machine.
+        files: Path in `Run.files` by kind: `color` (PNG or JPEG, with the camera's noise), `depth`
+            (.npz, array `depth` of float32 metres along the optical axis, shape (height, width),
+            inf where nothing is within the clip distances), `segmentation` (PNG of `labels`), and
+            `depth_preview`, `segmentation_preview` (PNG in colours, for people).
+        pose: T_world_optical (xyz, quat wxyz): z forward, x right, y down.
+        labels: Pixel value in `segmentation` of every link and object; 0 is none of them.
+        outlines: Pixels that each object would have if nothing hid it and the picture had no edge;
+            with `segmentation`, for those in front of the camera.
+    """
+
+    camera: str
+    time: float
+    sample: int
+    step: str = ""
+    backend: str = "rays"
+    files: Mapping[str, str] = field(default_factory=dict[str, str])
+    pose: Floats = ()
+    labels: Mapping[str, int] = field(default_factory=dict[str, int])
+    outlines: Mapping[str, int] = field(default_factory=dict[str, int])
+
+
+@dataclass(frozen=True)
+class VideoRecord:
+    """What a camera saw all along.
+
+    Attributes:
+        camera: Name of one of `Run.cameras`.
+        file: VP8 WebM in `Run.files`; frame i is shown at i / `rate` of the video's own clock.
+        times: Simulation time of every frame [s], rising evenly by 1 / `rate`.
+        rate: Frames a second of simulated time.
+        width: In pixels.
+        height: In pixels.
+        backend: Who drew it: `egl`, `osmesa` or `rays`.
+        frames: In `Run.files`: the same frames as JPEG of the camera's quality and size, one behind
+            the other (a Motion JPEG stream); empty when not kept.
+        frame_offsets: Where each JPEG begins in `frames`, and where the last ends.
+    """
+
+    camera: str
+    file: str
+    times: Floats
+    rate: float
+    width: int
+    height: int
+    backend: str
+    frames: str = ""
+    frame_offsets: tuple[int, ...] = ()
+
+
 @dataclass(frozen=True, eq=False)
 class Signals:
     """Recorded arrays; row i of each belongs to `times[i]`.
@@ -346,6 +406,11 @@ class Run:
         versions: Of every library that could change a number.
         ended_early: Why the run stopped before its last step; empty when it did not.
         meshes: The triangles of mesh files, for pictures where the files are not.
+        cameras: Every camera of robot, world and scenario.
+        captures: Pictures taken, in order of time.
+        videos: Of the cameras that were recorded all along.
+        files: Content of the pictures and videos by path in the run's folder; a saved run reads
+            each when it is asked for.
     """
 
     scenario: str
@@ -366,3 +431,7 @@ class Run:
     versions: Mapping[str, str] = field(default_factory=dict[str, str])
     ended_early: str = ""
     meshes: tuple[MeshRecord, ...] = ()
+    cameras: tuple[Camera, ...] = ()
+    captures: tuple[CaptureRecord, ...] = ()
+    videos: tuple[VideoRecord, ...] = ()
+    files: Mapping[str, bytes] = field(default_factory=dict[str, bytes], repr=False)

@@ -16,12 +16,15 @@ import numpy as np
 from harness.core.errors import HarnessError
 from harness.core.geometry import Rgba
 from harness.recording.arrays import arrays_of, read_npz, signals_from, write_npz
+from harness.recording.files import FolderFiles, checked, write_files
 from harness.recording.plain import from_plain, to_plain
 from harness.recording.run import MeshRecord, Outcome, Run, StepRecord, Verdict
 
 FORMAT = "armharness-run/1"
 RUN, SIGNALS, RESOLVED = "run.json", "signals.npz", "scenario.resolved.yaml"
 VISUALS = "visuals.npz"
+APART = ("seed", "steps", "findings", "versions", "signals", "resolved", "meshes", "files")
+"""Fields of a run that have a place of their own in its folder."""
 
 
 @dataclass(frozen=True)
@@ -77,6 +80,7 @@ def write_run(
         (temporary / RESOLVED).write_text(run.resolved, encoding="utf-8", newline="")
         write_npz(temporary / SIGNALS, arrays)
         write_npz(temporary / VISUALS, _mesh_arrays(run))
+        write_files(temporary, run.files)
         notes = extra(temporary) if extra is not None else ()
         _put_in_place(temporary, folder)
     except OSError as error:
@@ -108,7 +112,8 @@ def read_run(folder: Path) -> StoredRun:
         arrays = read_npz(folder / SIGNALS)
         if (folder / VISUALS).is_file():
             arrays |= read_npz(folder / VISUALS)
-        return _stored(document, arrays, (folder / RESOLVED).read_bytes().decode("utf-8"))
+        stored = _stored(document, arrays, (folder / RESOLVED).read_bytes().decode("utf-8"))
+        return replace(stored, run=replace(stored.run, files=_files(folder, stored.run)))
     except (OSError, zipfile.BadZipFile, ValueError, TypeError, KeyError, AttributeError) as error:
         raise HarnessError(f"{folder} holds a damaged run: {error!r}") from error
 
@@ -123,12 +128,7 @@ def _document(
 ) -> dict[str, Any]:
     """The content of run.json; arrays of trajectories go into `arrays`."""
     first = ("scenario", "file", "case")
-    rest = [
-        entry.name
-        for entry in fields(run)
-        if entry.name
-        not in (*first, "seed", "steps", "findings", "versions", "signals", "resolved", "meshes")
-    ]
+    rest = [entry.name for entry in fields(run) if entry.name not in (*first, *APART)]
     return {
         "format": FORMAT,
         **{name: getattr(run, name) for name in first},
@@ -147,6 +147,13 @@ def _document(
             for mesh in run.meshes
         ],
     }
+
+
+def _files(folder: Path, run: Run) -> FolderFiles:
+    names = [checked(name) for capture in run.captures for name in capture.files.values()]
+    for video in run.videos:
+        names += [checked(name) for name in (video.file, video.frames) if name]
+    return FolderFiles(folder, names)
 
 
 def _mesh_arrays(run: Run) -> dict[str, np.ndarray[Any, Any]]:

@@ -11,13 +11,14 @@ import pytest
 
 from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
+from harness.core.camera import Camera
 from harness.core.errors import HarnessError
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.recording.arrays import arrays_of
 from harness.recording.digest import digest
 from harness.recording.plain import to_plain
-from harness.recording.run import Finding, MeshRecord
+from harness.recording.run import CaptureRecord, Finding, MeshRecord, VideoRecord
 from harness.recording.store import FORMAT, read_run, write_run
 from harness.spec.checks import Clearance, Grasped, Lifted, Static
 from tests.assertions.synthetic_run import ROBOT, attachment, lift_run, thing
@@ -80,6 +81,37 @@ def full_run():
             MeshRecord(Path("a/b.stl"), (1.0, 1.0, 1.0), TRIANGLE, np.array([[0, 1, 2]])),
             MeshRecord(Path("a/c.obj"), (2.0, 1.0, 1.0), TRIANGLE, np.array([[2, 1, 0]]), RED),
         ),
+        cameras=(Camera("eye", "palm", pose, width=4, height=2),),
+        captures=(
+            CaptureRecord(
+                "eye",
+                0.5,
+                50,
+                "look",
+                files={"color": "cameras/eye/1.png"},
+                pose=(0.1, 0, 0, 1, 0, 0, 0),
+                labels={"box": 1},
+                outlines={"box": 7},
+            ),
+        ),
+        videos=(
+            VideoRecord(
+                "eye",
+                "cameras/eye/all.webm",
+                (0.0, 0.1),
+                10.0,
+                4,
+                2,
+                "rays",
+                "cameras/eye/all.mjpeg",
+                (0, 3, 5),
+            ),
+        ),
+        files={
+            "cameras/eye/1.png": b"picture",
+            "cameras/eye/all.webm": b"film",
+            "cameras/eye/all.mjpeg": b"aaabb",
+        },
     )
 
 
@@ -95,8 +127,11 @@ def names_in(folder):
 
 
 def assert_equal_runs(a, b):
-    left, right = (to_plain(replace(run, signals=None, steps=(), meshes=())) for run in (a, b))
+    left, right = (
+        to_plain(replace(run, signals=None, steps=(), meshes=(), files={})) for run in (a, b)
+    )
     assert left == right
+    assert dict(a.files) == dict(b.files)
     for one, other in zip(a.steps, b.steps, strict=True):
         assert to_plain(replace(one, trajectory=None)) == to_plain(replace(other, trajectory=None))
         assert (one.trajectory is None) == (other.trajectory is None)
@@ -246,3 +281,33 @@ def test_a_pickle_in_the_signals_is_not_opened(tmp_path):
     np.savez(tmp_path / "run" / "signals.npz", times=np.array([{"a": 1}], dtype=object))
     with pytest.raises(HarnessError, match="damaged"):
         read_run(tmp_path / "run")
+
+
+@pytest.mark.parametrize("name", ["../secret.png", "/etc/hostname", "images/../../x", ""])
+def test_a_picture_outside_of_the_folder_makes_a_damaged_run(tmp_path, name):
+    written(tmp_path / "run")
+    document = json.loads((tmp_path / "run" / "run.json").read_text())
+    document["captures"][0]["files"]["color"] = name
+    (tmp_path / "run" / "run.json").write_text(json.dumps(document))
+    with pytest.raises(HarnessError, match="no path inside"):
+        read_run(tmp_path / "run")
+
+
+def test_a_picture_that_links_out_of_the_folder_is_not_read(tmp_path):
+    written(tmp_path / "run")
+    picture = tmp_path / "run" / "cameras" / "eye" / "1.png"
+    picture.unlink()
+    (tmp_path / "secret").write_bytes(b"secret")
+    picture.symlink_to(tmp_path / "secret")
+    with pytest.raises(HarnessError, match="leads out of"):
+        read_run(tmp_path / "run").run.files["cameras/eye/1.png"]
+
+
+def test_a_run_saved_before_there_were_cameras_is_read(tmp_path):
+    written(tmp_path / "run")
+    document = json.loads((tmp_path / "run" / "run.json").read_text())
+    for key in ("cameras", "captures", "videos"):
+        del document[key]
+    (tmp_path / "run" / "run.json").write_text(json.dumps(document))
+    run = read_run(tmp_path / "run").run
+    assert (run.cameras, run.captures, run.videos, dict(run.files)) == ((), (), (), {})

@@ -1,0 +1,90 @@
+"""A camera with every number known: a pinhole with square pixels, as SDF's camera sensor."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+
+OPTICAL = SE3(np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]), np.zeros(3))
+"""T_camera_optical: from x forward, z up to z forward, x right, y down (ROS REP 103)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Camera:
+    """A camera fixed to a frame; looks along +x of its own frame, z up in the picture.
+
+    Attributes:
+        name: Unique in a run.
+        frame: What carries it: a robot link, an object, or `world`.
+        pose: T_frame_camera.
+        horizontal_fov: Angle between the picture's left and right edge [rad].
+        width: In pixels.
+        height: In pixels.
+        is_grey: One channel (SDF's `L8`) instead of three (`R8G8B8`).
+        clip_near: Nothing nearer along the optical axis is seen [m].
+        clip_far: Nothing farther along the optical axis is seen [m].
+        noise_mean: Of Gaussian noise on every channel, as a share of full white.
+        noise_stddev: Of the same.
+        update_rate: Pictures a second of simulated time; the first is taken at time 0.
+        optical_frame_id: What message headers call the optical frame.
+        jpeg_quality: Of compressed pictures, 1 to 100.
+    """
+
+    name: str
+    frame: str
+    pose: SE3 = field(default_factory=SE3.identity)
+    horizontal_fov: float = 1.0471975511965976
+    width: int = 640
+    height: int = 480
+    is_grey: bool = False
+    clip_near: float = 0.01
+    clip_far: float = 15.0
+    noise_mean: float = 0.0
+    noise_stddev: float = 0.0
+    update_rate: float = 20.0
+    optical_frame_id: str = ""
+    jpeg_quality: int = 80
+
+    @property
+    def focal_length(self) -> float:
+        """In pixels, the same along both axes of the picture."""
+        return 0.5 * self.width / math.tan(0.5 * self.horizontal_fov)
+
+    @property
+    def vertical_fov(self) -> float:
+        """Angle between the picture's upper and lower edge [rad]."""
+        return 2.0 * math.atan(0.5 * self.height / self.focal_length)
+
+    @property
+    def matrix(self) -> FloatArray:
+        """K of sensor_msgs/CameraInfo, shape (3, 3); the principal point is the centre.
+
+        A pixel's index is the floor of the projected point: pixel (i, j) covers [i, i+1) x [j, j+1)
+        and its ray goes through its middle.
+        """
+        f = self.focal_length
+        return np.array([[f, 0, 0.5 * self.width], [0, f, 0.5 * self.height], [0, 0, 1.0]])
+
+    @property
+    def optical_pose(self) -> SE3:
+        """T_frame_optical: z forward, x right, y down."""
+        return self.pose @ OPTICAL
+
+    def project(self, points: FloatArray) -> FloatArray:
+        """Where points of the optical frame are in the picture.
+
+        Args:
+            points: In the optical frame [m], shape (N, 3).
+
+        Returns:
+            (u, v) in pixels from the upper left corner, shape (N, 2); NaN behind the camera.
+        """
+        projected = points @ self.matrix.T
+        with np.errstate(divide="ignore", invalid="ignore"):
+            pixels = projected[:, :2] / projected[:, 2:]
+        return np.where(points[:, 2:] > 0, pixels, np.nan)

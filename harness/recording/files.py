@@ -1,0 +1,53 @@
+"""Pictures and videos of a run: encoded files by their path in the run's folder."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path, PurePosixPath
+
+from harness.core.errors import HarnessError
+
+
+class FolderFiles(Mapping[str, bytes]):
+    """Files of a saved run, read when they are asked for."""
+
+    def __init__(self, folder: Path, names: Iterable[str]) -> None:
+        self._folder = folder
+        self._names = dict.fromkeys(names)
+
+    def __getitem__(self, name: str) -> bytes:
+        if name not in self._names:
+            raise KeyError(name)
+        path = (self._folder / checked(name)).resolve()
+        if not path.is_relative_to(self._folder.resolve()):
+            raise HarnessError(f"{self._folder / name} leads out of the run's folder")
+        try:
+            return path.read_bytes()
+        except OSError as error:
+            raise HarnessError(f"{path} cannot be read: {error.strerror or error}") from error
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
+def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
+    """Write every file below a folder, in order of their names."""
+    for name in sorted(files):
+        path = folder / checked(name)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(files[name])
+
+
+def checked(name: str) -> str:
+    """The name, if it stays below the folder it is relative to.
+
+    Raises:
+        ValueError: It does not.
+    """
+    parts = PurePosixPath(name).parts
+    if not parts or name.startswith("/") or ".." in parts or "\\" in name or "\0" in name:
+        raise ValueError(f"'{name}' is no path inside a run's folder")
+    return name
