@@ -58,6 +58,21 @@ class Mesh:
 Geometry = Box | Cylinder | Sphere | Capsule | Plane | Mesh
 
 
+@dataclass(frozen=True)
+class Friction:
+    """Coulomb coefficients of a surface; a contact takes the smaller of its two, as Gazebo's ODE.
+
+    Attributes:
+        sliding: Dimensionless.
+        torsional: About the contact normal [m].
+        rolling: Against rolling [m].
+    """
+
+    sliding: float = 1.0
+    torsional: float = 0.005
+    rolling: float = 0.0001
+
+
 @dataclass(frozen=True, eq=False)
 class Shape:
     """A geometry placed on a body.
@@ -67,12 +82,14 @@ class Shape:
         pose: T_body_shape.
         rgba: Colour, each 0..1.
         name: Unique on its body where a file names it; else empty.
+        friction: Of this shape's surface; None for that of its body.
     """
 
     geometry: Geometry
     pose: SE3 = field(default_factory=SE3.identity)
     rgba: Rgba = (0.6, 0.6, 0.6, 1.0)
     name: str = ""
+    friction: Friction | None = None
 
 
 def bounding_radius(shape: Shape) -> float:

@@ -4,24 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from harness.core.geometry import Shape
+from harness.core.geometry import Friction, Shape
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-
-
-@dataclass(frozen=True)
-class Friction:
-    """Coulomb coefficients of a surface; a contact takes the smaller of its two, as Gazebo's ODE.
-
-    Attributes:
-        sliding: Dimensionless.
-        torsional: About the contact normal [m].
-        rolling: Against rolling [m].
-    """
-
-    sliding: float = 1.0
-    torsional: float = 0.005
-    rolling: float = 0.0001
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +21,7 @@ class WorldObject:
         mass: [kg]; 0 for static objects.
         center_of_mass: In the body frame [m], shape (3,).
         inertia: About the centre of mass, body axes [kg m^2], shape (3, 3).
-        friction: Of its surface.
+        friction: Of its surface, where a shape has none of its own.
         in_planning: The planning scene knows it.
         in_simulation: The physics knows it.
         visuals: What pictures show instead of `shapes`, where it differs.
@@ -53,6 +38,10 @@ class WorldObject:
     in_planning: bool = True
     in_simulation: bool = True
     visuals: tuple[Shape, ...] = ()
+
+    def friction_of(self, shape: Shape) -> Friction:
+        """What counts on one of its shapes."""
+        return self.friction if shape.friction is None else shape.friction
 
 
 @dataclass(frozen=True)

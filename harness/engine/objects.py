@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import numpy as np
 
-from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Rgba, Shape, Sphere
+from harness.core.geometry import (
+    Box,
+    Capsule,
+    Cylinder,
+    Friction,
+    Geometry,
+    Mesh,
+    Plane,
+    Rgba,
+    Shape,
+    Sphere,
+)
+from harness.core.solids import solid_of
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.core.world import Friction, Light, World, WorldObject
+from harness.core.world import Light, World, WorldObject
 from harness.spec.world import FrictionSpec, ObjectSpec, ShapeSpec, WorldSpec
 
 DEFAULT_DENSITY = 1000.0  # [kg/m^3]
@@ -33,7 +44,7 @@ def resolve_object(spec: ObjectSpec, pose: SE3, base_dir: Path) -> WorldObject:
         ObjectUnusableError: A dynamic object of meshes or planes without mass and inertia, or a
             mesh file that is not there.
     """
-    parts = spec.shapes or (spec,)
+    parts = spec.shapes or ((spec,) if _has_geometry(spec) else ())
     shapes = tuple(_shape(part, spec.color, base_dir) for part in parts)
     mass, center, inertia = 0.0, np.array(spec.center_of_mass, dtype=float), np.zeros((3, 3))
     if not spec.static:
@@ -49,6 +60,7 @@ def resolve_object(spec: ObjectSpec, pose: SE3, base_dir: Path) -> WorldObject:
         friction=_friction(spec.friction),
         in_planning=spec.in_ in ("planning", "both"),
         in_simulation=spec.in_ in ("simulation", "both"),
+        visuals=tuple(_shape(part, spec.color, base_dir) for part in spec.visuals),
     )
 
 
@@ -63,6 +75,11 @@ def resolve_world(spec: WorldSpec, objects: tuple[WorldObject, ...]) -> World:
             Light(light.direction, light.diffuse[:3], light.casts_shadow) for light in spec.lights
         ),
     )
+
+
+def _has_geometry(spec: ObjectSpec) -> bool:
+    kinds = (spec.box, spec.cylinder, spec.sphere, spec.capsule, spec.plane, spec.mesh)
+    return any(kind is not None for kind in kinds)
 
 
 def _geometry(spec: ObjectSpec | ShapeSpec, base_dir: Path) -> Geometry:
@@ -86,7 +103,9 @@ def _geometry(spec: ObjectSpec | ShapeSpec, base_dir: Path) -> Geometry:
 def _shape(spec: ObjectSpec | ShapeSpec, color: Rgba | None, base_dir: Path) -> Shape:
     pose = spec.pose.se3() if isinstance(spec, ShapeSpec) else SE3.identity()
     own = spec.color or color or DEFAULT_COLOR
-    return Shape(_geometry(spec, base_dir), pose, own, spec.name or "")
+    is_own = isinstance(spec, ShapeSpec) and spec.friction is not None
+    friction = _friction(spec.friction) if is_own else None
+    return Shape(_geometry(spec, base_dir), pose, own, spec.name or "", friction)
 
 
 def _friction(spec: float | FrictionSpec | None) -> Friction:
@@ -103,7 +122,11 @@ def _mass_properties(
     """Mass [kg], centre of mass [m] and inertia about it [kg m^2], from the file or from solids."""
     if any(isinstance(shape.geometry, Plane) for shape in shapes):
         raise ObjectUnusableError("a plane has no mass: say `static: true`")
-    solids = [_solid(shape.geometry) for shape in shapes]
+    solids = [solid_of(shape.geometry) for shape in shapes]
+    if not shapes and (spec.mass is None or spec.inertia is None):
+        raise ObjectUnusableError(
+            "what moves and has no shape needs `mass` and `inertia`, or `static: true`"
+        )
     if any(solid is None for solid in solids) and (spec.mass is None or spec.inertia is None):
         raise ObjectUnusableError("a mesh that moves needs `mass` and `inertia`, or `static: true`")
     known = [solid for solid in solids if solid is not None]
@@ -137,26 +160,3 @@ def _check_inertia(tensor: FloatArray) -> None:
             + ", ".join(f"{moment:.3g}" for moment in moments)
             + " kg m^2, and each must be positive and no more than the sum of the others"
         )
-
-
-def _solid(geometry: Geometry) -> tuple[float, FloatArray] | None:
-    """Volume [m^3] and inertia at density 1 about the centre [m^5]; None for planes and meshes."""
-    match geometry:
-        case Box(size=(x, y, z)):
-            volume = x * y * z
-            return volume, volume / 12 * np.diag([y * y + z * z, x * x + z * z, x * x + y * y])
-        case Cylinder(radius=r, length=h):
-            volume = math.pi * r * r * h
-            side = (3 * r * r + h * h) / 12
-            return volume, volume * np.diag([side, side, r * r / 2])
-        case Sphere(radius=r):
-            volume = 4 / 3 * math.pi * r**3
-            return volume, volume * 0.4 * r * r * np.eye(3)
-        case Capsule(radius=r, length=h):
-            cylinder, ball = math.pi * r * r * h, 4 / 3 * math.pi * r**3
-            axial = cylinder * r * r / 2 + ball * 0.4 * r * r
-            side = cylinder * (3 * r * r + h * h) / 12
-            side += ball * (0.4 * r * r + h * h / 4 + 3 * h * r / 8)
-            return cylinder + ball, np.diag([side, side, axial])
-        case _:
-            return None

@@ -10,8 +10,17 @@ from dataclasses import dataclass
 import mujoco
 
 from harness.core.errors import RobotError
-from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Shape, Sphere
-from harness.core.world import Friction
+from harness.core.geometry import (
+    Box,
+    Capsule,
+    Cylinder,
+    Friction,
+    Geometry,
+    Mesh,
+    Plane,
+    Shape,
+    Sphere,
+)
 
 CONTACT_SOLREF = (0.002, 1.0)
 """Time constant [s] and damping ratio of a contact: two steps of 1 ms, critically damped.

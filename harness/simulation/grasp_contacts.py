@@ -43,10 +43,12 @@ def add_grasp_contacts(
     damping = FRICTION_DAMPING_PER_STEP / spec.option.timestep
     for link in gripper.links:
         for obj in (obj for obj in objects if not obj.is_static):
-            friction = surfaces.smaller(link_friction(description, link), obj.friction)
-            sliding, torsional, rolling = friction.sliding, friction.torsional, friction.rolling
+            own = link_friction(description, link)
             for finger_geom in spec.body(link).geoms:
-                for object_geom in spec.body(obj.name).geoms:
+                for shape, object_geom in zip(obj.shapes, spec.body(obj.name).geoms, strict=True):
+                    friction = surfaces.smaller(own, obj.friction_of(shape))
+                    sliding, torsional = friction.sliding, friction.torsional
+                    rolling = friction.rolling
                     pair = spec.add_pair(geomname1=finger_geom.name, geomname2=object_geom.name)
                     pair.condim = CONTACT_DIMENSIONS
                     pair.friction = sliding, sliding, torsional, rolling, rolling

@@ -93,7 +93,7 @@ def build_model(
     simulated = [obj for obj in objects if obj.in_simulation]
     surfaces = Surfaces.of(
         [link_friction(description, link.name) for link in description.links]
-        + [obj.friction for obj in simulated]
+        + [obj.friction_of(shape) for obj in simulated for shape in obj.shapes]
     )
     servos = design_servos(description, timestep)
     spec = mujoco.MjSpec()

@@ -7,8 +7,8 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
+from harness.core.geometry import Friction
 from harness.core.types import FloatArray
-from harness.core.world import Friction
 from harness.robot.description import Inertial, Joint, RobotDescription
 from harness.simulation.geoms import Surfaces, add_collision_geom
 

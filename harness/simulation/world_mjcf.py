@@ -37,7 +37,7 @@ def add_object(spec: mujoco.MjSpec, obj: WorldObject, pose: SE3, surfaces: Surfa
     body.pos = pose.translation
     body.quat = pose.quat_wxyz
     for shape in obj.shapes:
-        add_collision_geom(spec, body, shape, obj.friction, surfaces)
+        add_collision_geom(spec, body, shape, obj.friction_of(shape), surfaces)
     if obj.is_static:
         return
     body.add_freejoint(name=obj.name)

@@ -67,12 +67,33 @@ class MeshSpec(SpecModel):
     )
 
 
+class FrictionSpec(SpecModel):
+    """Coulomb friction of the surface; a contact takes the smaller of its two."""
+
+    sliding: Annotated[Number, Field(ge=0)] = Field(default=1.0, description="Along the surface.")
+    torsional: Annotated[Number, Field(ge=0)] = Field(
+        default=0.005, description="About the contact's normal [m]."
+    )
+    rolling: Annotated[Number, Field(ge=0)] = Field(
+        default=0.0001, description="Against rolling [m]."
+    )
+
+
+SurfaceFriction = Annotated[
+    Annotated[Number, Field(ge=0), Tag("one")] | Annotated[FrictionSpec, Tag("many")],
+    Discriminator(kind_of),
+]
+
+
 class ShapeSpec(SpecModel):
     """Exactly one geometry, placed on its object."""
 
     name: Name | None = Field(default=None, description="For people.")
     pose: Pose = Field(default=Pose(), description="On the object; its frame word is ignored.")
     color: Color | None = Field(default=None, description="Red, green, blue, opacity from 0 to 1.")
+    friction: SurfaceFriction | None = Field(
+        default=None, description="Where it differs from its object's."
+    )
     box: BoxSpec | None = None
     cylinder: CylinderSpec | None = None
     sphere: SphereSpec | None = None
@@ -90,18 +111,6 @@ class ShapeSpec(SpecModel):
         return self
 
 
-class FrictionSpec(SpecModel):
-    """Coulomb friction of the surface; a contact takes the smaller of its two."""
-
-    sliding: Annotated[Number, Field(ge=0)] = Field(default=1.0, description="Along the surface.")
-    torsional: Annotated[Number, Field(ge=0)] = Field(
-        default=0.005, description="About the contact's normal [m]."
-    )
-    rolling: Annotated[Number, Field(ge=0)] = Field(
-        default=0.0001, description="Against rolling [m]."
-    )
-
-
 class InertiaSpec(SpecModel):
     """About the centre of mass, body axes [kg m^2]."""
 
@@ -114,7 +123,10 @@ class InertiaSpec(SpecModel):
 
 
 class ObjectSpec(SpecModel):
-    """An object: one geometry beside its keys, or several under `shapes`."""
+    """An object: one geometry beside its keys, or several under `shapes`.
+
+    One with `visuals` alone is seen and touches nothing.
+    """
 
     name: Name = Field(description="Unique in the scene.")
     pose: Pose = Field(
@@ -130,6 +142,9 @@ class ObjectSpec(SpecModel):
     shapes: tuple[ShapeSpec, ...] = Field(
         default=(), description="Several geometries of one object."
     )
+    visuals: tuple[ShapeSpec, ...] = Field(
+        default=(), description="What pictures show in place of the shapes."
+    )
     mass: Mass | None = Field(
         default=None, description="[kg]; default from the volume at 1000 kg/m^3."
     )
@@ -137,13 +152,9 @@ class ObjectSpec(SpecModel):
         default=(0.0, 0.0, 0.0), description="From the object's origin [m]."
     )
     inertia: InertiaSpec | None = Field(default=None, description="Default: of the solid shape.")
-    friction: (
-        Annotated[
-            Annotated[Number, Field(ge=0), Tag("one")] | Annotated[FrictionSpec, Tag("many")],
-            Discriminator(kind_of),
-        ]
-        | None
-    ) = Field(default=None, description="Sliding friction alone, or all three.")
+    friction: SurfaceFriction | None = Field(
+        default=None, description="Sliding friction alone, or all three."
+    )
     color: Color | None = Field(default=None, description="Red, green, blue, opacity from 0 to 1.")
     in_: Literal["planning", "simulation", "both"] = Field(
         default="both",
@@ -158,7 +169,8 @@ class ObjectSpec(SpecModel):
     def _some_shape(self) -> ObjectSpec:
         kinds = ("box", "cylinder", "sphere", "capsule", "plane", "mesh")
         given = [kind for kind in kinds if getattr(self, kind) is not None]
-        if len(given) > 1 or bool(given) == bool(self.shapes):
+        is_only_seen = bool(self.visuals) and not given
+        if len(given) > 1 or (bool(given) == bool(self.shapes) and not is_only_seen):
             raise ValueError(f"an object is exactly one of {', '.join(kinds)}, or several `shapes`")
         return self
 

@@ -1,9 +1,12 @@
 """Objects appear, move and disappear in a running physics; what the record tells of them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from harness.core.errors import StepFailed
+from harness.core.geometry import Box, Friction, Shape
 from harness.core.spatial import SE3
 from harness.simulation.mujoco_simulator import MujocoSimulator
 from tests.simulation.physics_scenes import a_box, a_cylinder, move_arm
@@ -112,3 +115,18 @@ def test_a_dropped_box_is_named_with_what_it_falls_on(ur3e):
     forces = simulator.finish().contact_forces
     assert list(forces) == [("Table", "red_box")]
     assert forces["Table", "red_box"][-1] == pytest.approx(0.3 * 9.8, rel=1e-3)
+
+
+def test_a_shape_may_be_more_slippery_than_its_object(ur3e):
+    floor = a_box("floor", (4, 4, 0.1), (0, 0, -0.05))
+    rough = a_box("rough", (0.1, 0.1, 0.1), (1, 0.5, 0.05), mass=0.5)
+    sole = Shape(Box((0.1, 0.1, 0.1)), friction=Friction(0.05))
+    soled = replace(a_box("soled", (0.1, 0.1, 0.1), (1, -0.5, 0.05), mass=0.5), shapes=(sole,))
+    downhill = (2.0, 0.0, -9.8)  # an angle of friction of 0.2
+    simulator = MujocoSimulator(
+        ur3e, (floor, rough, soled), ("floor", "rough", "soled"), gravity=downhill
+    )
+    simulator.hold(0.5)
+    assert simulator.object_pose("rough").translation[0] == pytest.approx(1.0, abs=1e-3)
+    slid = 0.5 * (2.0 - 0.05 * 9.8) * 0.5**2
+    assert simulator.object_pose("soled").translation[0] == pytest.approx(1.0 + slid, rel=0.02)

@@ -1,0 +1,33 @@
+"""Volume and inertia of solids of one density."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Sphere
+from harness.core.types import FloatArray
+
+
+def solid_of(geometry: Geometry) -> tuple[float, FloatArray] | None:
+    """Volume [m^3] and inertia at density 1 about the centre [m^5]; None for planes and meshes."""
+    match geometry:
+        case Box(size=(x, y, z)):
+            volume = x * y * z
+            return volume, volume / 12 * np.diag([y * y + z * z, x * x + z * z, x * x + y * y])
+        case Cylinder(radius=r, length=h):
+            volume = math.pi * r * r * h
+            side = (3 * r * r + h * h) / 12
+            return volume, volume * np.diag([side, side, r * r / 2])
+        case Sphere(radius=r):
+            volume = 4 / 3 * math.pi * r**3
+            return volume, volume * 0.4 * r * r * np.eye(3)
+        case Capsule(radius=r, length=h):
+            cylinder, ball = math.pi * r * r * h, 4 / 3 * math.pi * r**3
+            axial = cylinder * r * r / 2 + ball * 0.4 * r * r
+            side = cylinder * (3 * r * r + h * h) / 12
+            side += ball * (0.4 * r * r + h * h / 4 + 3 * h * r / 8)
+            return cylinder + ball, np.diag([side, side, axial])
+        case _:
+            return None
