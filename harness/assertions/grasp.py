@@ -125,7 +125,7 @@ def slip(check: Slip, window: Window) -> MarginSignal:
     the axis of a round object do not count.
     """
     run = window.run
-    name, drift, turn, held = _drift(run, check.object)
+    name, drift, turn, held = drift_in_hand(run, check.object)
     parts = [
         Part("slip against the planner", window.cut(drift), check.max_distance, "<=", "m"),
         Part("turn against the planner", window.cut(turn), check.max_rotation, "<=", "rad"),
@@ -141,7 +141,7 @@ def slip(check: Slip, window: Window) -> MarginSignal:
     return all_of(window, parts, text, applies=window.cut(held))
 
 
-def _drift(run: Run, name: str) -> tuple[str, FloatArray, FloatArray, BoolArray]:
+def drift_in_hand(run: Run, name: str) -> tuple[str, FloatArray, FloatArray, BoolArray]:
     """Drift [m], turn [rad] and where they mean something, of the physical object behind a name."""
     records = [record for record in run.attachments if name in (record.object, record.represents)]
     if not records:

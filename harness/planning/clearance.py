@@ -113,6 +113,16 @@ class CoalClearance:
             signals, clearances=distances, clearance_links=links, clearance_cutoff=cutoff
         )
 
+    def distances(
+        self,
+        signals: Signals,
+        objects: Sequence[ObjectRecord],
+        attachments: Sequence[AttachmentRecord],
+        cutoff: float,
+    ) -> Mapping[tuple[str, str], FloatArray]:
+        """Distances at every sample that is given, by pair as in `Signals.clearances`."""
+        return self._measured(signals, objects, attachments, cutoff).distances
+
     def _measured(
         self,
         signals: Signals,

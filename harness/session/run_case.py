@@ -12,12 +12,14 @@ from harness.assertions.observations import observations
 from harness.assertions.placed import PlacedExpectation
 from harness.assertions.wording import describe
 from harness.core.errors import HarnessError, SpecError
+from harness.core.types import FloatArray
 from harness.engine.execute import Execution, execute_program
 from harness.engine.program import Program, ProgramStep
 from harness.recording.digest import digest
 from harness.recording.run import Outcome, Run, Signals, StepRecord, Verdict
 from harness.recording.store import write_run
 from harness.reporting.result import CaseResult, ProgressEvent, StepLine
+from harness.session.agreement import plan_against_physics
 from harness.session.beliefs import believed_poses
 from harness.session.prepare import Prepared, prepare
 from harness.session.record import run_record
@@ -150,7 +152,7 @@ def _execute(
     executed = clock.seconds.pop("execute")
     clock.seconds["plan"] = max(0.0, executed - clock.seconds.get("simulate", 0.0))
     seeds = {program.step_locs[step.path]: step.options.seed for step in program.all_steps()}
-    return run_record(
+    run = run_record(
         program,
         prepared.kinematics,
         execution,
@@ -159,6 +161,20 @@ def _execute(
         source=prepared.loaded.text,
         resolved=resolved_text(prepared.loaded, seeds, folder=report_dir),
     )
+    with clock.part("judge"):
+        return _compared_with_plan(prepared, run)
+
+
+def _compared_with_plan(prepared: Prepared, run: Run) -> Run:
+    from harness.planning.clearance import CoalClearance
+
+    observer = CoalClearance(prepared.program.description)
+    cutoff = run.signals.clearance_cutoff
+
+    def distances(signals: Signals) -> Mapping[tuple[str, str], FloatArray]:
+        return observer.distances(signals, run.objects, run.attachments, cutoff)
+
+    return replace(run, findings=(*run.findings, *plan_against_physics(run, distances)))
 
 
 def _observe(prepared: Prepared, signals: Signals, execution: Execution, cutoff: float) -> Signals:

@@ -1,0 +1,207 @@
+"""Plan against physics, read from the record: what the planner believed and what came of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from harness.assertions.contacts import held_by_fingers
+from harness.assertions.grasp import drift_in_hand
+from harness.assertions.text import amount
+from harness.assertions.window import NotObservable, NotReached
+from harness.core.types import FloatArray, IntArray
+from harness.recording.run import AttachmentRecord, Finding, Pair, Run, Signals, StepRecord
+
+LOST = 0.003
+"""An object that drifted further in the hand is not where the planner carries it [m]."""
+
+GRIP_GAP = 0.05
+"""Fingers that touch an object less than this before the end of a hold still held it [s]."""
+
+DIFFERENT = 1e-3
+"""Planned and actual clearance that differ by more are told step by step [m]."""
+
+Distances = Callable[[Signals], Mapping[Pair, FloatArray]]
+
+
+def plan_against_physics(run: Run, distances: Distances) -> tuple[Finding, ...]:
+    """What differed between belief and physics, and by how much, in every run.
+
+    Args:
+        run: With clearances observed.
+        distances: Measures clearances at every sample it is given.
+    """
+    held = [found for record in run.attachments if (found := _held(run, record)) is not None]
+    return (*held, *_tracking(run), *_clearances(run, distances), *_allowed_contacts(run))
+
+
+def _held(run: Run, record: AttachmentRecord) -> Finding | None:
+    """Where an attached object is believed to be, against where it is."""
+    name = record.represents
+    times = run.signals.times
+    during = (times >= record.start_time) & (times < min(record.end_time, times[-1]))
+    try:
+        _, drift, turn, speaks = drift_in_hand(run, record.object)
+        gripped = np.flatnonzero(held_by_fingers(run, name) & during)
+    except (NotReached, NotObservable):
+        return (
+            Finding(
+                "held",
+                f"the planner believed that it held {name}; the fingers never did",
+                record.start_time,
+                values={"object": name, "believed": True, "held": False},
+            )
+            if _is_physical(run, name)
+            else None
+        )
+    rows = np.flatnonzero(during & speaks)
+    if not len(rows):
+        return None
+    worst = int(rows[np.nanargmax(drift[rows])])
+    values = {
+        "object": name,
+        "drift": float(drift[worst]),
+        "turn": float(np.nanmax(turn[rows])),
+        "held": True,
+    }
+    moved = f"{amount(values['drift'], 'm')}, {amount(values['turn'], 'rad')}"
+    last = float(times[gripped[-1]]) if len(gripped) else record.start_time
+    if values["drift"] > LOST and float(times[rows[-1]]) - last > GRIP_GAP:
+        message = f"the planner believed that it held {name}; the physics lost it at {last:.2f} s"
+        return Finding("held", message, last, values={**values, "held": False, "lost_at": last})
+    message = f"{name} moved {moved} in the hand against where the planner carried it"
+    return Finding("held", message, float(times[worst]), values=values)
+
+
+def _is_physical(run: Run, name: str) -> bool:
+    return any(record.name == name and record.in_simulation for record in run.objects)
+
+
+def _tracking(run: Run) -> tuple[Finding, ...]:
+    """The joint that was furthest from its command."""
+    signals = run.signals
+    errors = np.abs(signals.joint_positions - signals.joint_commands)
+    errors = np.where(np.isfinite(errors), errors, 0.0)
+    gripper = run.robot.gripper
+    for column, joint in enumerate(run.robot.joints):
+        if gripper is not None and joint.name in (gripper.joint, *run.robot.groups[gripper.group]):
+            errors[:, column] = 0.0  # a gripper that presses is meant to stay behind its command
+    row, column = (int(place) for place in np.unravel_index(int(np.argmax(errors)), errors.shape))
+    worst = float(errors[row, column])
+    joint = run.robot.joints[column]
+    unit = "m" if joint.kind == "prismatic" else "rad"
+    return (
+        Finding(
+            "tracking",
+            f"{joint.name} was furthest from its command: {amount(worst, unit)}",
+            float(signals.times[row]),
+            values={"joint": joint.name, "error": worst, "unit": unit},
+        ),
+    )
+
+
+def _clearances(run: Run, distances: Distances) -> tuple[Finding, ...]:
+    """Clearance where the arm came nearest in each motion, against that of the set points there."""
+    signals = run.signals
+    near = {pair: values for pair, values in signals.clearances.items() if pair[0] == "robot"}
+    moves = [(step, row) for step in run.steps if (row := _nearest(step, near)) is not None]
+    if not moves:
+        return ()
+    rows = np.array([row for _, (row, _) in moves], dtype=np.int64)
+    planned = distances(_commanded(signals, rows))
+    found: list[Finding] = []
+    compared: list[tuple[float, Finding]] = []
+    for place, (step, (row, pair)) in enumerate(moves):
+        actual = float(near[pair][row])
+        expected = float(planned.get(pair, np.full(len(rows), np.nan))[place])
+        if not np.isfinite(expected):
+            continue
+        finding = Finding(
+            "clearance",
+            f"{_both(pair)} came as near as {amount(actual, 'm')}; the set"
+            f" points there leave {amount(expected, 'm')}",
+            float(signals.times[row]),
+            step.id,
+            {"pair": list(pair), "actual": actual, "planned": expected},
+        )
+        compared.append((actual, finding))
+        if abs(actual - expected) > DIFFERENT:
+            found.append(finding)
+    if compared:
+        nearest = min(compared, key=lambda item: item[0])[1]
+        found = [nearest, *(other for other in found if other is not nearest)]
+    return tuple(found)
+
+
+def _both(pair: Pair) -> str:
+    return "links of the robot" if pair == ("robot", "robot") else f"{pair[0]} and {pair[1]}"
+
+
+def _nearest(step: StepRecord, near: Mapping[Pair, FloatArray]) -> tuple[int, Pair] | None:
+    """Sample and pair of the smallest clearance in a step that moved the arm."""
+    window = slice(step.start_index, step.end_index)
+    best: tuple[float, int, Pair] | None = None
+    for pair, values in near.items():
+        part = values[window]
+        if step.trajectory is None or not np.isfinite(part).any():
+            continue
+        row = int(np.nanargmin(part))
+        if best is None or float(part[row]) < best[0]:
+            best = float(part[row]), step.start_index + row, pair
+    return None if best is None else (best[1], best[2])
+
+
+def _commanded(signals: Signals, rows: IntArray) -> Signals:
+    """A few samples with the joints where they were told to be; fingers where they were."""
+    commands = signals.joint_commands[rows]
+    measured = signals.joint_positions[rows]
+    return replace(
+        signals,
+        times=signals.times[rows],
+        joint_positions=np.where(np.isfinite(commands), commands, measured),
+        object_poses={name: poses[rows] for name, poses in signals.object_poses.items()},
+    )
+
+
+def _allowed_contacts(run: Run) -> tuple[Finding, ...]:
+    """Pairs that the SRDF or `allow_collisions` lets touch, and that really did."""
+    times, period = run.signals.times, run.timestep
+    found: list[Finding] = []
+    for pair, force in run.signals.contact_forces.items():
+        for where, touching in _allowances(run, pair):
+            rows = np.flatnonzero((force > 0) & touching)
+            if not len(rows):
+                continue
+            first, seconds = float(times[rows[0]]), len(rows) * period
+            peak = float(force[rows].max())
+            found.append(
+                Finding(
+                    "allowed_contact",
+                    f"{pair[0]} and {pair[1]} touched, as {where} allows: first at {first:.2f} s,"
+                    f" for {seconds:.2f} s, at most {amount(peak, 'N')}",
+                    first,
+                    values={"pair": list(pair), "seconds": seconds, "peak_force": peak},
+                )
+            )
+    return tuple(found)
+
+
+def _allowances(run: Run, pair: Pair) -> list[tuple[str, np.ndarray]]:
+    times = run.signals.times
+    either = {pair, (pair[1], pair[0])}
+    allowances: list[tuple[str, np.ndarray]] = []
+    if either & set(run.allowed_contacts):
+        allowances.append(("the SRDF", np.ones(len(times), dtype=bool)))
+    links = set(run.robot.link_names)
+    names = [{name, "robot"} if name in links else {name} for name in pair]
+    for step in run.steps:
+        for first, second in step.result.get("allowed_collisions", ()):
+            both = (first in names[0] and second in names[1]) or (
+                first in names[1] and second in names[0]
+            )
+            if both:
+                during = (times >= step.start_time) & (times <= step.end_time)
+                allowances.append((f"step {step.id}", during))
+    return allowances
