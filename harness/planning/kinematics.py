@@ -121,10 +121,10 @@ class PinocchioKinematics:
         solver = self.description.ik_solver
         whole_pose = isinstance(goal, PoseGoal)
         excess = 0.0
-        if solver == "ur" and whole_pose and is_ur_like(joints):
+        if solver in ("ur", "auto") and whole_pose and is_ur_like(joints):
             method = "ur"
             raw, excess = self._ur(joints, T_last_link, goal, reference)
-        elif solver == "open_manipulator_x" and is_planar_arm(joints, T_last_link):
+        elif solver in ("open_manipulator_x", "auto") and is_planar_arm(joints, T_last_link):
             method = "open_manipulator_x"
             raw, excess = self._planar(joints, T_last_link, goal, space, seed_positions)
         else:

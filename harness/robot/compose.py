@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import count
 
 import numpy as np
 
@@ -18,9 +19,11 @@ from harness.robot.description import (
     RobotDescription,
     TrackingTolerances,
 )
+from harness.robot.groups import planning_groups
 from harness.robot.robot_yaml import GripperFacts, Mount, RobotYaml
-from harness.robot.srdf import EndEffector, Srdf, link_pair, planning_groups, write_srdf
-from harness.robot.urdf import Urdf, in_tree_order
+from harness.robot.srdf import EndEffector, Srdf, link_pair, write_srdf
+from harness.robot.tree import in_tree_order
+from harness.robot.urdf import Urdf
 from harness.robot.write_urdf import write_urdf
 
 WORLD = "world"
@@ -36,6 +39,7 @@ class Part:
         urdf: Its links and joints, with the limits of robot.yaml.
         srdf: Its groups.
         source: What messages call it.
+        notes: What was ignored or assumed, for people.
     """
 
     name: str
@@ -43,6 +47,7 @@ class Part:
     urdf: Urdf
     srdf: Srdf
     source: str
+    notes: tuple[str, ...] = ()
 
 
 def compose(arm: Part | None, gripper: Part | None, base: SE3) -> RobotDescription:
@@ -60,7 +65,9 @@ def compose(arm: Part | None, gripper: Part | None, base: SE3) -> RobotDescripti
     first = parts[0]
     source = " + ".join(part.name for part in parts)
     links: list[Link] = [Link(WORLD, None)]
-    joints: list[Joint] = [_fixed("world_joint", WORLD, first.urdf.root, base)]
+    taken = {joint.name for part in parts for joint in part.urdf.joints}
+    held = next(name for name in _names("world_joint") if name not in taken)
+    joints: list[Joint] = [_fixed(held, WORLD, first.urdf.root, base)]
     for part in parts:
         links += part.urdf.links
         joints += part.urdf.joints
@@ -100,7 +107,14 @@ def compose(arm: Part | None, gripper: Part | None, base: SE3) -> RobotDescripti
         },
         tracking=TrackingTolerances(**first.facts.tracking.model_dump()),
         ik_solver=first.facts.ik_solver,
+        notes=tuple(note for part in parts for note in part.notes),
     )
+
+
+def _names(first: str) -> Iterator[str]:
+    """A name, and what it is called where that is taken."""
+    yield first
+    yield from (f"{first}_{number}" for number in count(2))
 
 
 def _fixed(name: str, parent: str, child: str, pose: SE3) -> Joint:
@@ -149,6 +163,7 @@ def _joined(arm: Part, gripper: Part, flange: str, tcp_link: str) -> Srdf:
         arm.srdf.end_effectors + tools,
         arm.srdf.passive + gripper.srdf.passive,
         {**arm.srdf.disabled, **gripper.srdf.disabled},
+        arm.srdf.virtual_joints,
     )
 
 

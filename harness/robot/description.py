@@ -18,6 +18,7 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 
 JointKind = Literal["fixed", "revolute", "continuous", "prismatic"]
+IkSolver = Literal["ur", "open_manipulator_x", "numeric", "auto"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,7 +203,8 @@ class RobotDescription:
         start_state: Joint positions by name at the start of a run.
         cameras: By name.
         tracking: Tolerances of the trajectory controller.
-        ik_solver: `ur`, `open_manipulator_x` or `numeric`.
+        ik_solver: `ur`, `open_manipulator_x`, `numeric`, or `auto`: the first of these that fits.
+        notes: What of its files was ignored or assumed, for people.
     """
 
     name: str
@@ -220,7 +222,8 @@ class RobotDescription:
     start_state: Mapping[str, float]
     cameras: Mapping[str, Camera] = field(default_factory=dict)
     tracking: TrackingTolerances = field(default_factory=TrackingTolerances)
-    ik_solver: Literal["ur", "open_manipulator_x", "numeric"] = "numeric"
+    ik_solver: IkSolver = "numeric"
+    notes: tuple[str, ...] = ()
 
     @cached_property
     def movable_joints(self) -> tuple[Joint, ...]:

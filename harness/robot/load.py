@@ -14,14 +14,17 @@ from harness.core.errors import RobotError
 from harness.core.resources import data_folder
 from harness.robot.compose import Part, compose
 from harness.robot.description import Joint, RobotDescription
+from harness.robot.import_robot import read_robot
 from harness.robot.options import with_options
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml
 from harness.robot.srdf import parse_srdf
-from harness.robot.urdf import Urdf, parse_urdf, parse_xml
+from harness.robot.urdf import parse_urdf
 from harness.spec.scenario import RobotSpec
+from harness.spec.xml_file import parse_xml
 
-XACRO_ARG = "{http://www.ros.org/wiki/xacro}arg"
-LATER = ("urdf", "xacro", "mjcf", "kinematics")
+XACRO_ARG = "xacro:arg"
+LATER = ("xacro", "mjcf", "kinematics")
+OF_FILES = ("srdf", "packages", "group", "flange_link")
 
 
 @lru_cache(maxsize=1)
@@ -63,7 +66,7 @@ def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
             )
     if spec.base.frame != "world":
         raise RobotError(f"robot.base stands in the frame 'world', not in '{spec.base.frame}'")
-    main = None if spec.model is None else _part(spec.model, "model", spec.args, base_dir)
+    main = _main(spec, base_dir)
     tool = None if spec.gripper is None else _part(spec.gripper, "gripper", {}, base_dir)
     if tool is not None and tool.facts.kind != "gripper":
         raise RobotError(f"robot.gripper: '{spec.gripper}' is an arm; {_known(gripper_names())}")
@@ -73,6 +76,16 @@ def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
         main, tool = None, main
     description = compose(main, tool, spec.base.se3())
     return with_options(description, spec)
+
+
+def _main(spec: RobotSpec, base_dir: Path) -> Part | None:
+    """The arm, or the gripper that stands alone; None where only `gripper` is given."""
+    if spec.urdf is not None:
+        return read_robot(spec, base_dir)
+    for key in OF_FILES:
+        if getattr(spec, key):
+            raise RobotError(f"robot.{key} goes with a robot's file: `urdf`, `xacro` or `mjcf`")
+    return None if spec.model is None else _part(spec.model, "model", spec.args, base_dir)
 
 
 def _part(name: str, key: str, args: Mapping[str, Any], base_dir: Path) -> Part:
@@ -113,7 +126,7 @@ def _read(folder: Path, facts: RobotYaml, variant: str, args: Mapping[str, Any])
         if args:
             raise RobotError(f"robot.args: '{name}' is no xacro file and takes no arguments")
     urdf = parse_urdf(text, folder, str(path))
-    urdf = Urdf(urdf.name, urdf.links, tuple(_with_facts(joint, facts) for joint in urdf.joints))
+    urdf = replace(urdf, joints=tuple(_with_facts(joint, facts) for joint in urdf.joints))
     for joint in facts.joints:
         if joint not in {item.name for item in urdf.joints}:
             raise RobotError(f"{folder / 'robot.yaml'}: joints.{joint}: the URDF has no such joint")
@@ -132,7 +145,11 @@ def _rendered(path: Path, xacro_file: XacroFile, variant: str, args: Mapping[str
     """The URDF text of a xacro file."""
     import xacro  # here: parsing plain URDFs does not need it
 
-    declared = {item.get("name") for item in parse_xml(_text(path), str(path)).iter(XACRO_ARG)}
+    declared = {
+        item.get("name")
+        for item in parse_xml(_text(path), str(path)).walk()
+        if item.tag == XACRO_ARG
+    }
     for key in args:
         if key not in declared or key == xacro_file.variant_arg:
             known = ", ".join(sorted(filter(None, declared - {xacro_file.variant_arg})))

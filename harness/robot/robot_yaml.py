@@ -9,6 +9,7 @@ import yaml
 from pydantic import Field, ValidationError, model_validator
 
 from harness.core.errors import RobotError
+from harness.robot.description import IkSolver
 from harness.spec.base import Length, Name, PositiveLength, Rpy, SpecModel, Xyz
 from harness.spec.scenario import JointLimits, StartState
 from harness.spec.yaml_file import LOADER
@@ -119,7 +120,7 @@ class RobotYaml(SpecModel):
     arm_group: Name | None = None
     tcp_link: Name | None = None
     flange_link: Name | None = None
-    ik_solver: Literal["ur", "open_manipulator_x", "numeric"] = "numeric"
+    ik_solver: IkSolver = "numeric"
     start_state: StartState = StartState()
     max_acceleration: Annotated[float, Field(gt=0)] = Field(
         5.0, description="Of every joint that `joints` gives none [rad/s^2 or m/s^2]."

@@ -60,11 +60,27 @@ class RobotSpec(SpecModel):
     model: str | None = Field(
         default=None, description="A name under robots/, or a path to such a folder."
     )
-    urdf: str | None = Field(default=None, description="A file; not yet available.")
-    xacro: str | None = Field(default=None, description="A file; not yet available.")
+    urdf: str | None = Field(
+        default=None, description="A URDF file, by its path or as package://name/path."
+    )
+    xacro: str | None = Field(default=None, description="A xacro file, rendered with `args`.")
     args: dict[Name, Any] = Field(default_factory=dict, description="Of the xacro file.")
     mjcf: str | None = Field(default=None, description="A file; not yet available.")
-    srdf: str | None = Field(default=None, description="With `urdf`, `xacro` or `mjcf`.")
+    srdf: str | None = Field(
+        default=None, description="Groups, states and allowed pairs, with `urdf`, `xacro`, `mjcf`."
+    )
+    packages: tuple[str, ...] = Field(
+        default=(), description="Folders where package:// is looked up and meshes may be read."
+    )
+    group: Name | None = Field(
+        default=None, description="The arm's SRDF group; default: the one with most joints."
+    )
+    tcp_link: Name | None = Field(
+        default=None, description="The link at the tool's centre; default: the arm group's tip."
+    )
+    flange_link: Name | None = Field(
+        default=None, description="Where `gripper` is mounted; default: the arm group's tip."
+    )
     gripper: str | None = Field(
         default=None, description="A gripper's name, mounted on the arm's flange."
     )

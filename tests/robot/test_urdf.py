@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from harness.core.errors import RobotError
+from harness.core.errors import SpecError
 from harness.core.geometry import Capsule, Cylinder, Sphere
 from harness.core.spatial import rotation_from_rpy
-from harness.robot.srdf import parse_srdf, planning_groups, write_srdf
+from harness.robot.groups import planning_groups
+from harness.robot.srdf import parse_srdf, write_srdf
 from harness.robot.urdf import parse_urdf
 from harness.robot.write_urdf import rpy_from_rotation, write_urdf
 from tests.robot.models import robot
@@ -29,7 +30,7 @@ def read(text):
     ("text", "words"),
     [
         ("<robot", ["not well-formed"]),
-        ('<!DOCTYPE robot [<!ENTITY x "y">]><robot name="&x;"/>', ["no DOCTYPE"]),
+        ('<!DOCTYPE robot [<!ENTITY x "y">]><robot name="&x;"/>', ["arm.urdf:1:17", "DOCTYPE"]),
         ("<sdf/>", ["<sdf>", "<robot>"]),
         ('<robot name="a"/>', ["one root link", "none"]),
         ('<robot name="a"><link name="b"/><link name="c"/></robot>', ["one root link", "b, c"]),
@@ -44,7 +45,7 @@ def read(text):
     ],
 )
 def test_what_is_no_urdf_is_refused_by_name(text, words):
-    with pytest.raises(RobotError) as caught:
+    with pytest.raises(SpecError) as caught:
         read(text)
     assert "arm.urdf" in str(caught.value)
     for word in words:
@@ -130,14 +131,14 @@ def test_groups_of_every_form_have_their_active_joints():
         ('tip_link="c"', 'tip_link="d"', ["'arm'", "no chain", "'d'"]),
         ('joint name="ab"/></group>', 'joint name="cd"/></group>', ["'joints'", "'cd'"]),
         ('<group name="links"/>', '<group name="both"/>', ["'both'"]),
-        ('value="0.1"', 'value="low"', ["no number"]),
+        ('value="0.1"', 'value="low"', ["arm.srdf:4:60", "'low' is no finite number"]),
         ('link2="a"', 'link3="a"', ["link2"]),
     ],
 )
 def test_what_an_srdf_gets_wrong_is_named(old, new, words):
     assert old in SRDF
     joints = read(ARM.format(limit=LIMIT)).joints
-    with pytest.raises(RobotError) as caught:
+    with pytest.raises(SpecError) as caught:
         planning_groups(parse_srdf(SRDF.replace(old, new), "arm.srdf"), joints, "arm.srdf")
     for word in words:
         assert word in str(caught.value)

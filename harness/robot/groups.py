@@ -1,0 +1,126 @@
+"""Planning groups: the joints that an SRDF's groups come to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import NoReturn
+
+from harness.core.errors import RobotError
+from harness.robot.description import Joint, PlanningGroup
+from harness.robot.srdf import Srdf, SrdfGroup
+
+LEAST_ARM = 3
+"""Joints that a group needs to have a tip though it is no chain: fewer make a finger."""
+
+
+def planning_groups(srdf: Srdf, joints: Sequence[Joint], source: str) -> dict[str, PlanningGroup]:
+    """Every group with its active joints from base to tip.
+
+    Args:
+        srdf: Whose groups.
+        joints: Of the whole robot, parents before children.
+        source: What messages call the file.
+
+    Raises:
+        SpecError: A group names a joint, link or group that is not there; at its place, where
+            the SRDF was read from a file.
+        RobotError: The same, without a place.
+    """
+    by_name = {group.name: group for group in srdf.groups}
+    return {group.name: _resolve(group, by_name, joints, srdf, source) for group in srdf.groups}
+
+
+def _resolve(
+    group: SrdfGroup,
+    groups: Mapping[str, SrdfGroup],
+    joints: Sequence[Joint],
+    srdf: Srdf,
+    source: str,
+) -> PlanningGroup:
+    virtual = [joint.name for joint in srdf.virtual_joints]
+    members = _members(group, groups, joints, virtual, source, ())
+    for tool in srdf.end_effectors:
+        if tool.parent_group == group.name and tool.group in groups and tool.group != group.name:
+            # A tool is no part of the group that carries it, though its links be listed there.
+            members -= _members(groups[tool.group], groups, joints, virtual, source, ())
+    active = tuple(
+        joint.name
+        for joint in joints
+        if joint.name in members
+        and joint.is_movable
+        and joint.mimic is None
+        and joint.name not in srdf.passive
+    )
+    if len(group.chains) == 1:
+        base, tip = group.chains[0]
+        if set(active) <= _chain(base, tip, joints):
+            return PlanningGroup(group.name, active, base, tip)
+    inside = [joint for joint in joints if joint.name in members]
+    base = inside[0].parent if inside else ""
+    tip = _serial_tip(inside) if len(active) >= LEAST_ARM else ""
+    return PlanningGroup(group.name, active, base, tip)
+
+
+def _chain(base: str, tip: str, joints: Sequence[Joint]) -> set[str]:
+    """Names of the joints between two links."""
+    before = {joint.child: joint for joint in joints}
+    names: set[str] = set()
+    while tip != base and tip in before:
+        names.add(before[tip].name)
+        tip = before[tip].parent
+    return names
+
+
+def _serial_tip(inside: Sequence[Joint]) -> str:
+    """Last link of joints that follow each other without a gap; empty where they do not."""
+    for before, after in pairwise(inside):
+        if after.parent != before.child:
+            return ""
+    return inside[-1].child if inside else ""
+
+
+def _members(
+    group: SrdfGroup,
+    groups: Mapping[str, SrdfGroup],
+    joints: Sequence[Joint],
+    virtual: Sequence[str],
+    source: str,
+    seen: tuple[str, ...],
+) -> set[str]:
+    """Names of all joints of a group, fixed and mimic ones included.
+
+    A virtual joint may be a member: it holds the robot in the world and never moves.
+    """
+    by_child = {joint.child: joint for joint in joints}
+    names = {joint.name for joint in joints} | set(virtual)
+    links = {joint.parent for joint in joints} | set(by_child)
+    for joint in group.joints:
+        if joint not in names:
+            _refuse(group, "joint", joint, f"names the unknown joint '{joint}'", source)
+    members = set(group.joints)
+    for link in group.links:
+        if link in by_child:
+            members.add(by_child[link].name)
+        elif link not in links:
+            _refuse(group, "link", link, f"names the unknown link '{link}'", source)
+    for base, tip in group.chains:
+        link = tip
+        while link != base:
+            if link not in by_child:
+                _refuse(group, "chain", "", f"no chain leads from '{base}' to '{tip}'", source)
+            members.add(by_child[link].name)
+            link = by_child[link].parent
+    for name in group.subgroups:
+        if name not in groups or name in (*seen, group.name):
+            _refuse(group, "group", name, f"cannot hold the group '{name}'", source)
+        members |= _members(groups[name], groups, joints, virtual, source, (*seen, group.name))
+    return members
+
+
+def _refuse(group: SrdfGroup, tag: str, name: str, message: str, source: str) -> NoReturn:
+    if group.element is not None:
+        for item in group.element.findall(tag):
+            if tag == "chain" or item.get("name") == name:
+                item.refuse(f"group '{group.name}': {message}", at="" if tag == "chain" else "name")
+    raise RobotError(f"{source}: group '{group.name}': {message}")

@@ -1,0 +1,177 @@
+"""Where `package://` leads, and which folders a robot's files may be read from."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import re
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+
+SEARCH_VARIABLE = "HARNESS_PACKAGE_PATH"
+"""Environment variable with more folders to search, divided as in PATH."""
+
+MANIFEST = "package.xml"
+DEEPEST = 4
+MOST_FOLDERS = 5_000
+LARGEST_MANIFEST = 200_000
+NAME = re.compile(rb"<name>\s*([\w.-]+)\s*</name>")
+SCHEMES = ("package://", "model://")
+
+
+class NotFoundError(ValueError):
+    """A file name leads nowhere, or out of the folders that may be read."""
+
+
+@dataclass(frozen=True)
+class PackagePath:
+    """Folders that a robot's files may be in.
+
+    A package is looked for in `given`, around `home`, and among the installed Python packages;
+    what is found there may be read too.
+
+    Attributes:
+        home: The folder of the robot's own package, or of its file where that has no package.xml.
+        given: Folders of the scenario, then of the environment.
+    """
+
+    home: Path
+    given: tuple[Path, ...] = ()
+    _found: dict[str, Path] = field(default_factory=dict[str, Path], repr=False, compare=False)
+
+    @classmethod
+    def of_file(cls, path: Path, given: Sequence[Path] = ()) -> PackagePath:
+        """The search path of a robot's file."""
+        folder = path.resolve().parent
+        home = next(
+            (each for each in (folder, *folder.parents) if (each / MANIFEST).is_file()), folder
+        )
+        return cls(home, (*(each.resolve() for each in given), *environment_folders()))
+
+    def package(self, name: str) -> Path:
+        """The folder of a package.
+
+        Raises:
+            NotFoundError: There is none; says where it was looked for.
+        """
+        if name not in self._found:
+            found = next(self._candidates(name), None)
+            if found is None:
+                raise NotFoundError(
+                    f"the package '{name}' is not found; give the folder that holds it in "
+                    f"`packages`, with --package-path or in {SEARCH_VARIABLE}, or install it"
+                )
+            self._found[name] = found.resolve()
+        return self._found[name]
+
+    def file(self, name: str, folder: Path) -> Path:
+        """The file that a name in a robot's file means.
+
+        Args:
+            name: `package://name/path`, `file:///path`, or a path.
+            folder: Where relative paths start.
+
+        Raises:
+            NotFoundError: It is not there, or not in a folder that may be read.
+        """
+        scheme = next((each for each in SCHEMES if name.startswith(each)), None)
+        if scheme is not None:
+            package, _, rest = name.removeprefix(scheme).partition("/")
+            path = (self.package(package) / rest).resolve()
+        elif re.match(r"\w+://", name) and not name.startswith("file://"):
+            raise NotFoundError(f"'{name}' is no file: known are package:// and file://")
+        else:
+            path = (folder / name.removeprefix("file://")).resolve()
+        if not self.may_read(path):
+            raise NotFoundError(
+                f"'{name}' lies outside the robot's folder {self.home} and the given ones; "
+                "add its folder to `packages`"
+            )
+        if not path.is_file():
+            raise NotFoundError(f"'{name}' is not there: {path} does not exist")
+        return path
+
+    def may_read(self, path: Path) -> bool:
+        """Whether a file lies in a folder that may be read."""
+        folders = (self.home, *self.given, *self._found.values())
+        resolved = path.resolve()
+        return any(resolved.is_relative_to(folder) for folder in folders)
+
+    def _candidates(self, name: str) -> Iterator[Path]:
+        if not re.fullmatch(r"[\w.-]+", name) or name.strip(".") == "":
+            return
+        for folder in (self.home, *self.given):
+            if _is_package(folder, name):
+                yield folder
+        for folder in (*self.given, *self._around()):
+            yield from _inside(folder, name)
+        yield from _installed(name)
+        for folder in self.given:
+            yield from (each for each in _packages_below(folder) if _is_package(each, name))
+
+    def _around(self) -> Iterator[Path]:
+        """Where a package's neighbours are: beside it."""
+        if (self.home / MANIFEST).is_file():
+            yield self.home.parent
+
+
+def environment_folders() -> tuple[Path, ...]:
+    """Folders of the environment variable."""
+    listed = os.environ.get(SEARCH_VARIABLE, "").split(os.pathsep)
+    return tuple(Path(each).expanduser().resolve() for each in listed if each)
+
+
+def _inside(folder: Path, name: str) -> Iterator[Path]:
+    """As colcon's `src`, `install` and merged `install` folders hold a package."""
+    for path in (folder / name, folder / "share" / name, folder / name / "share" / name):
+        if path.is_dir():
+            yield path
+
+
+def _installed(name: str) -> Iterator[Path]:
+    """A Python package, or the `share` folder that a wheel brought."""
+    module = name.replace("-", "_")
+    try:
+        spec = importlib.util.find_spec(module) if module.isidentifier() else None
+    except (ImportError, ValueError):
+        spec = None
+    for each in [Path(sys.prefix), *(Path(entry) / "cmeel.prefix" for entry in sys.path if entry)]:
+        path = each / "share" / name
+        if path.is_dir():
+            yield path
+    if spec is not None and spec.submodule_search_locations:
+        yield Path(next(iter(spec.submodule_search_locations)))
+
+
+@lru_cache(maxsize=16)
+def _packages_below(folder: Path) -> tuple[Path, ...]:
+    """Folders with a package.xml, at most DEEPEST levels down."""
+    found: list[Path] = []
+    level, seen = [folder], 0
+    for _ in range(DEEPEST):
+        below: list[Path] = []
+        for each in level:
+            try:
+                inside = sorted(item for item in each.iterdir() if item.is_dir())
+            except OSError:
+                continue
+            seen += len(inside)
+            if seen > MOST_FOLDERS:
+                return tuple(found)
+            for item in inside:
+                (found if (item / MANIFEST).is_file() else below).append(item)
+        level = below
+    return tuple(found)
+
+
+def _is_package(folder: Path, name: str) -> bool:
+    """Whether a folder is the package of a name, by its package.xml."""
+    try:
+        with (folder / MANIFEST).open("rb") as manifest:
+            found = NAME.search(manifest.read(LARGEST_MANIFEST))
+    except OSError:
+        return False
+    return found is not None and found[1].decode() == name

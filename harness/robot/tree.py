@@ -1,0 +1,91 @@
+"""Links and joints as one tree: order, and what is rigidly together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from harness.core.errors import Problem, RobotError, SpecError
+from harness.robot.description import Joint, Link
+from harness.spec.xml_file import XmlElement
+
+Elements = Mapping[tuple[str, str], XmlElement]
+"""By kind (`link`, `joint`) and name: where each is written."""
+
+
+def in_tree_order(
+    links: Iterable[Link], joints: Sequence[Joint], source: str, elements: Elements | None = None
+) -> tuple[tuple[Link, ...], tuple[Joint, ...]]:
+    """Links from the root outwards, joints in the order of their child links.
+
+    Args:
+        links: All of them.
+        joints: All of them.
+        source: What messages call the robot.
+        elements: Where links and joints are written.
+
+    Raises:
+        SpecError: They are not one tree; at the joint or link, where `elements` has it.
+        RobotError: The same, without a place.
+    """
+    by_name = {link.name: link for link in links}
+    children: dict[str, list[Joint]] = {name: [] for name in by_name}
+    parents: dict[str, str] = {}
+
+    def refuse(kind: str, name: str, message: str, hint: str = "") -> None:
+        element = (elements or {}).get((kind, name))
+        if element is not None:
+            element.refuse(message, hint)
+        raise RobotError(f"{source}: {message}")
+
+    for joint in joints:
+        for name in (joint.parent, joint.child):
+            if name not in by_name:
+                message = f"joint '{joint.name}' names the unknown link '{name}'"
+                refuse("joint", joint.name, message)
+        if joint.child in parents:
+            refuse("joint", joint.name, f"link '{joint.child}' is the child of two joints")
+        parents[joint.child] = joint.parent
+        children[joint.parent].append(joint)
+    roots = [name for name in by_name if name not in parents]
+    if not roots:
+        if not by_name:
+            raise SpecError([Problem(source, 0, 0, "a robot has one root link, found none")])
+        circle = _circle(next(iter(by_name)), parents)
+        refuse("link", circle[0], f"joints run in a circle: {' - '.join((*circle, circle[0]))}")
+    if len(roots) > 1:
+        refuse("link", roots[1], f"a robot has one root link, found {', '.join(roots)}")
+    ordered_links, ordered_joints = [by_name[roots[0]]], list[Joint]()
+    stack = children[roots[0]][::-1]
+    while stack:
+        joint = stack.pop()
+        ordered_joints.append(joint)
+        ordered_links.append(by_name[joint.child])
+        stack.extend(children[joint.child][::-1])
+    if len(ordered_links) != len(by_name):
+        known = {link.name for link in ordered_links}
+        circle = _circle(next(name for name in by_name if name not in known), parents)
+        refuse("link", circle[0], f"joints run in a circle: {' - '.join((*circle, circle[0]))}")
+    return tuple(ordered_links), tuple(ordered_joints)
+
+
+def _circle(start: str, parents: Mapping[str, str]) -> list[str]:
+    """The links of the circle that a link's parents lead into, from parent to child."""
+    seen: list[str] = []
+    link = start
+    while link not in seen:
+        seen.append(link)
+        link = parents[link]
+    return seen[seen.index(link) :][::-1]
+
+
+def carriers(joints: Iterable[Joint], root: str) -> dict[str, str]:
+    """For each link the first link of the rigid piece it belongs to.
+
+    Args:
+        joints: Parents before children.
+        root: The link that is no joint's child.
+    """
+    carrier = {root: root}
+    for joint in joints:
+        carrier[joint.child] = joint.child if joint.is_movable else carrier[joint.parent]
+    return carrier

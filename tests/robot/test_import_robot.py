@@ -1,0 +1,75 @@
+"""Robots from URDF and SRDF files of their own."""
+
+import pytest
+
+from harness.core.errors import RobotError
+from tests.robot.arm_files import SRDF, URDF, load_arm, write_arm
+
+
+def test_urdf_and_srdf_make_a_robot(tmp_path):
+    write_arm(tmp_path)
+    arm = load_arm(tmp_path)
+    assert (arm.name, arm.arm_group, arm.tcp_link) == ("arm", "manipulator", "tool")
+    assert arm.groups["manipulator"].joint_names == ("turn", "bend", "reach")
+    assert arm.start_state == {"turn": 0.1, "bend": 0.7, "reach": 0.05}
+    assert [joint.kind for joint in arm.movable_joints] == ["continuous", "revolute", "prismatic"]
+    assert arm.allowed_collisions["upper", "wrist"] == "Never"
+    assert arm.allowed_collisions["lower", "upper"] == "Adjacent"
+
+
+def test_without_an_srdf_the_longest_chain_is_the_arm(tmp_path):
+    write_arm(tmp_path)
+    arm = load_arm(tmp_path, srdf=None)
+    assert arm.groups["arm"].joint_names == ("turn", "bend", "reach")
+    assert (arm.tcp_link, arm.start_state) == ("tool", {"turn": 0.0, "bend": 0.0, "reach": 0.0})
+    assert "no SRDF: only neighbouring links may touch" in arm.notes
+
+
+def test_a_root_called_world_stands_in_ours(tmp_path):
+    write_arm(
+        tmp_path, URDF.replace('"base_link"', '"world"'), SRDF.replace('"base_link"', '"world"')
+    )
+    arm = load_arm(tmp_path, base={"xyz": [0, 0, 1]})
+    assert arm.link_names[:3] == ("world", "robot_world", "upper")
+    assert arm.joints[0].pose.translation[2] == 1
+
+
+def test_a_bundled_gripper_goes_on_an_imported_arm(tmp_path):
+    write_arm(tmp_path)
+    arm = load_arm(tmp_path, gripper="rh_p12_rn_a")
+    assert arm.tcp_link == "end_effector_link"
+    assert arm.groups["manipulator"].tip_link == "end_effector_link"
+    assert arm.gripper is not None
+
+
+def test_what_is_ignored_or_assumed_is_noted(tmp_path):
+    extra = "<gazebo/><gazebo/><transmission/></robot>"
+    urdf = URDF.replace("</robot>", extra).replace('velocity="0.3"', 'velocity="0"')
+    write_arm(tmp_path, urdf, SRDF.replace('value="0.7"', 'value="7"'))
+    arm = load_arm(tmp_path)
+    assert arm.notes == (
+        "2 <gazebo> elements ignored",
+        "1 <transmission> element ignored",
+        "joint 'reach': a limit of 0 for its velocity counts as none",
+        "SRDF: state 'home' has bend at 7, outside its limits [-2, 2]",
+        "joint 'reach' has no velocity limit: 0.2 m/s is assumed",
+    )
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"urdf": "arn.urdf"}, ["robot.urdf", "arn.urdf", "did you mean 'arm.urdf'"]),
+        ({"srdf": "gone.srdf"}, ["robot.srdf: there is no file"]),
+        ({"packages": ["gone"]}, ["robot.packages: there is no folder"]),
+        ({"group": "manipulater"}, ["robot.group", "did you mean 'manipulator'"]),
+        ({"tcp_link": "tol"}, ["robot.tcp_link", "did you mean 'tool'"]),
+        ({"urdf": "package://gone/arm.urdf"}, ["robot.urdf", "package 'gone' is not found"]),
+    ],
+)
+def test_an_option_that_does_not_fit_is_told_with_the_way_out(tmp_path, options, words):
+    write_arm(tmp_path)
+    with pytest.raises(RobotError) as caught:
+        load_arm(tmp_path, **options)
+    for word in words:
+        assert word in str(caught.value)
