@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol
 
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
@@ -60,6 +60,47 @@ Goal = JointGoal | PoseGoal | PositionGoal
 
 
 @dataclass(frozen=True)
+class CartesianLimits:
+    """What a link may do on a line or an arc; None is Pilz's default times the scaling factors.
+
+    Attributes:
+        translation_velocity: [m/s]
+        translation_acceleration: [m/s^2], along the path and towards an arc's centre together.
+        rotation_velocity: [rad/s]; the turn's acceleration is in proportion, as Pilz has it.
+    """
+
+    translation_velocity: float | None = None
+    translation_acceleration: float | None = None
+    rotation_velocity: float | None = None
+
+
+@dataclass(frozen=True)
+class JumpThreshold:
+    """Farthest that a joint may move from one pose of a path to the next.
+
+    Attributes:
+        revolute: [rad]
+        prismatic: [m]
+    """
+
+    revolute: float
+    prismatic: float
+
+
+@dataclass(frozen=True, eq=False)
+class ArcPoint:
+    """What makes an arc of a start and a goal.
+
+    Attributes:
+        kind: A point that the arc passes, or the centre of the shorter one.
+        position: In the world [m], shape (3,).
+    """
+
+    kind: Literal["interim", "center"]
+    position: FloatArray
+
+
+@dataclass(frozen=True)
 class PlanningOptions:
     """How to plan; every number known.
 
@@ -72,6 +113,9 @@ class PlanningOptions:
         padding: Distance kept between robot (and what it holds) and every object [m].
         seed: Of this step.
         parameters: Of the planner: `range`, `goal_bias` ...
+        max_jerk: Of every joint [rad/s^3 or m/s^3]; inf for none.
+        cartesian_limits: Of the link, on lines and arcs.
+        path_only: Leave out the times: the plan jumps from its start to its end.
     """
 
     planner_id: str = "RRTConnect"
@@ -82,6 +126,9 @@ class PlanningOptions:
     padding: float = 0.0
     seed: int = 0
     parameters: Mapping[str, float] = field(default_factory=dict[str, float])
+    max_jerk: float = float("inf")
+    cartesian_limits: CartesianLimits = CartesianLimits()
+    path_only: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,11 +139,13 @@ class MotionPlan:
         trajectory: What to command.
         statistics: planner_id, state checks, attempts, lengths before and after shortening ...
         explanation: IK solutions and what became of each, pairs whose margin was lowered ...
+        result: What the step reports of it: the fraction reached, a distance ...
     """
 
     trajectory: JointTrajectory
     statistics: Mapping[str, Any]
     explanation: Mapping[str, Any]
+    result: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
 
 @dataclass(frozen=True)
@@ -206,9 +255,23 @@ class MotionPlanner(Protocol):
         ...
 
     def plan_linear(
-        self, group: str, start: FloatArray, goal: PoseGoal, options: PlanningOptions
+        self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
     ) -> MotionPlan:
-        """Plan Pilz's LIN: the link on a straight line, turning at an even rate."""
+        """Plan Pilz's LIN: the link on a straight line, turning at an even rate.
+
+        A joint goal is where it puts the TCP; a position goal keeps the link turned as it is.
+        """
+        ...
+
+    def plan_circular(
+        self,
+        group: str,
+        start: FloatArray,
+        goal: Goal,
+        point: ArcPoint,
+        options: PlanningOptions,
+    ) -> MotionPlan:
+        """Plan Pilz's CIRC: the link on an arc through a point or about a centre."""
         ...
 
     def plan_relative(

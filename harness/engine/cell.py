@@ -263,6 +263,7 @@ class Cell:
         self.notes.trajectory = trajectory_record(plan.trajectory)
         self.notes.planner.update(plan.statistics)
         self.notes.explanation.update(plan.explanation)
+        self.notes.result.update(plan.result)
         timeout = self.current.spec.timeout
         if timeout is not None and plan.trajectory.duration > timeout:
             raise StepFailed(

@@ -7,6 +7,7 @@ missing objects come out as they would, contacts are taken to happen as the file
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from harness.core.types import FloatArray
 from harness.engine.grasping import turn_about
 from harness.engine.program import Program
 from harness.ports import (
+    ArcPoint,
     Goal,
     GripperResult,
     JointGoal,
@@ -139,7 +141,7 @@ class DrySimulator:
 
 
 class DryPlanner:
-    """The MotionPlanner port that checks goals and jumps to them."""
+    """The MotionPlanner port that checks goals and jumps to them; lines and arcs are followed."""
 
     def __init__(
         self, planner: MotionPlanner, kinematics: Kinematics, description: RobotDescription
@@ -177,9 +179,15 @@ class DryPlanner:
         return self.plan(group, start, JointGoal(positions), options)
 
     def plan_linear(
-        self, group: str, start: FloatArray, goal: PoseGoal, options: PlanningOptions
+        self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
     ) -> MotionPlan:
-        return self.plan(group, start, goal, options)
+        return self._planner.plan_linear(group, start, goal, replace(options, path_only=True))
+
+    def plan_circular(
+        self, group: str, start: FloatArray, goal: Goal, point: ArcPoint, options: PlanningOptions
+    ) -> MotionPlan:
+        options = replace(options, path_only=True)
+        return self._planner.plan_circular(group, start, goal, point, options)
 
     def plan_relative(
         self,

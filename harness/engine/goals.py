@@ -9,10 +9,11 @@ import numpy as np
 from harness.core.errors import StepFailed
 from harness.core.types import FloatArray
 from harness.engine.cell import Cell
-from harness.ports import Goal, JointGoal, PoseGoal, PositionGoal
+from harness.ports import ArcPoint, Goal, JointGoal, PoseGoal, PositionGoal
+from harness.ports import CartesianLimits as LinkLimits
 from harness.spec.goals import GoalFields
 from harness.spec.poses import Pose, PoseTolerance, Position
-from harness.spec.steps import Lin, MoveTo
+from harness.spec.steps import ArcFields, CartesianLimits, Lin, MoveTo
 
 DEFAULT_TOLERANCE = PoseTolerance()
 
@@ -57,10 +58,9 @@ def resolve_goal(goal: GoalFields, group: str, cell: Cell) -> Goal:
     if goal.position is None:
         raise StepFailed("UNRECOGNIZED_GOAL_TYPE", "the step has no goal")
     tolerance = goal.tolerance or DEFAULT_TOLERANCE
-    point = cell.frame(goal.position.frame).apply(np.array(goal.position.xyz))
     return PositionGoal(
         link=goal.link or cell.description.tcp_link,
-        position=point,
+        position=world_point(goal.position, cell),
         pitch=goal.pitch,
         position_tolerance=tolerance.position,
         pitch_tolerance=tolerance.orientation,
@@ -83,6 +83,27 @@ def pose_goal(
         )
         name, target = carrier, target @ in_carrier.inverse()
     return PoseGoal(name, target, limits.position, limits.orientation)
+
+
+def arc_point(arc: ArcFields, cell: Cell) -> ArcPoint:
+    """The point that makes an arc of a start and a goal, in the world."""
+    if arc.interim is not None:
+        return ArcPoint("interim", world_point(arc.interim, cell))
+    if arc.center is not None:
+        return ArcPoint("center", world_point(arc.center, cell))
+    raise ValueError("the model has an interim point or a centre")
+
+
+def world_point(position: Position, cell: Cell) -> FloatArray:
+    """A point that a file gives in some frame, in the world, shape (3,)."""
+    return cell.frame(position.frame).apply(np.array(position.xyz))
+
+
+def link_limits(limits: CartesianLimits | None) -> LinkLimits:
+    """A step's Cartesian limits as the planner takes them."""
+    if limits is None:
+        return LinkLimits()
+    return LinkLimits(limits.max_trans_vel, limits.max_trans_acc, limits.max_rot_vel)
 
 
 def _joint_positions(cell: Cell, group: str, positions: dict[str, float]) -> FloatArray:

@@ -117,23 +117,6 @@ def pitch_of(rotation: FloatArray) -> float:
     return -math.asin(float(np.clip(rotation[2, 0], -1.0, 1.0)))
 
 
-def pitched(rotation: FloatArray, pitch: float) -> FloatArray:
-    """A rotation turned about a level axis until its x axis is `pitch` below the horizontal [rad].
-
-    The heading stays; that of a vertical x axis is where its z axis, or the opposite, points.
-    """
-    x_axis = rotation[:, 0]
-    level = np.array([x_axis[0], x_axis[1], 0.0])
-    if np.linalg.norm(level) < 1e-6:
-        level = np.sign(-x_axis[2]) * np.array([rotation[0, 2], rotation[1, 2], 0.0])
-    level /= np.linalg.norm(level)
-    wanted = math.cos(pitch) * level - math.sin(pitch) * np.array([0.0, 0.0, 1.0])
-    across = np.cross(x_axis, wanted)
-    about = np.array([-level[1], level[0], 0.0])
-    angle = math.atan2(float(across @ about), float(x_axis @ wanted))
-    return turn_about(about, angle) @ rotation
-
-
 def turn_about(axis: FloatArray, angle: float) -> FloatArray:
     """Rotation about a unit axis by an angle [rad], shape (3, 3)."""
     return rotation_from_quat_wxyz([math.cos(angle / 2), *(math.sin(angle / 2) * axis)])

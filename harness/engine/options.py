@@ -51,6 +51,7 @@ def merged_options(
         padding=said.get("padding", DEFAULT_PADDING),
         seed=seed,
         parameters=said.get("parameters", {}),
+        max_jerk=said.get("max_jerk", float("inf")),
     )
 
 
@@ -67,7 +68,7 @@ def check_planning(
         problems.add(
             (*loc, "pipeline"),
             "Pilz's planners are steps here",
-            "write `ptp:` or `lin:` instead of `move_to:`",
+            "write `ptp:`, `lin:` or `circ:` instead of `move_to:`",
         )
     if planning.planning_time is not None and planning.max_state_checks is not None:
         problems.add(

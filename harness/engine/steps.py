@@ -11,7 +11,9 @@ from harness.spec.steps import (
     AddObject,
     AllowCollisions,
     AnyStep,
+    ArcFields,
     AttachObject,
+    Circ,
     ClearObjects,
     DetachObject,
     Grasp,
@@ -106,8 +108,19 @@ def _wait(step: Wait, at: At) -> None:
 @check.handles(Lin)
 def _lin(step: Lin, at: At) -> None:
     _check_goal(step, step.group, at)
-    if step.cartesian_limits is not None:
-        at.scope.problems.add(at.key("cartesian_limits"), "`cartesian_limits` is not yet available")
+
+
+@check.handles(Circ)
+def _circ(step: Circ, at: At) -> None:
+    _check_goal(step, step.group, at)
+    _check_arc(step, at)
+
+
+def _check_arc(arc: ArcFields, at: At) -> None:
+    for key in ("interim", "center"):
+        point = getattr(arc, key)
+        if point is not None:
+            at.scope.check_frame(point.frame, at.key(key, "frame"))
 
 
 @check.handles(MoveRelative)

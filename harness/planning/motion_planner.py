@@ -8,27 +8,19 @@ from typing import Any
 
 import numpy as np
 
-from harness.core.errors import ErrorCode, PlanningFailed
+from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.free_motion import find_motion
 from harness.planning.goals import find_goals
-from harness.planning.kinematics import PinocchioKinematics, meets_tolerance
-from harness.planning.linear_path import (
-    ORIENTATION_DEVIATION,
-    POSITION_DEVIATION,
-    STEP_LENGTH,
-    Line,
-    Trace,
-    deviation,
-    time_line,
-    trace,
-)
-from harness.planning.profiles import cubic_curve, on_grid, resting, sample
+from harness.planning.kinematics import PinocchioKinematics
+from harness.planning.limits import Limits
+from harness.planning.link_motion import LinkMotions
+from harness.planning.profiles import cubic_curve, on_grid, sample
 from harness.planning.scene import CoalScene
 from harness.planning.task import PlanningTask, make_task
-from harness.planning.timing import Limits, TimingError, time_straight
-from harness.ports import Goal, JointGoal, MotionPlan, PlanningOptions, PoseGoal
+from harness.planning.timing import time_straight
+from harness.ports import ArcPoint, Goal, JointGoal, MotionPlan, PlanningOptions
 from harness.robot.description import RobotDescription
 
 STATE_CHECKS_PER_SECOND = 20_000
@@ -37,9 +29,6 @@ STATE_CHECKS_PER_SECOND = 20_000
 One check of a UR with its gripper in the lesson's world takes 20 to 25 microseconds on the
 project's machines, so that a second there buys twice as much.
 """
-
-RELATIVE_STEP = 0.002
-"""Step of a motion that goes as far as it can [m]."""
 
 
 class VerifiedPlanner:
@@ -85,33 +74,22 @@ class VerifiedPlanner:
         else:
             task = replace(task, limits=_whole_limits(task))
             trajectory = _timed_by_hand(task, end, duration)
-        self._accept(task, trajectory, end, "the straight joint motion cannot be executed")
+        task.accept(trajectory, end, "the straight joint motion")
         explanation = {"lowered_margins": list(task.checker.lowered)}
         statistics = task.statistics("PTP", trajectory, [task.start, end])
         return MotionPlan(trajectory, statistics, explanation)
 
     def plan_linear(
-        self, group: str, start: FloatArray, goal: PoseGoal, options: PlanningOptions
+        self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
     ) -> MotionPlan:
         """Plan Pilz's LIN: the link on a straight line, turning at an even rate."""
-        task = self._task(group, start, options)
-        found = find_goals(self.kinematics, task.checker, np.asarray(start), goal, options.seed)
-        here = self.kinematics.link_pose(start, goal.link)
-        line = Line.between(goal.link, here, goal.pose)
-        traced = trace(line, task.checker, task.start)
-        if traced.reason != "end":
-            raise self._line_failed(line, traced)
-        end_pose = self.kinematics.link_pose(task.space.whole(traced.positions[-1]), goal.link)
-        if not meets_tolerance(goal, end_pose):
-            shift, angle = goal.pose.distance_to(end_pose)
-            raise PlanningFailed(
-                "NO_IK_SOLUTION",
-                f"at the end of the line {goal.link} is {1000 * shift:.1f} mm and {angle:.4f} rad "
-                "from the goal",
-                {"position_error": shift, "orientation_error": angle},
-            )
-        explanation = {**found.explanation, "lowered_margins": list(task.checker.lowered)}
-        return self._line_plan(task, line, traced, "LIN", explanation)
+        return self._links(group, start, options).linear(goal)
+
+    def plan_circular(
+        self, group: str, start: FloatArray, goal: Goal, point: ArcPoint, options: PlanningOptions
+    ) -> MotionPlan:
+        """Plan Pilz's CIRC: the link on an arc through a point or about a centre."""
+        return self._links(group, start, options).circular(goal, point)
 
     def plan_relative(
         self,
@@ -123,33 +101,7 @@ class VerifiedPlanner:
         options: PlanningOptions,
     ) -> MotionPlan:
         """Move a link along a direction as far as goes between two distances."""
-        task = self._task(group, start, options)
-        least, most = distances
-        twist = np.asarray(twist, dtype=float)
-        here = self.kinematics.link_pose(start, link)
-        line = Line(link, here, most * twist[:3], most * twist[3:])
-        step = RELATIVE_STEP if least < most else STEP_LENGTH
-        traced = trace(line, task.checker, task.start, step)
-        reached = traced.share * most
-        if traced.reason != "end" and reached < least:
-            unit, scale = ("mm", 1000.0) if np.any(twist[:3]) else ("°", float(np.degrees(1.0)))
-            raise PlanningFailed(
-                "PLANNING_FAILED",
-                f"{link} gets {scale * reached:.1f} of {scale * least:.1f} {unit} far: "
-                f"{traced.stop}",
-                {"reached": reached, "least": least, "reason": traced.reason, **traced.facts},
-            )
-        explanation = {
-            "lowered_margins": list(task.checker.lowered),
-            "distance": reached,
-            "stopped_by": traced.stop,
-        }
-        if traced.reason != "end":
-            line = line.part(traced.share)
-            traced = trace(line, task.checker, task.start, step)
-            if traced.reason != "end":
-                raise self._line_failed(line, traced)
-        return self._line_plan(task, line, traced, "move_relative", explanation)
+        return self._links(group, start, options).relative(link, twist, distances)
 
     def check_goal(
         self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
@@ -165,58 +117,8 @@ class VerifiedPlanner:
     def _task(self, group: str, start: FloatArray, options: PlanningOptions) -> PlanningTask:
         return make_task(self.scene, self.kinematics.robot, group, start, options)
 
-    def _line_plan(
-        self, task: PlanningTask, line: Line, traced: Trace, kind: str, explanation: dict[str, Any]
-    ) -> MotionPlan:
-        names, end = task.space.joint_names, traced.positions[-1]
-        if line.length < 1e-9 and line.angle < 1e-9:
-            trajectory = resting(names, task.start)
-        else:
-            options = task.options
-            scaling = (options.velocity_scaling, options.acceleration_scaling)
-            try:
-                trajectory = time_line(line, traced, task.checker, task.limits, scaling)
-            except TimingError as problem:
-                raise PlanningFailed("INVALID_MOTION_PLAN", str(problem)) from problem
-        self._accept(task, trajectory, end, "the motion on the line cannot be executed")
-        shift, turn = deviation(
-            line,
-            trajectory,
-            lambda positions: self.kinematics.link_pose(task.space.whole(positions), line.link),
-            pitch_only=task.space.dof < 6,
-        )
-        if shift > POSITION_DEVIATION or turn > ORIENTATION_DEVIATION:
-            raise PlanningFailed(
-                "INVALID_MOTION_PLAN",
-                f"{line.link} would leave its line by {1000 * shift:.3f} mm and {turn:.5f} rad",
-                {"position_deviation": shift, "orientation_deviation": turn},
-            )
-        statistics = task.statistics(kind, trajectory, traced.positions)
-        statistics |= {"position_deviation": shift, "orientation_deviation": turn}
-        return MotionPlan(trajectory, statistics, explanation)
-
-    def _line_failed(self, line: Line, traced: Trace) -> PlanningFailed:
-        codes: dict[str, ErrorCode] = {
-            "unreachable": "NO_IK_SOLUTION",
-            "limit": "NO_IK_SOLUTION",
-            "jump": "PLANNING_FAILED",
-            "collision": "INVALID_MOTION_PLAN",
-        }
-        return PlanningFailed(
-            codes[traced.reason],
-            f"{line.link} can follow the straight line for {100 * traced.share:.0f} % of its "
-            f"{1000 * line.length:.1f} mm: {traced.stop}",
-            {"free_share": traced.share, "reason": traced.reason, **traced.facts},
-        )
-
-    def _accept(
-        self, task: PlanningTask, trajectory: JointTrajectory, end: FloatArray, what: str
-    ) -> None:
-        defect = task.defect(trajectory, end)
-        if defect is not None:
-            raise PlanningFailed(
-                "INVALID_MOTION_PLAN", f"{what}: {defect.message}", dict(defect.facts)
-            )
+    def _links(self, group: str, start: FloatArray, options: PlanningOptions) -> LinkMotions:
+        return LinkMotions(self.kinematics, self._task(group, start, options))
 
 
 def _whole_limits(task: PlanningTask) -> Limits:

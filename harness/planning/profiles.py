@@ -16,6 +16,8 @@ GRID = 0.002
 SAMPLE_PERIOD = 0.01
 """Time between set points [s]: five steps of the grid; the last one may be nearer."""
 
+_INTEGRATION_STEP = 0.0005  # [s]
+
 Curve = Callable[[FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
 """Positions, velocities and accelerations, (N, dof) each, at times (N,)."""
 
@@ -117,3 +119,53 @@ def resting(joint_names: tuple[str, ...], positions: FloatArray) -> JointTraject
     return JointTrajectory(
         joint_names, np.array([0.0, SAMPLE_PERIOD]), np.vstack([positions] * 2), still, still.copy()
     )
+
+
+def smoothed(curve: Curve, duration: float, window: float) -> Curve:
+    """The running mean of a curve over a window: no jerk above an acceleration's change over it.
+
+    It begins and ends where the curve does, at rest if the curve does, and lasts `window` longer;
+    velocities and accelerations stay within what the curve's keep to.
+
+    Args:
+        curve: At rest on both ends.
+        duration: Of the curve [s].
+        window: Of the mean [s].
+
+    References:
+        L. Biagiotti, C. Melchiorri, "FIR filters for online trajectory planning with time- and
+        frequency-domain specifications", Control Engineering Practice 20(12), 2012.
+    """
+    count = max(1, int(np.ceil(duration / _INTEGRATION_STEP)))
+    knots: FloatArray = np.linspace(0.0, duration, count + 1)
+    step = duration / count
+    at, rates, _ = curve(knots)
+    rates[[0, -1]] = 0.0
+    pieces = 0.5 * step * (at[:-1] + at[1:]) + step**2 / 12 * (rates[:-1] - rates[1:])
+    sums = np.concatenate([np.zeros_like(at[:1]), np.cumsum(pieces, axis=0)])
+
+    def states(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Integral, position and velocity, resting before the start and after the end."""
+        inside = np.clip(times, 0.0, duration)
+        positions, velocities, _ = curve(inside)
+        resting = (times <= 0.0) | (times >= duration)
+        velocities[resting] = 0.0
+        low = np.minimum((inside / step).astype(int), count - 1)
+        rest = (inside - knots[low])[:, None]
+        integral = (
+            sums[low]
+            + 0.5 * rest * (at[low] + positions)
+            + rest**2 / 12 * (rates[low] - velocities)
+            + (times - inside)[:, None] * positions
+        )
+        return integral, positions, velocities
+
+    def mean(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        times = np.asarray(times, dtype=float)
+        now, before = states(times), states(times - window)
+        positions, velocities, accelerations = (
+            (later - earlier) / window for later, earlier in zip(now, before, strict=True)
+        )
+        return positions, velocities, accelerations
+
+    return mean

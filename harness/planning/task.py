@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -12,11 +12,12 @@ from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.checker import MotionChecker
+from harness.planning.limits import Limits
+from harness.planning.profiles import SAMPLE_PERIOD
 from harness.planning.robot_model import GroupSpace, RobotModel
 from harness.planning.scene import CoalScene
-from harness.planning.timing import Limits
 from harness.planning.verify import Defect, find_defect
-from harness.ports import PlanningOptions
+from harness.ports import MotionPlan, PlanningOptions
 
 START_SLACK = 0.01
 """How far outside its limit a joint may start; it is not asked to go farther [rad or m]."""
@@ -43,6 +44,30 @@ class PlanningTask:
     def defect(self, trajectory: JointTrajectory, end: FloatArray) -> Defect | None:
         """What forbids a trajectory to be executed, or None."""
         return find_defect(trajectory, self.checker, self.start, end, self.limits)
+
+    def accept(self, trajectory: JointTrajectory, end: FloatArray, what: str) -> None:
+        """Let a trajectory pass that may be executed.
+
+        Raises:
+            PlanningFailed: INVALID_MOTION_PLAN, any other; `what` says of which motion.
+        """
+        defect = self.defect(trajectory, end)
+        if defect is not None:
+            raise PlanningFailed(
+                "INVALID_MOTION_PLAN",
+                f"{what} cannot be executed: {defect.message}",
+                dict(defect.facts),
+            )
+
+    def jump(
+        self, end: FloatArray, explanation: Mapping[str, Any], result: Mapping[str, Any]
+    ) -> MotionPlan:
+        """The plan of a motion whose path alone is wanted: its start and its end."""
+        ends = np.vstack([self.start, end])
+        still = np.zeros_like(ends)
+        times = np.array([0.0, SAMPLE_PERIOD])
+        trajectory = JointTrajectory(self.space.joint_names, times, ends, still, still)
+        return MotionPlan(trajectory, {}, explanation, result)
 
     def statistics(
         self,
@@ -84,6 +109,7 @@ def make_task(
     limits = Limits.scaled(
         space.velocity, space.acceleration, options.velocity_scaling, options.acceleration_scaling
     )
+    limits = replace(limits, jerk=options.max_jerk)
     return PlanningTask(space, checker, positions, limits, options)
 
 

@@ -10,6 +10,7 @@ from harness.spec.base import (
     Angle,
     Count,
     Duration,
+    JointJerk,
     JointValue,
     Name,
     NonNegativeAngle,
@@ -29,7 +30,7 @@ class Planning(SpecModel):
 
     pipeline: Literal["ompl", "pilz_industrial_motion_planner"] | None = Field(
         default=None,
-        description="Only `ompl`, the default; Pilz's planners are the steps `ptp` and `lin`.",
+        description="Only `ompl`, the default; Pilz's planners are the steps `ptp`, `lin`, `circ`.",
     )
     planner_id: Name | None = Field(
         default=None, description="Default `RRTConnect`; `harness list planners` has the others."
@@ -50,6 +51,9 @@ class Planning(SpecModel):
     )
     max_acceleration_scaling_factor: Scaling | None = Field(
         default=None, description="Share of the joints' acceleration limits; default 0.3."
+    )
+    max_jerk: Annotated[JointJerk, Field(gt=0)] | None = Field(
+        default=None, description="Of every joint; by default the jerk is not limited."
     )
     padding: NonNegativeLength | None = Field(
         default=None,

@@ -31,7 +31,7 @@ from harness.spec.base import (
 from harness.spec.checks import Expectation
 from harness.spec.goals import GoalFields
 from harness.spec.planning import PathConstraints, Planning
-from harness.spec.poses import Direction, Pose
+from harness.spec.poses import Direction, Pose, Position
 from harness.spec.world import ObjectSpec
 
 GripperAction = Literal["friction", "weld"]
@@ -64,13 +64,17 @@ class MoveTo(GoalFields, StepFields):
 
 
 class CartesianLimits(SpecModel):
-    """Pilz's cartesian limits."""
+    """Pilz's cartesian limits; given here they hold as they are, whatever the scaling factors.
+
+    What is not given is 1 m/s, 2.25 m/s**2 and 1.57 rad/s times the scaling factors.
+    """
 
     max_trans_vel: Annotated[LinearVelocity, Field(gt=0)] | None = Field(
         default=None, description="Speed of the link [m/s]."
     )
     max_trans_acc: Annotated[LinearAcceleration, Field(gt=0)] | None = Field(
-        default=None, description="Acceleration of the link [m/s**2]."
+        default=None,
+        description="Of the link, towards an arc's centre too [m/s**2].",
     )
     max_rot_vel: Annotated[AngularVelocity, Field(gt=0)] | None = Field(
         default=None, description="Turning speed of the link [rad/s]."
@@ -91,27 +95,34 @@ class Lin(GoalFields, StepFields):
 
     do: Literal["lin"] = "lin"
     cartesian_limits: CartesianLimits | None = Field(
-        default=None, description="Not yet available; the scaling factors of `planning` apply."
+        default=None, description="Of the link on its line."
     )
 
 
-class Circ(StepFields):
-    """Pilz CIRC: an arc to `pose`, through `interim` or about `center`."""
+class ArcFields(SpecModel):
+    """What makes an arc of a start and a goal."""
 
-    do: Literal["circ"] = "circ"
-    pose: Pose = Field(description="Where the arc ends.")
-    link: Name | None = Field(default=None, description="Default: the TCP.")
-    interim: Pose | None = Field(default=None, description="A point on the arc.")
-    center: Pose | None = Field(default=None, description="The arc's centre.")
-    cartesian_limits: CartesianLimits | None = Field(
-        default=None, description="Speed along the arc."
+    interim: Position | None = Field(
+        default=None, description="A point on the arc, which may be any but a full circle."
+    )
+    center: Position | None = Field(
+        default=None, description="The centre of the shorter arc, which is less than half a circle."
     )
 
     @model_validator(mode="after")
-    def _one_auxiliary(self) -> Circ:
+    def _one_auxiliary(self) -> ArcFields:
         if (self.interim is None) == (self.center is None):
             raise ValueError("an arc has exactly one of `interim` and `center`")
         return self
+
+
+class Circ(ArcFields, GoalFields, StepFields):
+    """Pilz CIRC: the link moves on an arc, through `interim` or about `center`."""
+
+    do: Literal["circ"] = "circ"
+    cartesian_limits: CartesianLimits | None = Field(
+        default=None, description="Of the link on its arc."
+    )
 
 
 class MoveRelative(StepFields):

@@ -54,6 +54,8 @@ MEANINGS = {
     "rad/s": ("a turning speed", "rad/s, deg/s"),
     "m/s**2": ("an acceleration", "m/s**2"),
     "rad/s**2": ("a turning acceleration", "rad/s**2, deg/s**2"),
+    "m/s**3": ("a jerk", "m/s**3"),
+    "rad/s**3": ("a turning jerk", "rad/s**3, deg/s**3"),
 }
 """SI unit -> what it measures, and what a person would write."""
 

@@ -12,7 +12,6 @@ from harness.spec.checks import AnyExpectation
 from harness.spec.steps import AnyStep
 
 VERBS = {
-    "circ": "{pose: {xyz: [0.3, 0, 0.3]}, interim: {xyz: [0.3, 0.1, 0.3]}}",
     "cartesian_path": "{waypoints: [{xyz: [0.3, 0, 0.3]}]}",
     "sequence": "{items: [{ptp: home}]}",
     "capture": "{camera: gripper_camera}",
@@ -30,7 +29,7 @@ CHECKS = {
     "formula": "formula: {formula: x > 0}",
 }
 PROMISED_VERBS = """
-    move_to ptp lin move_relative gripper grasp release attach_object detach_object add_object
+    move_to ptp lin circ move_relative gripper grasp release attach_object detach_object add_object
     remove_object move_object clear_objects allow_collisions pick place wait settle
 """
 PROMISED_CHECKS = """

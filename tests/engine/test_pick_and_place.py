@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from harness.engine.grasping import pitched
 from tests.engine.front_door import UR, failures, run
 
 OM = "{model: open_manipulator_x, base: {xyz: [0, 0, 1.02]}}"
@@ -109,21 +108,6 @@ def test_a_line_to_a_position_with_a_pitch_ends_at_that_pitch(tmp_path):
     x, y, z, w = (record.signals.tcp_pose[-1, i] for i in (4, 5, 6, 3))
     down = -2 * (x * z - w * y)  # of the link's x axis
     assert np.degrees(np.arcsin(down)) == pytest.approx(60, abs=0.1)
-
-
-@pytest.mark.parametrize("pitch", [-1.2, 0.0, 0.7, np.pi / 2])
-def test_a_pitched_rotation_keeps_its_heading(pitch):
-    heading = 0.8
-    cosine, sine = np.cos(heading), np.sin(heading)
-    level = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
-    turned = pitched(level, pitch)
-    np.testing.assert_allclose(turned @ turned.T, np.eye(3), atol=1e-12)
-    np.testing.assert_allclose(
-        turned[:, 0],
-        [np.cos(pitch) * cosine, np.cos(pitch) * sine, -np.sin(pitch)],
-        atol=1e-12,
-    )
-    np.testing.assert_allclose(pitched(turned, 0.0), level, atol=1e-12)
 
 
 def test_a_grasp_that_misses_says_where_the_object_is(tmp_path):

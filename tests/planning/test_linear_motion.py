@@ -8,7 +8,8 @@ import pytest
 from harness.core.errors import PlanningFailed
 from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3
-from harness.planning.linear_path import uniform_spline
+from harness.planning.line_goals import pitched
+from harness.planning.splines import uniform_spline
 from harness.ports import PlanningOptions, PoseGoal, PositionGoal
 from tests.planning.lesson import ARM, TCP, Cell, at, grasp_goal, open_manipulator, thing, ur
 
@@ -124,3 +125,18 @@ def test_a_line_is_slowed_until_every_sample_keeps_the_velocity_limit():
             "arm", cell.state, TCP, up, (0.06, 0.06), PlanningOptions()
         )
         assert np.abs(plan.trajectory.velocities).max() <= limit * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("pitch", [-1.2, 0.0, 0.7, np.pi / 2])
+def test_a_pitched_rotation_keeps_its_heading(pitch):
+    heading = 0.8
+    cosine, sine = np.cos(heading), np.sin(heading)
+    level = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
+    turned = pitched(level, pitch)
+    np.testing.assert_allclose(turned @ turned.T, np.eye(3), atol=1e-12)
+    np.testing.assert_allclose(
+        turned[:, 0],
+        [np.cos(pitch) * cosine, np.cos(pitch) * sine, -np.sin(pitch)],
+        atol=1e-12,
+    )
+    np.testing.assert_allclose(pitched(turned, 0.0), level, atol=1e-12)

@@ -1,10 +1,12 @@
 """Trajectories from paths: limits kept, ends at rest, derivatives that belong together."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from harness.planning.blended_path import BlendedPath
-from harness.planning.profiles import GRID, Trapezoid, cubic_curve
+from harness.planning.profiles import GRID, Trapezoid, cubic_curve, smoothed, straight_curve
 from harness.planning.timing import Limits, time_blended, time_stopping, time_straight
 
 NAMES = tuple("abcdef")
@@ -75,3 +77,31 @@ def test_a_cubic_takes_the_time_it_is_given():
     assert np.allclose(positions, [[0, 0], [0.5, -1.0], [1.0, -2.0]])
     assert np.allclose(velocities, [[0, 0], [0.375, -0.75], [0, 0]])
     assert np.allclose(accelerations[0], [0.375, -0.75])
+
+
+@pytest.mark.parametrize("jerk", [5.0, 60.0])
+def test_a_jerk_limit_holds_between_samples_of_every_kind_of_motion(jerk):
+    limits = replace(LIMITS, jerk=jerk)
+    path = zigzag(1)
+    for trajectory, without in (
+        (time_straight(NAMES, path[0], path[1], limits), ways(1)["straight"][1]),
+        (time_blended(NAMES, path, limits, 0.05), ways(1)["toppra"][1]),
+    ):
+        changes = np.diff(trajectory.accelerations, axis=0) / np.diff(trajectory.times)[:, None]
+        assert np.abs(changes).max() <= jerk * (1 + 1e-6)
+        assert np.abs(changes).max() > 0.5 * jerk
+        assert np.abs(trajectory.velocities / limits.velocity).max() <= 1 + 1e-9
+        assert np.abs(trajectory.accelerations / limits.acceleration).max() <= 1 + 1e-9
+        assert np.allclose(trajectory.positions[[0, -1]], without.positions[[0, -1]], atol=1e-9)
+        assert trajectory.duration > without.duration
+
+
+def test_a_smoothed_curve_is_its_running_mean():
+    profile = Trapezoid.fastest(1.0, 0.5, 1.0)
+    curve = straight_curve(np.zeros(1), np.ones(1), profile)
+    mean = smoothed(curve, profile.duration, 0.2)
+    fine = np.linspace(-0.2, profile.duration + 0.2, 200001)
+    values = curve(np.clip(fine, 0, profile.duration))[0][:, 0]
+    for time in (0.05, 0.3, 1.0, profile.duration + 0.1):
+        window = (fine >= time - 0.2) & (fine <= time)
+        assert mean(np.array([time]))[0][0, 0] == pytest.approx(values[window].mean(), abs=1e-5)

@@ -3,6 +3,7 @@
 from harness.engine.executors import (
     allow_collisions,
     attach_object,
+    circ,
     grasp,
     gripper,
     inject,
@@ -20,6 +21,7 @@ from harness.engine.executors import (
 __all__ = [
     "allow_collisions",
     "attach_object",
+    "circ",
     "grasp",
     "gripper",
     "inject",
