@@ -73,6 +73,7 @@ def _parser() -> argparse.ArgumentParser:
     _file_options(command("explain", "print the program that a scenario becomes"))
     _list_options(command("list", "list what a scenario may name", module="listing"))
     _judge_options(command("judge", "judge a saved run again"))
+    _compare_options(command("compare", "tell what changed from one saved run to another"))
     _new_options(command("new", "write a commented scenario that passes"))
     _schema_options(command("schema", "print the JSON Schema of scenario files"))
     return parser
@@ -132,6 +133,12 @@ def _judge_options(judge: argparse.ArgumentParser) -> None:
     judge.add_argument("--with", metavar="FILE", dest="with_file",
                        help="by the expectations of this scenario")  # fmt: skip
     judge.add_argument("--json", action="store_true", help="one JSON document on stdout")
+
+
+def _compare_options(compare: argparse.ArgumentParser) -> None:
+    compare.add_argument("first", metavar="RUN", help="a run's report folder")
+    compare.add_argument("second", metavar="RUN", help="another")
+    compare.add_argument("--json", action="store_true", help="one JSON document on stdout")
 
 
 def _new_options(new: argparse.ArgumentParser) -> None:

@@ -1,0 +1,267 @@
+"""What differs between two saved runs: steps, trajectories, verdicts, signals, versions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.recording.arrays import arrays_of
+from harness.recording.run import Run, StepRecord, Verdict
+from harness.recording.store import StoredRun
+
+NONE = "-"
+
+DERIVED = "clearance"
+"""Distances are measured at some samples and drawn between: they part a little too early."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """One thing that differs.
+
+    Attributes:
+        what: `verdict`, `step`, `trajectory`, `version`, `robot`, `seed`, `outcome` ...
+        name: Of the step, expectation or library.
+        before: In the first run, in words; `-` where it has none.
+        after: In the second run.
+        amount: After less before, where both are one number; NaN elsewhere.
+        unit: Of the amount.
+    """
+
+    what: str
+    name: str
+    before: str
+    after: str
+    amount: float = float("nan")
+    unit: str = ""
+
+
+@dataclass(frozen=True)
+class FirstDifference:
+    """Where two recordings part: the first sample, and the signal that differs most there.
+
+    Attributes:
+        step: Id of the step it happened in; empty when the runs part before the first.
+        signal: Its name, with the column's where it is a joint's.
+        time: Of the sample [s].
+        before: In the first run.
+        after: In the second run.
+    """
+
+    step: str
+    signal: str
+    time: float
+    before: float
+    after: float
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two runs side by side; `is_same` when their digests are."""
+
+    is_same: bool
+    changes: tuple[Change, ...]
+    first_difference: FirstDifference | None
+
+
+def compare(first: StoredRun, second: StoredRun) -> Comparison:
+    """Everything that differs, the outcome first."""
+    one, two = first.run, second.run
+    changes = [
+        *_words("outcome", "", first.outcome, second.outcome),
+        *_words("robot", "", one.robot.name, two.robot.name),
+        *_words("seed", "", str(one.seed), str(two.seed)),
+        *_versions(one.versions, two.versions),
+        *_steps(one.steps, two.steps),
+        *_verdicts(first.verdicts, second.verdicts),
+        *_findings(one, two),
+    ]
+    return Comparison(first.digest == second.digest, tuple(changes), first_difference(one, two))
+
+
+def first_difference(one: Run, two: Run) -> FirstDifference | None:
+    """The first sample at which recorded signals differ; None when they are the same bits."""
+    ours, theirs = arrays_of(one.signals), arrays_of(two.signals)
+    count = min(len(one.signals.times), len(two.signals.times))
+    shared = sorted(ours.keys() & theirs.keys())
+    recorded = [name for name in shared if not name.startswith(DERIVED)]
+    best = _earliest(ours, theirs, recorded, count) or _earliest(ours, theirs, shared, count)
+    if best is None:
+        return _longer(one, two, count)
+    row, name = best
+    before, after = np.atleast_1d(ours[name][row]), np.atleast_1d(theirs[name][row])
+    apart = np.where(np.isnan(before) & np.isnan(after), 0.0, np.abs(before - after))
+    column = int(np.argmax(np.nan_to_num(apart, nan=np.inf)))
+    return FirstDifference(
+        _step_at(one, row),
+        _signal_name(one, name, column, len(before)),
+        float(one.signals.times[row]),
+        float(before[column]),
+        float(after[column]),
+    )
+
+
+def _earliest(
+    ours: Mapping[str, np.ndarray[Any, Any]],
+    theirs: Mapping[str, np.ndarray[Any, Any]],
+    names: Sequence[str],
+    count: int,
+) -> tuple[int, str] | None:
+    best: tuple[int, str] | None = None
+    for name in names:
+        row = _first_row(ours[name][:count], theirs[name][:count])
+        if row is not None and (best is None or row < best[0]):
+            best = row, name
+    return best
+
+
+def _first_row(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any]) -> int | None:
+    if one.shape != two.shape:
+        return 0
+    same = (one == two) | (np.isnan(one) & np.isnan(two)) if one.dtype.kind == "f" else one == two
+    rows = np.flatnonzero(~same.reshape(len(same), -1).all(axis=1))
+    return int(rows[0]) if len(rows) else None
+
+
+def _longer(one: Run, two: Run, count: int) -> FirstDifference | None:
+    if len(one.signals.times) == len(two.signals.times):
+        return None
+    longer = one if len(one.signals.times) > count else two
+    ends = float(one.signals.times[-1]), float(two.signals.times[-1])
+    return FirstDifference(_step_at(longer, count), "times", min(ends), *ends)
+
+
+def _step_at(run: Run, row: int) -> str:
+    """The innermost step that a sample belongs to."""
+    inside = [step.id for step in run.steps if step.start_index <= row < step.end_index]
+    return inside[-1] if inside else ""
+
+
+def _signal_name(run: Run, name: str, column: int, columns: int) -> str:
+    joints = run.robot.joints
+    if name.startswith("joint_") and columns == len(joints):
+        return f"{name} of {joints[column].name}"
+    return name
+
+
+def _words(what: str, name: str, before: str, after: str) -> list[Change]:
+    return [] if before == after else [Change(what, name, before, after)]
+
+
+def _versions(one: Mapping[str, str], two: Mapping[str, str]) -> list[Change]:
+    names = sorted(one.keys() | two.keys())
+    return [
+        change
+        for name in names
+        for change in _words("version", name, one.get(name, NONE), two.get(name, NONE))
+    ]
+
+
+def _steps(one: Sequence[StepRecord], two: Sequence[StepRecord]) -> list[Change]:
+    ours, theirs = {step.id: step for step in one}, {step.id: step for step in two}
+    changes: list[Change] = []
+    for name in dict.fromkeys([*ours, *theirs]):
+        a, b = ours.get(name), theirs.get(name)
+        if a is None or b is None:
+            changes.append(Change("step", name, _status(a), _status(b)))
+            continue
+        changes += _words("step", name, _status(a), _status(b))
+        changes += _trajectory(name, a, b)
+        lasted = a.end_time - a.start_time, b.end_time - b.start_time
+        if abs(lasted[1] - lasted[0]) > 1e-9:
+            changes.append(_number("duration", name, *lasted, "s"))
+    return changes
+
+
+def _status(step: StepRecord | None) -> str:
+    if step is None:
+        return NONE
+    return f"{step.status} {step.error_code}".rstrip()
+
+
+def _trajectory(name: str, one: StepRecord, two: StepRecord) -> list[Change]:
+    """How far the commanded paths lie apart, compared at equal parts of their durations."""
+    ours, theirs = one.trajectory, two.trajectory
+    if ours is None or theirs is None:
+        words = ["planned" if step.trajectory else NONE for step in (one, two)]
+        return _words("trajectory", name, words[0], words[1])
+    joints = [", ".join(map(str, trajectory["joint_names"])) for trajectory in (ours, theirs)]
+    if joints[0] != joints[1]:
+        return [Change("trajectory", name, joints[0], joints[1])]
+    before, after = _resampled(ours), _resampled(theirs)
+    apart = float(np.abs(after - before).max())
+    if apart == 0.0:
+        return []
+    words = [f"path of {_length(path):.4g}" for path in (before, after)]
+    return [Change("trajectory", name, words[0], words[1], apart, "rad or m apart")]
+
+
+def _resampled(trajectory: Mapping[str, Any]) -> FloatArray:
+    times = np.asarray(trajectory["times"], dtype=float)
+    positions = np.asarray(trajectory["positions"], dtype=float)
+    at = np.linspace(float(times[0]), float(times[-1]), 200)
+    resampled = np.empty((len(at), positions.shape[1]))
+    for joint in range(positions.shape[1]):
+        resampled[:, joint] = np.interp(at, times, positions[:, joint])
+    return resampled
+
+
+def _length(path: FloatArray) -> float:
+    return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+
+
+def _verdicts(one: Sequence[Verdict], two: Sequence[Verdict]) -> list[Change]:
+    ours, theirs = _by_name(one), _by_name(two)
+    changes: list[Change] = []
+    for name in dict.fromkeys([*ours, *theirs]):
+        a, b = ours.get(name), theirs.get(name)
+        if a is None or b is None or a.status != b.status:
+            changes += _words("verdict", name, _judged(a), _judged(b))
+        elif a.margin != b.margin and not (np.isnan(a.margin) and np.isnan(b.margin)):
+            changes.append(_margin(name, a, b))
+    return changes
+
+
+def _margin(name: str, one: Verdict, two: Verdict) -> Change:
+    if one.unit == two.unit:
+        return _number("margin", name, one.margin, two.margin, one.unit)
+    before, after = (f"{verdict.margin:.6g} {verdict.unit}" for verdict in (one, two))
+    return Change("margin", name, before, after)
+
+
+def _by_name(verdicts: Sequence[Verdict]) -> dict[str, Verdict]:
+    """Verdicts under a name that does not depend on lines: text, step, and which of equal ones."""
+    named: dict[str, Verdict] = {}
+    for verdict in verdicts:
+        base = f"{verdict.expectation} ({verdict.step})" if verdict.step else verdict.expectation
+        name, count = base, 2
+        while name in named:
+            name, count = f"{base} #{count}", count + 1
+        named[name] = verdict
+    return named
+
+
+def _judged(verdict: Verdict | None) -> str:
+    if verdict is None:
+        return NONE
+    if np.isnan(verdict.margin):
+        return verdict.status
+    return f"{verdict.status} by {abs(verdict.margin):.4g} {verdict.unit}"
+
+
+def _number(what: str, name: str, before: float, after: float, unit: str) -> Change:
+    words = f"{before:.6g} {unit}", f"{after:.6g} {unit}"
+    return Change(what, name, *words, after - before, unit)
+
+
+def _findings(one: Run, two: Run) -> list[Change]:
+    """Kinds of findings that one run has more of."""
+    changes: list[Change] = []
+    for kind in sorted({found.kind for found in (*one.findings, *two.findings)}):
+        counts = [sum(found.kind == kind for found in run.findings) for run in (one, two)]
+        changes += _words("findings", kind, str(counts[0]), str(counts[1]))
+    return changes

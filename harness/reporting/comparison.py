@@ -1,0 +1,58 @@
+"""Two runs side by side, as lines for the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import groupby
+
+from harness.recording.compare import Change, Comparison, FirstDifference
+from harness.reporting.terminal import PLAIN, Style
+
+HEADINGS = {
+    "outcome": "outcome",
+    "robot": "robot",
+    "seed": "seed",
+    "version": "versions",
+    "step": "steps",
+    "duration": "durations of steps",
+    "trajectory": "trajectories",
+    "verdict": "verdicts",
+    "margin": "margins of expectations that stayed as they were",
+    "findings": "findings",
+}
+
+
+def comparison_lines(comparison: Comparison, style: Style = PLAIN) -> Iterator[str]:
+    """What changed, in groups; one line when nothing did."""
+    if comparison.is_same:
+        yield f"{style.good('same')}  equal digests: commands, signals and verdicts are the same"
+    else:
+        yield f"{style.bad('different')}  {_parting(comparison.first_difference)}"
+    order = list(HEADINGS)
+    changes = sorted(comparison.changes, key=lambda change: order.index(change.what))
+    for what, group in groupby(changes, key=lambda change: change.what):
+        yield style.strong(HEADINGS[what])
+        for change in group:
+            yield f"  {_line(change)}"
+
+
+def _parting(first: FirstDifference | None) -> str:
+    if first is None:
+        return "the recorded signals are the same; commands or verdicts differ"
+    where = f"in step {first.step}, " if first.step else ""
+    if first.signal == "times":
+        return f"one run goes on {where}after t={first.time:.3f} s"
+    return (
+        f"first {where}at t={first.time:.3f} s: {first.signal}"
+        f" is {first.before:.9g} and {first.after:.9g}"
+    )
+
+
+def _line(change: Change) -> str:
+    name = f"{change.name}: " if change.name else ""
+    line = f"{name}{change.before} -> {change.after}"
+    if change.what == "trajectory" and change.unit:
+        return f"{line}, up to {change.amount:.3g} {change.unit}"
+    if change.unit:
+        return f"{line} ({change.amount:+.3g} {change.unit})"
+    return line

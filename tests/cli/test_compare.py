@@ -1,0 +1,63 @@
+"""`harness compare`: what changed from one saved run to another."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from harness import session
+from harness.cli.main import main
+
+PICK = Path(__file__).parents[2] / "scenarios/lessons/04_ur_pick_by_friction.scenario.yaml"
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """The lesson, the same again, and with a lower lift that its expectation does not like."""
+    folder = tmp_path_factory.mktemp("runs")
+    for name, overrides in (
+        ("one", {}),
+        ("again", {}),
+        ("lower", {"expect.0.lifted.above": "2 m"}),
+        ("faster", {"planning.max_velocity_scaling_factor": "0.2"}),
+    ):
+        session.run_case(PICK, overrides=overrides, report_dir=folder / name, stills=False)
+    return folder
+
+
+def compared(runs, second, capsys, *options):
+    code = main(["compare", str(runs / "one"), str(runs / second), *options])
+    return code, capsys.readouterr().out
+
+
+def test_equal_runs_are_the_same(runs, capsys):
+    code, text = compared(runs, "again", capsys)
+    assert code == 0
+    assert text.startswith("same  equal digests")
+    assert len(text.splitlines()) == 1
+
+
+def test_another_verdict_on_the_same_motion_is_told_with_both_margins(runs, capsys):
+    code, text = compared(runs, "lower", capsys)
+    assert code == 1
+    assert "different  the recorded signals are the same; commands or verdicts differ" in text
+    assert "outcome\n  passed -> failed" in text
+    assert "lifted green_cylinder, for 1.0 s, above 2.0 m: - -> failed by" in text
+    assert "trajectories" not in text
+
+
+def test_another_speed_tells_step_signal_durations_and_margins(runs, capsys):
+    code, text = compared(runs, "faster", capsys, "--json")
+    assert code == 1
+    comparison = json.loads(text)["comparison"]
+    first = comparison["first_difference"]
+    assert first["step"] == "steps[0]"
+    assert first["signal"].startswith("joint_command")
+    assert first["before"] != first["after"]
+    kinds = {change["what"] for change in comparison["changes"]}
+    assert {"duration", "trajectory", "margin"} <= kinds
+
+
+def test_a_folder_without_a_run_is_wrong_usage(runs, tmp_path, capsys):
+    assert main(["compare", str(runs / "one"), str(tmp_path)]) == 2
+    assert "is no run's folder" in capsys.readouterr().err
