@@ -27,7 +27,9 @@ def clearance(check: Clearance, window: Window) -> MarginSignal:
         NotObservable: The distance was not recorded, or its cutoff is below what is asked for.
     """
     run = window.run
-    rows = {key: window.cut(values) for key, values in _recorded(run, *check.between).items()}
+    rows = {
+        key: window.cut(values) for key, values in recorded_distances(run, *check.between).items()
+    }
     keys = list(rows)
     stack = np.stack([np.nan_to_num(rows[key], nan=np.inf) for key in keys])
     nearest = stack.argmin(axis=0)
@@ -59,7 +61,7 @@ def clearance(check: Clearance, window: Window) -> MarginSignal:
     return MarginSignal(values, "m", evidence, applies=there)
 
 
-def _recorded(run: Run, first: str, second: str) -> dict[Key, FloatArray]:
+def recorded_distances(run: Run, first: str, second: str) -> dict[Key, FloatArray]:
     """Recorded distances that two words of `between` mean, sorted by key."""
     if first == "any" or (second == "robot" and first != "robot"):
         first, second = second, first

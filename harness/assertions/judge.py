@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,49 +11,34 @@ from harness.assertions import (
     clearance,
     collision,
     contact,
+    fraction,
     grasp,
+    inside,
     joints,
     lifted,
     limits,
     objects,
     tcp,
+    tcp_path,
     timing,
 )
-from harness.assertions import temporal as temporal
+from harness.assertions.formula import formula_verdict
 from harness.assertions.placed import PlacedExpectation
-from harness.assertions.registry import MarginSignal, signal
-from harness.assertions.temporal import Decision, TooShort, longest_hold
-from harness.assertions.text import amount
-from harness.assertions.window import NotObservable, NotReached, Window, window_of
+from harness.assertions.registry import signal
+from harness.assertions.until import until_verdict
+from harness.assertions.window import NotObservable, NotReached, window_of
 from harness.assertions.wording import describe
-from harness.core.types import FloatArray
-from harness.recording.run import Run, Verdict, VerdictStatus
-from harness.spec.checks import (
-    Always,
-    AnyExpectation,
-    AnyPredicate,
-    Eventually,
-    Formula,
-    Never,
-    Until,
+from harness.assertions.words import WORDS, decide, terms_of
+from harness.recording.run import Run, Verdict
+from harness.spec.checks import AnyExpectation, AnyPredicate, Formula, Until
+
+HANDLERS = (
+    *(clearance, collision, contact, fraction, grasp, inside, joints, lifted, limits, objects),
+    *(tcp, tcp_path, timing),
 )
-
-HANDLERS = (clearance, collision, contact, grasp, joints, lifted, limits, objects, tcp, timing)
-TEMPORAL = (Always, Never, Eventually)
-EXECUTED: frozenset[type] = frozenset(signal) | frozenset(TEMPORAL)
+TEMPORAL = (*WORDS, Until)
+EXECUTED: frozenset[type] = frozenset(signal) | frozenset((*TEMPORAL, Formula))
 """Models that can be judged; compile refuses the others with "not yet available"."""
-
-
-@dataclass(frozen=True)
-class _Terms:
-    """An expectation taken apart: the predicate, its temporal word and the words beside both."""
-
-    predicate: AnyPredicate
-    word: str
-    hold: float | None
-    within: float | None
-    step: str
-    points: float | None
 
 
 def judge(run: Run, expectations: Sequence[PlacedExpectation]) -> tuple[Verdict, ...]:
@@ -64,136 +48,47 @@ def judge(run: Run, expectations: Sequence[PlacedExpectation]) -> tuple[Verdict,
 
 def _judge(run: Run, placed: PlacedExpectation) -> Verdict:
     text = placed.text or describe(placed.spec)
-    points = getattr(placed.spec, "points", None)
     try:
-        terms = _terms(placed.spec, placed.step)
-        points = terms.points
-        window = window_of(run, terms.step)
         with np.errstate(invalid="ignore"):
-            margins = signal(terms.predicate, window)
-            verdict = _decide(terms, window, margins)
+            verdict = _verdict(run, placed.spec, placed.step)
     except NotReached as answer:
         verdict = Verdict(text, "not reached", reason=str(answer))
     except NotObservable as answer:
         verdict = Verdict(text, "not observable", reason=str(answer))
-    return Verdict(
-        text,
-        verdict.status,
-        verdict.margin,
-        verdict.unit,
-        verdict.time,
-        placed.line,
-        placed.step,
-        verdict.reason,
-        verdict.measures,
-        points,
-    )
+    points = points_of(placed.spec)
+    return replace(verdict, expectation=text, line=placed.line, step=placed.step, points=points)
 
 
-def _terms(spec: AnyExpectation, step: str) -> _Terms:
-    """Words inside and outside a temporal word both count; of two numbers the stricter one.
+def points_of(spec: AnyExpectation) -> float | None:
+    """What an expectation is worth in a graded scenario; None where it says nothing of it."""
+    for model in (spec, getattr(spec, "predicate", None)):
+        points = getattr(model, "points", None)
+        if points is not None:
+            return float(points)
+    return None
+
+
+def _verdict(run: Run, spec: AnyExpectation, step: str) -> Verdict:
+    """What an expectation came to, without its place in the file.
 
     Raises:
-        NotObservable: The model cannot be judged yet, or names two steps.
+        NotReached: There was nothing to judge.
+        NotObservable: The record lacks what it is about, or it cannot be judged yet.
     """
-    if isinstance(spec, Until | Formula):
-        raise NotObservable(f"`{spec.check}` is not yet available")
-    predicate = spec.predicate if isinstance(spec, TEMPORAL) else spec
-    if type(predicate) not in EXECUTED:
-        raise NotObservable(f"`{predicate.check}` is not yet available")
-    word = spec.check if isinstance(spec, TEMPORAL) else predicate.judged
-    during = {name for name in (spec.during, predicate.during) if name is not None}
-    if len(during) > 1:
-        raise NotObservable(f"`during` names two steps: {' and '.join(sorted(during))}")
-    holds = [value for value in (spec.for_, predicate.for_) if value is not None]
-    withins = [value for value in (spec.within, predicate.within) if value is not None]
-    return _Terms(
-        predicate,
-        word,
-        max(holds, default=None),
-        min(withins, default=None),
-        next(iter(during), step),
-        predicate.points if spec.points is None else spec.points,
-    )
-
-
-def _decide(terms: _Terms, window: Window, margins: MarginSignal) -> Verdict:
-    values, times = margins.values, window.times
-    applies = np.ones(len(values), dtype=bool) if margins.applies is None else margins.applies
-    if not (applies & ~np.isnan(values)).any():
-        raise NotReached("what it is about was not there in the time it is judged over")
-    chosen = np.arange(len(values))
-    if terms.word == "always":
-        chosen = np.flatnonzero(applies)
-    try:
-        decision = _reduce(terms, values[chosen], times[chosen], applies[chosen], margins.progress)
-    except TooShort:
-        return _too_short(terms, times[chosen])
-    index = int(chosen[decision.index])
-    time = window.time(index)
-    status: VerdictStatus = "passed" if decision.holds else "failed"
-    if not math.isfinite(decision.value):
-        if decision.holds:
-            raise NotReached("what it is about was not there for that long")
-        return Verdict("", status, time=time, reason=f"not known, or not there, at t={time:.3f} s")
-    if terms.word == "eventually" and terms.hold is not None and not (values >= 0).any():
-        index = _nearest(values, times, margins.progress)
-        time = window.time(index)
-    evidence = margins.evidence(index)
-    margin, unit = decision.value, margins.unit
-    if evidence.margin is not None:
-        margin = -evidence.margin if terms.word == "never" else evidence.margin
-        unit = evidence.unit
-    reason = evidence.text + (f" at t={time:.3f} s" if evidence.is_moment else "")
-    reason += _held(terms, values, times, decision)
-    measures = evidence.measures
-    return Verdict("", status, margin + 0.0, unit, time, reason=reason, measures=measures)
-
-
-def _reduce(
-    terms: _Terms,
-    values: FloatArray,
-    times: FloatArray,
-    applies: np.ndarray,
-    progress: FloatArray | None,
-) -> Decision:
-    """What nobody knows speaks against the expectation; where it does not apply, nothing holds."""
-    hold, within = terms.hold, terms.within
-    unknown = np.isnan(values)
-    low = np.where(unknown | ~applies, -np.inf, values)
-    match terms.word:
-        case "always":
-            return temporal.always(low, times, hold, within)
-        case "never":
-            against = np.where(unknown & applies, np.inf, low)
-            return temporal.never(against, times, hold, within, progress)
-        case "eventually":
-            return temporal.eventually(low, times, hold, within, progress)
+    match spec:
+        case Formula():
+            return formula_verdict(spec.formula, window_of(run, spec.during or step))
+        case Until(predicate=first, until=second):
+            _refuse_unavailable(first, second)
+            return until_verdict(spec, run, step)
         case _:
-            return temporal.at_end(low, times, hold, within, progress)
+            terms = terms_of(spec, step)
+            _refuse_unavailable(terms.predicate)
+            window = window_of(run, terms.step)
+            return decide(terms, window, signal(terms.predicate, window))
 
 
-def _nearest(values: FloatArray, times: FloatArray, progress: FloatArray | None) -> int:
-    """The sample that came nearest to what never held at all: it says most about why."""
-    known = np.where(np.isnan(values), -np.inf, values)
-    return temporal.eventually(known, times, progress=progress).index
-
-
-def _too_short(terms: _Terms, times: FloatArray) -> Verdict:
-    hold, span = terms.hold or 0.0, float(times[-1] - times[0])
-    reason = f"judged over {span:.3f} s, which leaves no room for {hold:.3f} s"
-    if terms.within is not None:
-        reason += f" begun within {terms.within:.3f} s"
-    if terms.word == "never":
-        raise NotReached(reason)
-    return Verdict("", "failed", span - hold, "s", float(times[-1]), reason=reason)
-
-
-def _held(terms: _Terms, values: FloatArray, times: FloatArray, decision: Decision) -> str:
-    """How long it held at most, where a time was asked for and was not reached."""
-    if terms.hold is None or terms.word == "never" or decision.holds:
-        return ""
-    longest = longest_hold(np.nan_to_num(values, nan=-1.0), times)
-    if longest >= terms.hold:
-        return f"; it held for {amount(terms.hold, 's')}, but not when it was asked to"
-    return f"; held for {amount(longest, 's')} at most, {amount(terms.hold, 's')} asked for"
+def _refuse_unavailable(*predicates: AnyPredicate) -> None:
+    for predicate in predicates:
+        if type(predicate) not in EXECUTED:
+            raise NotObservable(f"`{predicate.check}` is not yet available")

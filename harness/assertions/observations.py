@@ -5,12 +5,23 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from harness.spec.checks import AnyExpectation, Clearance, Placed, TcpPose
+from harness.spec.checks import (
+    AnyExpectation,
+    Clearance,
+    Formula,
+    Placed,
+    TcpPath,
+    TcpPose,
+)
+from harness.spec.formula import Node, constants_of, frames_of, signals_of
+from harness.spec.formula_parser import parse_formula
 
 CLEARANCE_CUTOFF = 0.15
 """Of `Signals.clearances` when nothing asks for more [m]."""
 CLEARANCE_ROOM = 0.05
 """How much further than the largest distance asked for is recorded, to see margins [m]."""
+LARGEST_CUTOFF = 2.0
+"""However far a formula asks [m]."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +51,20 @@ def observations(expectations: Iterable[AnyExpectation]) -> Observations:
                     frames.add(pose.frame)
                 case Clearance(at_least=at_least):
                     cutoff = max(cutoff, at_least + CLEARANCE_ROOM)
+                case TcpPath():
+                    frames |= {pose.frame for _, pose in model.corners()}
+                case Formula(formula=text):
+                    root = parse_formula(text)
+                    frames |= {name for name in frames_of(root) if name != "tcp"}
+                    cutoff = max(cutoff, _furthest(root))
                 case _:
                     pass
     return Observations(tuple(sorted(frames - {"world"})), cutoff)
+
+
+def _furthest(root: Node) -> float:
+    """A cutoff of distances beyond every length that a formula compares one with [m]."""
+    if not any(node.name == "distance" for node in signals_of(root)):
+        return 0.0
+    lengths = [abs(each.value) for each in constants_of(root) if each.unit in ("", "m")]
+    return min(max(lengths, default=0.0) + CLEARANCE_ROOM, LARGEST_CUTOFF)

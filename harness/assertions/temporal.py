@@ -172,6 +172,55 @@ def at_end(
     return came_true if came_true.value < decision.value else decision
 
 
+def until(
+    first: FloatArray,
+    second: FloatArray,
+    times: FloatArray,
+    hold: float | None = None,
+    within: float | None = None,
+) -> tuple[Decision, bool]:
+    """The best moment at which the second begins, the first having held at all samples before it.
+
+    At that moment itself the first need not hold.
+
+    Args:
+        first: Margins of what must hold before, shape (n,), n > 0, without NaN.
+        second: Margins of what must come, shape (n,), without NaN.
+        times: Of the samples [s], shape (n,).
+        hold: The second must be held so long without a break [s].
+        within: Latest beginning of the second after the first sample [s].
+
+    Returns:
+        The decision, and whether it was a sample of the second that decided.
+
+    Raises:
+        TooShort: No sample at which the second may begin has `hold` seconds behind it.
+    """
+    starts = np.arange(len(times))
+    if within is not None:
+        starts = starts[times <= times[0] + within + TIME_RESOLUTION]
+    ends = starts
+    if hold is not None:
+        ends = np.searchsorted(times, times[starts] + hold - TIME_RESOLUTION)
+        starts, ends = starts[ends < len(times)], ends[ends < len(times)]
+    if len(starts) == 0:
+        raise TooShort
+    coming = range_min(second, starts, ends)
+    before = np.concatenate([[np.inf], np.minimum.accumulate(first)])[starts]
+    values = np.minimum(coming, before)
+    came = coming >= 0
+    if came.any() and not (values >= 0).any():  # it came: what did not hold before says why
+        values = np.where(came, values, -np.inf)
+    best = int(np.argmax(values))
+    value, is_second = float(values[best]), bool(coming[best] <= before[best])
+    start, end = int(starts[best]), int(ends[best])
+    if is_second:
+        index = start + int(np.argmin(second[start : end + 1]))
+    else:
+        index = int(np.argmin(first[:start]))
+    return Decision(value, index, bool(value >= 0)), is_second
+
+
 def _first_of_last(times: FloatArray, span: float) -> int:
     """The last sample that is `span` seconds or more before the end."""
     return _last_before(times, float(times[-1]) - span)

@@ -12,6 +12,7 @@ from harness.spec.checks import (
     Between,
     Clearance,
     Collision,
+    Formula,
     GripperState,
     In,
     Joints,
@@ -20,8 +21,11 @@ from harness.spec.checks import (
     On,
     Placed,
     Static,
+    TcpPath,
     TcpPose,
 )
+from harness.spec.formula import SIGNALS, signals_of
+from harness.spec.formula_parser import parse_formula
 from harness.spec.poses import Pose
 
 SPECIAL = ("robot", "gripper", "any")
@@ -73,6 +77,11 @@ def _check_names(spec: AnyExpectation, loc: Loc, scope: Scope) -> None:
                 scope.check_body(name, (*loc, "between", index), special=SPECIAL)
         case TcpPose():
             scope.check_link(spec.link, (*loc, "link"))
+        case TcpPath():
+            for keys, pose in spec.corners():
+                scope.check_frame(pose.frame, (*loc, *keys, "frame"))
+        case Formula(formula=text):
+            _check_formula(text, (*loc, "formula"), scope)
         case Joints():
             for name in spec.positions:
                 scope.check_joint(name, (*loc, "positions", name))
@@ -88,3 +97,16 @@ def _check_names(spec: AnyExpectation, loc: Loc, scope: Scope) -> None:
     pose = getattr(spec, "pose", None)
     if isinstance(pose, Pose):
         scope.check_frame(pose.frame, (*loc, "pose", "frame"))
+
+
+def _check_formula(text: str, loc: Loc, scope: Scope) -> None:
+    """Names of a formula's signals, each problem under its name."""
+    robot = scope.description
+    bodies = (*SPECIAL, *scope.objects, *robot.link_names)
+    known = {"joint": robot.joint_names, "frame": ("tcp", *bodies[len(SPECIAL) :]), "body": bodies}
+    for signal in signals_of(parse_formula(text)):
+        kinds, _, _ = SIGNALS[signal.name]
+        for kind, name, start in zip(kinds, signal.arguments, signal.starts, strict=True):
+            if name not in known[kind]:
+                what = {"joint": "joint", "frame": "link or object", "body": "object or link"}
+                scope.problems.unknown(loc, what[kind], name, known[kind], start=start)

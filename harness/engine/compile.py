@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
-from harness.core.errors import Problem, RobotError
+from harness.core.errors import RobotError
 from harness.core.geometry import Mesh
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
@@ -25,27 +24,12 @@ from harness.robot.description import RobotDescription
 from harness.spec.checks import AnyExpectation
 from harness.spec.planning import Planning
 from harness.spec.scenario import Scenario
+from harness.spec.source import SourceMap
 from harness.spec.steps import AddObject, AllowCollisions, AnyStep, AttachObject
 from harness.spec.world import ObjectSpec, WorldSpec
 
 NOT_YET = "not yet available"
 MOST_OBJECTS = 1000  # of all kinds; 300 that move already take 2 s of wall time for each simulated
-
-
-class SourceMap(Protocol):
-    """Where things stand in the scenario file."""
-
-    def line_of(self, loc: Loc) -> tuple[int, int]:
-        """Line and column, from 1."""
-        ...
-
-    def problem(self, loc: Loc, message: str, hint: str = "") -> Problem:
-        """A problem at a value."""
-        ...
-
-    def problem_at_key(self, loc: Loc, message: str, hint: str = "") -> Problem:
-        """A problem at a value's key."""
-        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +75,7 @@ def compile_scenario(sources: Sources) -> Program:
 class _Compiler:
     def __init__(self, sources: Sources) -> None:
         self.sources = sources
-        self.problems = Problems(sources.lines.problem, sources.lines.problem_at_key)
+        self.problems = Problems(sources.lines)
         self.scope = Scope(sources.description, self.problems)
         self.later: dict[str, WorldObject] = {}
         self.later_specs: dict[str, ObjectSpec] = {}  # without poses

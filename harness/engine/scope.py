@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 
 from harness.core.errors import Problem, SpecError
 from harness.core.world import WorldObject
 from harness.engine.program import Loc
 from harness.ports import LONGEST_RUN
 from harness.robot.description import RobotDescription
+from harness.spec.source import SourceMap
 
 LISTED = 12  # names in a hint
 
@@ -17,31 +18,46 @@ LISTED = 12  # names in a hint
 class Problems:
     """Collects located problems, so that all of a file's are told at once."""
 
-    def __init__(
-        self,
-        locate: Callable[[Loc, str, str], Problem],
-        locate_key: Callable[[Loc, str, str], Problem],
-    ) -> None:
-        self._locate = locate
-        self._locate_key = locate_key
+    def __init__(self, lines: SourceMap) -> None:
+        self._lines = lines
         self._found: dict[Loc, Problem] = {}
 
     def add(self, loc: Loc, message: str, hint: str = "") -> None:
         """Note a problem at a place of the file; others at the same place follow from the first."""
-        self._found.setdefault(loc, self._locate(loc, message, hint))
+        self._found.setdefault(loc, self._lines.problem(loc, message, hint))
 
     def unknown(
-        self, loc: Loc, what: str, name: str, known: Iterable[str], *, is_key: bool = False
+        self,
+        loc: Loc,
+        what: str,
+        name: str,
+        known: Iterable[str],
+        *,
+        is_key: bool = False,
+        start: int | None = None,
     ) -> None:
-        """Note a name that nothing has, with the nearest that something has, then the rest."""
+        """Note a name that nothing has, with the nearest that something has, then the rest.
+
+        Args:
+            loc: Where the name stands.
+            what: It should be the name of.
+            name: That nothing has.
+            known: Names that something has.
+            is_key: The name is a key, not a value.
+            start: The name is a part of the text there and begins at this character, from 0.
+        """
         names = list(dict.fromkeys(known))
         near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
         rest = ", ".join(names[:LISTED]) + (", ..." if len(names) > LISTED else "")
         parts = [f"did you mean '{near[0]}'?"] if near else []
         parts.append(f"known: {rest}" if names else "there is none here")
-        locate = self._locate_key if is_key else self._locate
-        message = f"there is no {what} '{name}'"
-        self._found.setdefault(loc, locate(loc, message, " ".join(parts)))
+        message, hint = f"there is no {what} '{name}'", " ".join(parts)
+        if start is not None:
+            problem = self._lines.problem_in_text(loc, start, len(name), message, hint)
+            self._found.setdefault((*loc, start), problem)
+            return
+        locate = self._lines.problem_at_key if is_key else self._lines.problem
+        self._found.setdefault(loc, locate(loc, message, hint))
 
     def raise_if_any(self) -> None:
         """Raise SpecError with everything found, if anything was."""

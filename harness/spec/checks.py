@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from harness.spec.base import (
     Angle,
@@ -18,6 +18,7 @@ from harness.spec.base import (
     Duration,
     Flag,
     Force,
+    Fraction,
     JointValue,
     LinearVelocity,
     Name,
@@ -28,6 +29,7 @@ from harness.spec.base import (
     PositiveLength,
     SpecModel,
 )
+from harness.spec.formula_parser import readable
 from harness.spec.poses import Pose, PoseTolerance
 
 Judged = Literal["at_end", "always", "eventually"]
@@ -110,10 +112,17 @@ class On(ObjectCheck):
 
 
 class In(ObjectCheck):
-    """The object's origin is inside another object's shape."""
+    """The object's origin is inside the outline of a container that has not tipped over.
+
+    The outline is the smallest box along the container's axes that holds all of its shapes.
+    """
 
     check: Literal["in"] = "in"
     container: Name = Field(description="What it is in.")
+    max_lean: Annotated[Angle, Field(gt=0)] = Field(
+        default=0.7853981633974483,
+        description="A container whose z axis leans further from the vertical has tipped [rad].",
+    )
 
 
 class Displaced(ObjectCheck):
@@ -222,13 +231,32 @@ class Arc(SpecModel):
 
 
 class TcpPath(CheckFields):
-    """The TCP stays near a line or an arc."""
+    """The TCP follows a line or an arc: it stays near it and travels it from end to end."""
 
     judged = "always"
     check: Literal["tcp_path"] = "tcp_path"
     line: Line | None = Field(default=None, description="Either this")
     arc: Arc | None = Field(default=None, description="or this.")
     max_deviation: PositiveLength = Field(default=0.001, description="Largest distance to it [m].")
+    min_fraction: Fraction = Field(
+        default=0.95, description="Share of it that must be travelled within the window."
+    )
+
+    def corners(self) -> list[tuple[tuple[str, str], Pose]]:
+        """Each point of the curve, with the keys that lead to it."""
+        curves = (("line", self.line), ("arc", self.arc))
+        return [
+            ((name, key), getattr(curve, key))
+            for name, curve in curves
+            if curve is not None
+            for key in type(curve).model_fields
+        ]
+
+    @model_validator(mode="after")
+    def _one(self) -> TcpPath:
+        if (self.line is None) == (self.arc is None):
+            raise ValueError("exactly one of line, arc")
+        return self
 
 
 class Joints(CheckFields):
@@ -345,7 +373,7 @@ class PathLength(CheckFields):
 
 
 class FractionCheck(CheckFields):
-    """A cartesian path was followed at least so far."""
+    """Every `cartesian_path` of the window was followed at least so far."""
 
     short = "at_least"
 
@@ -453,14 +481,25 @@ class Until(TemporalFields):
     predicate: Predicate
     until: Predicate
 
+    @model_validator(mode="after")
+    def _words_are_of_what_comes(self) -> Until:
+        if self.predicate.for_ is not None or self.predicate.within is not None:
+            raise ValueError(
+                "what holds until then has no `for` and no `within`; write them inside `until:`"
+            )
+        return self
+
 
 class Formula(SpecModel):
-    """Signal temporal logic over recorded signals."""
+    """Signal temporal logic over recorded signals, judged at the window's first sample."""
 
     short = "formula"
 
     check: Literal["formula"] = "formula"
-    formula: str
+    formula: Annotated[str, AfterValidator(readable)] = Field(
+        description="As `always (z(box) > 5 cm implies force(robot, box) > 0.1 N)`."
+    )
+    during: Name | None = Field(default=None, description="Judged over the step with this id.")
     points: Annotated[Number, Field(ge=0)] | None = None
     name: str | None = None
 

@@ -16,11 +16,13 @@ class MistakeError(ValueError):
     Attributes:
         message: What is wrong, the offending value quoted.
         hint: What to do instead.
+        span: Where in a text the mistake is, from 0, and how long; None for all of it.
     """
 
-    def __init__(self, message: str, hint: str = "") -> None:
+    def __init__(self, message: str, hint: str = "", span: tuple[int, int] | None = None) -> None:
         self.message = message
         self.hint = hint
+        self.span = span
         super().__init__(message)
 
 

@@ -12,7 +12,8 @@ from pydantic.fields import FieldInfo
 from harness.core.errors import ErrorCode
 from harness.spec.annotations import bare, is_model, keys_of
 from harness.spec.base import SpecModel
-from harness.spec.checks import CheckFields
+from harness.spec.checks import CheckFields, Formula
+from harness.spec.formula import SIGNALS
 from harness.spec.language import BESIDE_CHECK, BESIDE_VERB, PREDICATES, TEMPORAL, VERBS
 from harness.spec.scenario import Scenario
 from harness.spec.steps import Step, StepFields
@@ -52,6 +53,31 @@ expect:
 Every verdict has a margin: how far it was from failing. What was never observed does not pass."""
 
 
+UNTIL_TEXT = """- `{always: A, until: B}`: A holds at every sample before one at which B does, and
+B does; with `for`, B is held from there on; with `within`, B begins by then.
+
+The words are formulas of signal temporal logic: with a hold T and a deadline W, `eventually A` is
+`eventually[0, W] always[0, T] A`, `never A` is `not eventually[0, W] always[0, T] A`, `always A` is
+`always A` (with a deadline `eventually[0, W] always A`), and `until` is
+`A until[0, W] always[0, T] B`. `during` gives them the step's samples as their window."""
+FORMULA_TEXT = """```yaml
+expect:
+  - formula: always (z(red_box) > 5 cm implies force(gripper, red_box) > 0.1 N)
+  - formula: {formula: "eventually[0, 3] always[0, 500 ms] speed(tcp) < 0.005", during: lift}
+```
+
+From the weakest binding to the strongest: `implies`, `or`, `and`, `until[a, b]`, then `not`,
+`always[a, b]`, `eventually[a, b]`, then `<` `<=` `>` `>=`, `+` `-`, `*` `/`. Parentheses group.
+`->`, `|`, `&`, `!`, `U`, `G`, `F` are other ways to write implies, or, and, not, until, always,
+eventually. `abs(a)`, `min(a, b)`, `max(a, b)` are numbers, `5 cm`, `90 deg`, `200 ms`, `2 N` too.
+An interval is in seconds after the moment at which its word is judged; without one it lasts to the
+end of the window. Names with other characters than letters, digits and `_` stand in quotes.
+
+The margin is that of the comparison that decides, in its unit. Where the window ends before a
+formula is decided it is not reached: `always[0, 5] A` in a window of 3 s may fail, and cannot pass.
+Where a signal is missing it is not observable."""
+
+
 def scenario_reference() -> str:
     """The keys of a scenario file and of a world file."""
     parts = ["# Scenario and world files", VALUES]
@@ -86,12 +112,21 @@ def expectations_reference(available: Collection[type] | None = None) -> str:
     parts = ["# Expectations", EXPECTATIONS_HEAD, VALUES, _contents(PREDICATES, available)]
     parts += ["Inside or beside every word may stand:", beside]
     parts += ["## Temporal words", _words({w: _sentence(m) for w, m in TEMPORAL.items()})]
-    parts.append("`{always: A, until: B}`: A holds until B does, and B does.")
+    parts += [UNTIL_TEXT, *_formula_section()]
     for word, model in PREDICATES.items():
         judged = model.judged if issubclass(model, CheckFields) else "at_end"
         parts += _section(word, model, BESIDE_CHECK, available, (JUDGED[judged],))
     parts += _parts(PREDICATES.values())
     return "\n\n".join(parts) + "\n"
+
+
+def _formula_section() -> list[str]:
+    rows = ["| signal | unit | meaning |", "| --- | --- | --- |"]
+    for name, (kinds, unit, meaning) in SIGNALS.items():
+        arguments = f"({', '.join(kinds)})" if kinds else ""
+        unit = unit or "the joint's"
+        rows.append(f"| `{name}{arguments}` | {unit} | {meaning} |")
+    return ["## `formula`", _sentence(Formula), FORMULA_TEXT, "\n".join(rows)]
 
 
 def _contents(words: Mapping[str, type[SpecModel]], available: Collection[type] | None) -> str:

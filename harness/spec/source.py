@@ -15,6 +15,9 @@ Loc = tuple[str | int, ...]
 Scalar = str | int | float | bool | None
 Plain = Scalar | list["Plain"] | dict[str, "Plain"]
 
+MOST_BEFORE_TEXT = 4
+"""Characters that may stand before a text: a quote, or `>-` with a number."""
+
 LINE_BREAK = re.compile("\r\n|[\r\n\x85\u2028\u2029]")  # the breaks that YAML's reader counts
 
 
@@ -59,6 +62,28 @@ class Place:
         text = self.source.line(self.line)
         length = max(1, min(self.length, len(text) - self.column + 1))
         return Problem(self.source.path, self.line, self.column, message, hint, text, length)
+
+    def part(self, text: str, start: int, length: int) -> Place:
+        """The place of some characters of a text that is written here, in quotes or over lines.
+
+        Characters are found by what is not blank, since folding changes only blanks; where escapes
+        change more, the whole text is the place.
+        """
+        written = [
+            (number, column, character)
+            for number in range(self.line, self.line + text.count("\n") + len(text) + 3)
+            for column, character in enumerate(self.source.line(number), 1)
+            if not character.isspace() and (number, column) >= (self.line, self.column)
+        ]
+        meant = [character for character in text if not character.isspace()]
+        before = sum(not character.isspace() for character in text[:start])
+        for first in range(MOST_BEFORE_TEXT):
+            if [character for *_, character in written[first : first + len(meant)]] == meant:
+                if not meant:
+                    break
+                line, column, _ = written[first + min(before, len(meant) - 1)]
+                return Place(self.source, line, column + (before == len(meant)), length)
+        return self
 
 
 class Entry(NamedTuple):
@@ -178,6 +203,13 @@ class SourceMap:
     def problem(self, loc: Loc, message: str, hint: str = "") -> Problem:
         """A mistake at a field's value."""
         return self.find(loc).item.place.problem(message, hint)
+
+    def problem_in_text(
+        self, loc: Loc, start: int, length: int, message: str, hint: str = ""
+    ) -> Problem:
+        """A mistake in some characters of a field's text, the first of them `start`, from 0."""
+        item = self.find(loc).item
+        return item.place.part(str(item.plain()), start, length).problem(message, hint)
 
     def problem_at_key(self, loc: Loc, message: str, hint: str = "") -> Problem:
         """A mistake at a field's key, or at its value where it has none."""

@@ -44,6 +44,9 @@ def _problem(error: ErrorDetails, lines: SourceMap) -> Problem:
         place = found.key
     word = WORDINGS.get(error["type"], _as_said)
     message, hint = word(error, error.get("ctx", {}), describe(error["input"]))
+    raised = error.get("ctx", {}).get("error")
+    if isinstance(raised, MistakeError) and raised.span is not None:
+        place = place.part(str(found.item.plain()), *raised.span)
     if error["type"] != "value_error":
         is_key = place is found.key
         message = f"a name {message}" if is_key else f"`{_subject(found)}` {message}"

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.core.geometry import Box
+from harness.core.geometry import Box, Cylinder, Plane, Shape
 from harness.core.spatial import SE3
 from harness.spec.checks import (
     Always,
@@ -14,8 +14,10 @@ from harness.spec.checks import (
     DurationCheck,
     Effort,
     Eventually,
+    FractionCheck,
     Grasped,
     GripperState,
+    In,
     InContact,
     Joints,
     Lifted,
@@ -27,8 +29,10 @@ from harness.spec.checks import (
     Released,
     Slip,
     Static,
+    TcpPath,
     TcpPose,
     TrackingError,
+    Until,
     Upright,
     WithinLimits,
 )
@@ -487,6 +491,141 @@ def test_the_path_of_the_tcp_has_a_length():
     assert verdict(run, PathLength(at_most=0.41, during="gone")).status == "not reached"
 
 
+# tcp_path, fraction, in
+
+
+LINE = {"start": {"xyz": [0, 0, 0.3]}, "end": {"xyz": [0, 0, 0.5]}}
+ARC = {
+    "start": {"xyz": [0.2, 0, 0]},
+    "interim": {"xyz": [0, 0.2, 0]},
+    "end": {"xyz": [-0.2, 0, 0]},
+}
+
+
+def along_z(offset=0.0, start=0.3, end=0.5):
+    tcp = heights(np.linspace(start, end, 200))
+    tcp[100, 0] = offset
+    return make_run(tcp_pose=tcp)
+
+
+def around(radius, first=0.0, last=np.pi):
+    angle = np.linspace(first, last, 200)
+    path = np.stack([radius * np.cos(angle), radius * np.sin(angle), 0 * angle], axis=1)
+    return make_run(tcp_pose=at(200, path))
+
+
+def test_a_line_is_followed_near_enough_and_from_end_to_end():
+    spec = TcpPath(line=LINE, max_deviation=0.002)
+    answer = verdict(along_z(0.0015), spec)
+    assert (answer.status, answer.unit) == ("passed", "1"), "the share is the tighter of the two"
+    strayed = verdict(along_z(0.0021), spec)
+    assert (strayed.status, strayed.unit) == ("failed", "m")
+    assert strayed.margin == pytest.approx(-1e-4)
+    assert strayed.time == pytest.approx(1.0)
+    assert verdict(along_z(end=0.5019), spec).status == "passed", "2 mm beyond the end"
+    assert verdict(along_z(end=0.5021), spec).status == "failed"
+
+
+def test_a_tcp_that_stands_on_the_line_has_not_followed_it():
+    spec = TcpPath(line=LINE)
+    standing = verdict(make_run(), spec)
+    assert (standing.status, standing.unit) == ("failed", "1")
+    assert standing.margin == pytest.approx(-0.95)
+    assert "travelled 0.0 % of the line" in standing.reason
+    assert verdict(along_z(end=0.489), spec).status == "failed"
+    assert verdict(along_z(end=0.489), TcpPath(line=LINE, min_fraction=0.9)).status == "passed"
+    assert verdict(along_z(), TcpPath(line=LINE, during="later")).status == "not reached"
+
+
+def test_an_arc_is_followed_on_its_own_side_only():
+    spec = TcpPath(arc=ARC, max_deviation=0.002)
+    assert verdict(around(0.2), spec).status == "passed"
+    outside = verdict(around(0.2021), spec)
+    assert (outside.status, outside.margin) == ("failed", pytest.approx(-1e-4))
+    other_way = verdict(around(0.2, 0, -np.pi), spec)
+    assert other_way.margin == pytest.approx(0.002 - np.hypot(0.2, 0.2), abs=2e-3)
+    half = verdict(around(0.2, 0, np.pi / 2), spec)
+    assert (half.status, half.margin) == ("failed", pytest.approx(0.5 - 0.95))
+
+
+def test_an_arc_through_points_on_a_line_cannot_be_judged():
+    flat = {**ARC, "interim": {"xyz": [0.1, 0, 0]}}
+    assert verdict(make_run(), TcpPath(arc=flat)).status == "not observable"
+    point = {"start": LINE["start"], "end": LINE["start"]}
+    assert verdict(make_run(), TcpPath(line=point)).status == "not observable"
+    with pytest.raises(ValueError, match="exactly one of line, arc"):
+        TcpPath(line=LINE, arc=ARC)
+
+
+def test_a_line_in_the_frame_of_an_object_moves_with_it():
+    run = along_z()
+    carried = changed(run, object_poses={"box": run.signals.tcp_pose})
+    in_box = {"start": {"frame": "box"}, "end": {"frame": "box", "xyz": [0, 0, 0.1]}}
+    answer = verdict(carried, TcpPath(line=in_box))
+    assert (answer.status, answer.unit) == ("failed", "1"), "it stands at the line's start"
+
+
+def test_the_least_share_of_the_cartesian_paths_of_a_window_counts():
+    run = make_run(
+        steps=(
+            step("weld", 0, 50, "cartesian_path", result={"fraction": 1.0}),
+            step("back", 50, 100, "cartesian_path", result={"fraction": 0.74}),
+            step("wait", 100, 200, "wait"),
+        )
+    )
+    assert verdict(run, FractionCheck(), "weld").margin == pytest.approx(0.0)
+    answer = verdict(run, FractionCheck(at_least=0.75))
+    assert (answer.status, answer.unit, answer.margin) == ("failed", "1", pytest.approx(-0.01))
+    assert answer.reason.startswith("74.0 % of the path of back followed, 75.0 % asked for")
+    assert verdict(run, FractionCheck(at_least=0.7)).status == "passed"
+    assert verdict(run, FractionCheck(), "wait").status == "not reached"
+    broken = make_run(steps=(step("weld", 0, 50, "cartesian_path", result={"fraction": None}),))
+    assert verdict(broken, FractionCheck(at_least=0)).status == "not reached"
+
+
+def a_bin(name="bin", lean=0.0, x=0.0):
+    """A tray of 20 x 20 x 10 cm made of a floor and two walls; its origin is in its middle."""
+    parts = [
+        Shape(Box((0.2, 0.2, 0.01)), SE3.from_xyz_rpy((0, 0, -0.045))),
+        Shape(Box((0.01, 0.2, 0.1)), SE3.from_xyz_rpy((-0.095, 0, 0))),
+        Shape(Cylinder(0.05, 0.2), SE3.from_xyz_rpy((0.05, 0, 0), (np.pi / 2, 0, 0))),
+    ]
+    record = replace(thing(name, static=True), shapes=tuple(parts))
+    return record, at(200, (x, 0, 0.05), SE3.from_xyz_rpy(rpy=(lean, 0, 0)).quat_wxyz)
+
+
+def in_bin(lean=0.0, x=0.0, box=(0, 0, 0.03)):
+    record, poses = a_bin(lean=lean, x=x)
+    return make_run(objects=(BOX, record), object_poses={"bin": poses, "box": at(200, box)})
+
+
+def test_what_is_inside_the_outline_of_a_container_is_in_it():
+    spec = In(object="box", container="bin")
+    answer = verdict(in_bin(), spec)
+    assert (answer.status, answer.unit) == ("passed", "rad"), "the lean is the tighter of the two"
+    beside = verdict(in_bin(x=0.101), spec)
+    assert (beside.status, beside.unit, beside.margin) == ("failed", "m", pytest.approx(-0.001))
+    assert verdict(in_bin(box=(0, 0, 0.099)), spec).margin == pytest.approx(0.001)
+    assert verdict(in_bin(box=(0, 0, 0.101)), spec).status == "failed", "above its rim"
+
+
+def test_nothing_is_in_a_container_that_has_tipped_over():
+    spec = In(object="box", container="bin")
+    assert verdict(in_bin(lean=np.radians(44), box=(0, 0, 0.05)), spec).status == "passed"
+    answer = verdict(in_bin(lean=np.radians(46), box=(0, 0, 0.05)), spec)
+    assert (answer.status, answer.unit) == ("failed", "rad")
+    assert answer.margin == pytest.approx(-np.radians(1))
+
+
+def test_being_in_needs_both_and_a_container_with_a_known_extent():
+    record, poses = a_bin()
+    gone = make_run(objects=(BOX, record), object_poses={"bin": poses, "box": ABSENT})
+    assert verdict(gone, In(object="box", container="bin")).status == "not reached"
+    floor = replace(record, shapes=(Shape(Plane()),))
+    run = make_run(objects=(BOX, floor), object_poses={"bin": poses})
+    assert verdict(run, In(object="box", container="bin")).status == "not observable"
+
+
 # joints, named_target, gripper
 
 
@@ -641,6 +780,31 @@ def test_a_deadline_counts_from_the_window_s_start():
     assert verdict(run, Lifted(object="box", above=0.05, within=1.3)).status == "passed"
     assert verdict(run, Lifted(object="box", above=0.05, within=1.2)).status == "failed"
     assert verdict(run, Lifted(object="box", above=0.05, within=0.5), "lift").status == "passed"
+
+
+def test_one_thing_holds_until_another_comes():
+    run = lift_run()  # gripped at 0.5 s, off the table at 1 s, at 50 mm from 1.25 s on
+    still = Static(object="box", max_velocity=0.01)
+    on_table = On(object="box", support="Table")
+    touched = InContact(between=("gripper", "box"))
+    answer = verdict(run, Until(predicate=still, until=touched))
+    assert (answer.status, answer.unit) == ("passed", "m/s")
+    came = verdict(run, Until(predicate=on_table, until=Lifted(object="box", above=0.05)))
+    assert came.status == "failed", "it was off the table before it was at 50 mm"
+    assert (came.unit, came.time) == ("N", pytest.approx(1.01))
+    assert came.reason.startswith("`on` did not hold until then")
+    never = verdict(run, Until(predicate=still, until=InContact(between=("box", "arm_link"))))
+    assert (never.status, never.unit) == ("failed", "N")
+    assert "`in_contact` never came" in never.reason
+    late = Until(predicate=still, until=touched, within=0.4)
+    assert verdict(run, late).status == "failed"
+    assert verdict(run, Until(predicate=still, until=touched, within=0.5)).status == "passed"
+    held = Until(predicate=still, until=touched, **{"for": 1.5})
+    assert verdict(run, held).status == "failed"
+    assert verdict(run, Until(predicate=still, until=touched), "gone").status == "not reached"
+    assert verdict(absent_box(), Until(predicate=still, until=touched)).status == "not reached"
+    with pytest.raises(ValueError, match="no `for` and no `within`"):
+        Until(predicate=Static(**{"for": 1.0}), until=touched)
 
 
 def test_words_inside_and_outside_a_temporal_word_both_count():

@@ -77,3 +77,36 @@ expect:
 """
     found = problems(tmp_path, text)
     assert [problem.line for problem in found] == [4]
+
+
+FORMULAS = """\
+scenario: Formulas
+robot: {model: ur3e, gripper: rh_p12_rn_a, base: {xyz: [0, 0, 1.02]}}
+world: lesson_ur
+steps:
+  - wait: 0.2 s
+expect:
+  - formula: always (z(green_cylindr) > 1 m and position(elbow) < 2)
+  - formula: "always z(tcp > 1"
+  - formula: >-
+      always (z(tcp) > 1 m
+      implies time < force(robot, Table))
+  - formula: {formula: 'not eventually z(tcp) > 1 parsec', points: 2}
+"""
+
+
+def test_a_mistake_in_a_formula_is_told_at_its_word(tmp_path):
+    path = tmp_path / "formulas.scenario.yaml"
+    path.write_text(FORMULAS)
+    with pytest.raises(SpecError) as caught:
+        prepare(path)
+    underlined = [
+        (p.line, p.column, p.source_line[p.column - 1 :][: p.length]) for p in caught.value.problems
+    ]
+    assert underlined == [
+        (7, 24, "green_cylindr"),
+        (7, 58, "elbow"),
+        (8, 28, ">"),
+        (11, 20, "<"),
+        (12, 51, "parsec"),
+    ]

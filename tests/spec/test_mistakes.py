@@ -116,7 +116,7 @@ def test_a_mistake_in_a_step_is_one_problem_at_its_place(step, message, hint):
         ("- never: {lifted: {object: a, above: §5 kg}}", "`5 kg` is a mass; a length", "cm"),
         ("- §lifted:", "`object` is missing in `lifted`", "add `object:`"),
         ("- {lifted: a, for: §-1}", "`for` must be at least 0, not `-1`", ""),
-        ("- {formula: G(x), §for: 1}", "`for` has no meaning beside `formula`", ""),
+        ("- {formula: time > 1, §for: 1}", "`for` has no meaning beside `formula`", ""),
         ("- collision: {between: §[robot]}", "`between` has 1 item; item 2 is missing", ""),
     ],
 )

@@ -1,0 +1,270 @@
+"""formula: signal temporal logic over a window, with bounds where the recording ends too early.
+
+Each node has two margins at every sample: what it is at least and what it is at most, whatever
+would have followed after the last sample and whatever a missing sample was. They are equal where
+the record decides. `always[0, 5]` of which three seconds were recorded is at most their minimum
+and at least minus infinity; so it may have failed, and cannot have passed.
+
+Between two samples nobody knows: `always[a, b]` looks at every sample from `a` on up to the first
+one that is at `b` or later, `eventually[a, b]` and `until[a, b]` at those from `a` up to `b`.
+
+References:
+    [1] A. Donze, O. Maler, "Robust Satisfaction of Temporal Logic over Real-Valued Signals",
+        FORMATS 2010: margins, and bounded `until` from the unbounded one.
+    [2] J. Deshmukh et al., "Robust Online Monitoring of Signal Temporal Logic", RV 2015: bounds.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.assertions.formula_signals import values_of
+from harness.assertions.temporal import TIME_RESOLUTION, range_min
+from harness.assertions.text import amount
+from harness.assertions.window import NotObservable, NotReached, Window
+from harness.core.types import BoolArray, FloatArray, IntArray
+from harness.recording.run import Measure, Verdict, VerdictStatus
+from harness.spec.formula import Comparison, Interval, Logic, Node, Signal, Temporal, signals_of
+from harness.spec.formula_parser import parse_formula
+
+TINY = float(np.nextafter(0.0, 1.0))
+"""Stands for a margin of zero on the side that the comparison says."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bounds:
+    """The least and the largest margin that a formula can have at each sample, shape (n,)."""
+
+    low: FloatArray
+    high: FloatArray
+
+    def __neg__(self) -> Bounds:
+        return Bounds(-self.high, -self.low)
+
+
+def formula_verdict(text: str, window: Window) -> Verdict:
+    """The verdict of a formula at the first sample of a window, without its place in the file.
+
+    Raises:
+        NotReached: The window ended before the formula was decided.
+        NotObservable: A signal was not recorded, or is not known where it would have decided.
+    """
+    evaluation = Evaluation(window)
+    root = parse_formula(text)
+    bounds = evaluation.bounds(root)
+    low, high = float(bounds.low[0]), float(bounds.high[0])
+    if low < 0 < high:
+        missing = evaluation.first_unknown(root)
+        if missing:
+            raise NotObservable(missing)
+        raise NotReached("the time it is judged over ended before it was decided")
+    holds = low > 0
+    value = low if holds else high
+    comparison, index, sign = evaluation.decider(root, 0, at_least=holds)
+    time = window.time(index)
+    if not math.isfinite(value) or comparison is None:
+        raise NotReached("nothing of it was there in the time it is judged over")
+    left = values_of(comparison.left, window)
+    right = values_of(comparison.right, window)
+    unit = left.unit or right.unit or "1"
+    said, limit = float(left.values[index]), float(right.values[index])
+    way = "holds" if holds == (sign > 0) else "does not hold"
+    reason = f"{comparison.text} {way}: {amount(said, unit)} against {amount(limit, unit)}"
+    above = comparison.operator.startswith(">") == (sign > 0)
+    measure = Measure(
+        str(comparison.left) if isinstance(comparison.left, Signal) else comparison.text,
+        said,
+        limit,
+        ">=" if above else "<=",
+        unit,
+        time,
+    )
+    status: VerdictStatus = "passed" if holds else "failed"
+    return Verdict(
+        "",
+        status,
+        0.0 if abs(value) <= TINY else value,
+        unit,
+        time,
+        reason=f"{reason} at t={time:.3f} s",
+        measures=(measure,),
+    )
+
+
+class Evaluation:
+    """The bounds of every part of a formula over one window, each calculated once."""
+
+    def __init__(self, window: Window) -> None:
+        self.window = window
+        self.times = window.times
+        self._known: dict[int, tuple[Node, Bounds]] = {}
+
+    def bounds(self, node: Node) -> Bounds:
+        """Of a part of the formula, at every sample."""
+        if id(node) not in self._known:
+            self._known[id(node)] = (node, self._calculated(node))
+        return self._known[id(node)][1]
+
+    def _calculated(self, node: Node) -> Bounds:
+        match node:
+            case Comparison():
+                left, right = values_of(node.left, self.window), values_of(node.right, self.window)
+                margin = left.values - right.values
+                margin = margin if node.operator.startswith(">") else -margin
+                # a difference of zero holds for `<=`, not for `<`, and `not` turns that around
+                margin = np.where(margin == 0, TINY if "=" in node.operator else -TINY, margin)
+                unknown = np.isnan(margin)
+                return Bounds(np.where(unknown, -np.inf, margin), np.where(unknown, np.inf, margin))
+            case Logic(operator="not", operands=(inner,)):
+                return -self.bounds(inner)
+            case Logic(operator=operator, operands=(first, second)):
+                left, right = self.bounds(first), self.bounds(second)
+                if operator == "and":
+                    return _each(np.minimum, left, right)
+                return _each(np.maximum, -left if operator == "implies" else left, right)
+            case Temporal(operator="always", operands=(inner,), interval=interval):
+                return self._always(self.bounds(inner), interval)
+            case Temporal(operator="eventually", operands=(inner,), interval=interval):
+                return self._eventually(self.bounds(inner), interval)
+            case Temporal(operands=(first, second), interval=interval):
+                return self._until(self.bounds(first), self.bounds(second), interval)
+            case _:
+                raise NotObservable("the formula has a part that cannot be judged")
+
+    # -- temporal words ---------------------------------------------------------------------------
+
+    def span(self, interval: Interval, *, is_always: bool) -> tuple[IntArray, IntArray, BoolArray]:
+        """First and last sample of an interval from each sample, and where it ends too late.
+
+        Where first > last there is no sample in it.
+        """
+        times, end = self.times, len(self.times) - 1
+        first = np.searchsorted(times, times + interval.first - TIME_RESOLUTION)
+        if math.isinf(interval.last):
+            return first, np.full(len(times), end), first > end
+        later = times + interval.last
+        if is_always:
+            last = np.searchsorted(times, later - TIME_RESOLUTION)
+        else:
+            last = np.searchsorted(times, later + TIME_RESOLUTION, side="right") - 1
+        beyond = later > times[-1] + TIME_RESOLUTION
+        return first, np.minimum(last, end), beyond
+
+    def _always(self, inner: Bounds, interval: Interval) -> Bounds:
+        first, last, beyond = self.span(interval, is_always=True)
+        low = _minima(inner.low, first, last)
+        return Bounds(
+            np.where(beyond | (first > last), -np.inf, low),
+            np.where(first > last, np.inf, _minima(inner.high, first, last)),
+        )
+
+    def _eventually(self, inner: Bounds, interval: Interval) -> Bounds:
+        first, last, beyond = self.span(interval, is_always=False)
+        high = -_minima(-inner.high, first, last)
+        return Bounds(
+            np.where(first > last, -np.inf, -_minima(-inner.low, first, last)),
+            np.where(beyond | (first > last), np.inf, high),
+        )
+
+    def _until(self, first: Bounds, second: Bounds, interval: Interval) -> Bounds:
+        """A until[a, b] B = eventually[a, b] B and always[0, a) A and at a: A until B [1]."""
+        begin, last, beyond = self.span(interval, is_always=False)
+        coming = self._eventually(second, interval)
+        count = len(self.times)
+        low = _unbounded(first.low, second.low, -np.inf)
+        high = _unbounded(first.high, second.high, -np.inf)
+        pending = _unbounded(first.high, second.high, np.inf)
+        before = np.arange(count)
+        reached = np.minimum(begin, count - 1)
+        at_low = np.where(begin < count, low[reached], -np.inf)
+        at_high = np.where(begin <= last, high[reached], np.inf)
+        if not math.isinf(interval.last):
+            at_pending = np.where(begin < count, pending[reached], np.inf)
+            at_high = np.where(beyond, at_pending, at_high)
+        held_low = _minima(first.low, before, begin - 1)
+        held_high = _minima(first.high, before, np.minimum(begin, count) - 1)
+        return Bounds(
+            np.minimum(np.minimum(coming.low, held_low), at_low),
+            np.minimum(np.minimum(coming.high, held_high), at_high),
+        )
+
+    # -- what decided -----------------------------------------------------------------------------
+
+    def decider(
+        self, node: Node, index: int, *, at_least: bool
+    ) -> tuple[Comparison | None, int, int]:
+        """The comparison and the sample that a bound comes from, and 1, or -1 under a `not`."""
+        sign = 1
+        while not isinstance(node, Comparison):
+            target = self._bound(node, at_least)[index]
+            found = next(
+                (
+                    (part, int(place), flips)
+                    for part, places, flips in self._parts(node, index)
+                    for values in [self._bound(part, at_least != flips)]
+                    for place in places[np.flatnonzero(
+                        (-values[places] if flips else values[places]) == target)[:1]]
+                ),
+                None,
+            )  # fmt: skip
+            if found is None:
+                return None, index, sign
+            node, index, flips = found
+            at_least, sign = at_least != flips, -sign if flips else sign
+        return node, index, sign
+
+    def _bound(self, node: Node, at_least: bool) -> FloatArray:
+        bounds = self.bounds(node)
+        return bounds.low if at_least else bounds.high
+
+    def _parts(self, node: Node, index: int) -> list[tuple[Node, IntArray, bool]]:
+        """Parts of a formula, the samples at which they matter to it, and whether negated."""
+        here = np.array([index])
+        match node:
+            case Logic(operator="not", operands=(inner,)):
+                return [(inner, here, True)]
+            case Logic(operator=operator, operands=(first, second)):
+                return [(first, here, operator == "implies"), (second, here, False)]
+            case Temporal(operator=operator, operands=operands, interval=interval):
+                spans = self.span(interval, is_always=operator == "always")
+                first, last = int(spans[0][index]), int(spans[1][index])
+                inside = np.arange(first, last + 1)
+                if operator != "until":
+                    return [(operands[0], inside, False)]
+                stop = len(self.times) if spans[2][index] else max(first, last)
+                return [(operands[1], inside, False), (operands[0], np.arange(index, stop), False)]
+            case _:
+                return []
+
+    def first_unknown(self, root: Node) -> str:
+        """The first sample at which a signal of the formula is not known; empty if all are."""
+        for node in signals_of(root):
+            unknown = np.isnan(values_of(node, self.window).values)
+            if unknown.any():
+                time = self.window.time(int(np.argmax(unknown)))
+                return f"{node} is not known, or not there, at t={time:.3f} s"
+        return ""
+
+
+def _each(function: np.ufunc, left: Bounds, right: Bounds) -> Bounds:
+    return Bounds(function(left.low, right.low), function(left.high, right.high))
+
+
+def _minima(values: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
+    """Minimum of each range; inf where it is empty."""
+    result = np.full(len(first), np.inf)
+    some = first <= last
+    result[some] = range_min(values, first[some], last[some])
+    return result
+
+
+def _unbounded(first: FloatArray, second: FloatArray, after: float) -> FloatArray:
+    """A until B from every sample on; `after` is what comes behind the last one."""
+    values: list[float] = []
+    for held, comes in zip(first[::-1].tolist(), second[::-1].tolist(), strict=True):
+        after = max(comes, min(held, after))
+        values.append(after)
+    return np.array(values[::-1])

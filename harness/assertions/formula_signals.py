@@ -1,0 +1,117 @@
+"""The recorded signals that a formula may name, and its arithmetic, sample by sample."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.assertions.clearance import recorded_distances
+from harness.assertions.contact import bodies
+from harness.assertions.contacts import force_between
+from harness.assertions.joints import joint_column, unit_of
+from harness.assertions.poses import frame_poses, speeds
+from harness.assertions.window import NotObservable, Window
+from harness.core.pose_arrays import angle_between, rotate
+from harness.core.types import FloatArray
+from harness.recording.run import JointRecord
+from harness.spec.formula import Arithmetic, Const, Number, Signal
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True, eq=False)
+class Values:
+    """A number at each sample, shape (n,); `unit` is empty where it has none or is not known."""
+
+    values: FloatArray
+    unit: str
+
+
+def values_of(node: Number, window: Window) -> Values:
+    """A number of a formula at each sample of a window; NaN where it is not known.
+
+    Raises:
+        NotObservable: The run did not record it.
+    """
+    match node:
+        case Const(value=value, unit=unit):
+            return Values(np.full(len(window.times), value), unit)
+        case Signal():
+            return _recorded(node, window)
+        case Arithmetic(operator=operator, operands=operands):
+            return _calculated(operator, [values_of(each, window) for each in operands])
+
+
+def _calculated(operator: str, operands: list[Values]) -> Values:
+    first, *others = [operand.values for operand in operands]
+    units = [operand.unit for operand in operands]
+    unit = next((each for each in units if each), "")
+    with np.errstate(divide="ignore", invalid="ignore"):
+        match operator:
+            case "neg":
+                return Values(-first, unit)
+            case "abs":
+                return Values(np.abs(first), unit)
+            case "min":
+                return Values(np.minimum(first, others[0]), unit)
+            case "max":
+                return Values(np.maximum(first, others[0]), unit)
+            case "+":
+                return Values(first + others[0], unit)
+            case "-":
+                return Values(first - others[0], unit)
+            case "*":
+                return Values(first * others[0], "" if all(units) else unit)
+            case _:
+                quotient = first / others[0]
+                known = np.where(np.isfinite(quotient), quotient, np.nan)
+                return Values(known, "" if units[1] else units[0])
+
+
+def _recorded(node: Signal, window: Window) -> Values:
+    match node.name, node.arguments:
+        case "time", _:
+            return Values(window.times - window.times[0], "s")
+        case "x" | "y" | "z" as axis, (name,):
+            column = "xyz".index(axis)
+            return Values(window.cut(_poses(window, name))[:, column], "m")
+        case "tilt", (name,):
+            poses = window.cut(_poses(window, name))
+            return Values(angle_between(rotate(poses[:, 3:], UP), UP), "rad")
+        case "speed", (name,):
+            return Values(window.cut(speeds(window.run, _poses(window, name))[0]), "m/s")
+        case "force", (first, second):
+            run = window.run
+            force = force_between(run, bodies(run, first), bodies(run, second))
+            return Values(window.cut(force), "N")
+        case "distance", (first, second):
+            rows = recorded_distances(window.run, first, second)
+            stack = np.stack([window.cut(values) for values in rows.values()])
+            known = np.where(np.isnan(stack), np.inf, stack).min(axis=0)
+            return Values(np.where(np.isinf(known), np.nan, known), "m")
+        case name, (joint,):
+            return _joint(name, joint, window)
+        case _:
+            raise NotObservable(f"there is no signal '{node}'")
+
+
+def _poses(window: Window, name: str) -> FloatArray:
+    run = window.run
+    return run.signals.tcp_pose if name == "tcp" else frame_poses(run, name)
+
+
+def _joint(name: str, joint: str, window: Window) -> Values:
+    column, record = joint_column(window.run, joint)
+    signals = window.run.signals
+    array, unit = {
+        "position": (signals.joint_positions, unit_of(record)),
+        "velocity": (signals.joint_velocities, f"{unit_of(record)}/s"),
+        "effort": (signals.joint_efforts, _effort_unit(record)),
+        "command": (signals.joint_commands, unit_of(record)),
+    }[name]
+    return Values(window.cut(array)[:, column], unit)
+
+
+def _effort_unit(joint: JointRecord) -> str:
+    return "N" if unit_of(joint) == "m" else "N m"

@@ -1,0 +1,113 @@
+"""tcp_path: how far the TCP strays from a line or an arc, and how much of it it travels."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.assertions.poses import frame_poses, link_poses
+from harness.assertions.registry import MarginSignal, Part, all_of, signal
+from harness.assertions.text import amount
+from harness.assertions.window import NotObservable, Window
+from harness.core.pose_arrays import compose
+from harness.core.types import FloatArray
+from harness.recording.run import Measure
+from harness.spec.checks import TcpPath
+from harness.spec.poses import Pose
+
+SHORTEST = 1e-6
+"""Points nearer than this are one [m]."""
+
+
+@signal.handles(TcpPath)
+def tcp_path(check: TcpPath, window: Window) -> MarginSignal:
+    """Distance to the nearest point of the curve, and the share of it between its ends' visits.
+
+    The share is of the whole window, so a TCP that stands on the line has not followed it.
+    """
+    tcp = window.cut(link_poses(window.run, window.run.robot.tcp_link))[:, :3]
+    if check.line is not None:
+        curve = "line"
+        start, end = (_point(window, pose) for pose in (check.line.start, check.line.end))
+        deviation, places = along_line(tcp, start, end)
+    elif check.arc is not None:
+        curve, arc = "arc", check.arc
+        points = [_point(window, pose) for pose in (arc.start, arc.interim, arc.end)]
+        deviation, places = along_arc(tcp, *points)
+    else:
+        raise NotObservable("neither a line nor an arc is given")
+    share = float(np.max(places) - np.min(places))  # NaN where a sample is not known
+    parts = [
+        Part(f"deviation from the {curve}", deviation, check.max_deviation, "<=", "m"),
+        Part("share travelled", np.full(len(tcp), share), check.min_fraction, ">=", "1"),
+    ]
+
+    def text(_: int, measure: Measure) -> str:
+        if measure.unit == "1":
+            asked = f"{100 * check.min_fraction:.1f} %"
+            return f"the TCP travelled {100 * share:.1f} % of the {curve}, {asked} asked for"
+        asked = amount(check.max_deviation, "m")
+        return f"the TCP is {amount(measure.value, 'm')} from the {curve}, {asked} allowed"
+
+    return all_of(window, parts, text)
+
+
+def _point(window: Window, pose: Pose) -> FloatArray:
+    """A point in the world at each sample, shape (n, 3)."""
+    frame = window.cut(frame_poses(window.run, pose.frame))
+    return compose(frame, pose.se3().as_vector())[:, :3]
+
+
+def along_line(
+    points: FloatArray, start: FloatArray, end: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Distances to a segment [m], and where its nearest point lies from start (0) to end (1).
+
+    Raises:
+        NotObservable: Start and end are one point.
+    """
+    along = end - start
+    squared = np.sum(along**2, axis=1)
+    if np.nanmin(squared, initial=np.inf) < SHORTEST**2:
+        raise NotObservable("start and end of the line are one point")
+    places = np.clip(np.sum((points - start) * along, axis=1) / squared, 0.0, 1.0)
+    nearest = start + places[:, None] * along
+    return np.linalg.norm(points - nearest, axis=1), places
+
+
+def along_arc(
+    points: FloatArray, start: FloatArray, interim: FloatArray, end: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Distances to the arc through three points [m], and where on it the nearest point lies.
+
+    The circle's centre from the triangle's sides: c = a + ((|u|^2 v - |v|^2 u) x (u x v)) /
+    (2 |u x v|^2) with u, v the sides from a.
+
+    Raises:
+        NotObservable: The points lie on a line.
+    """
+    u, v = interim - start, end - start
+    normal = np.cross(u, v)
+    area = np.sum(normal**2, axis=1)
+    if np.nanmin(area, initial=np.inf) <= SHORTEST**2 * np.nanmax(np.sum(v**2, axis=1)):
+        raise NotObservable("the three points of the arc lie on a line")
+    weighted = np.sum(u**2, axis=1)[:, None] * v - np.sum(v**2, axis=1)[:, None] * u
+    centre = start + np.cross(weighted, normal) / (2 * area[:, None])
+    radius = np.linalg.norm(start - centre, axis=1)
+    axis = normal / np.sqrt(area)[:, None]
+    first = (start - centre) / radius[:, None]
+    second = np.cross(axis, first)
+    total = _angle(end - centre, first, second)  # start -> interim -> end turns about +axis
+    angle = _angle(points - centre, first, second)
+    beyond = angle > total
+    nearer_end = angle - total < 2 * np.pi - angle
+    angle = np.where(beyond, np.where(nearer_end, total, 0.0), angle)
+    nearest = centre + radius[:, None] * (
+        np.cos(angle)[:, None] * first + np.sin(angle)[:, None] * second
+    )
+    return np.linalg.norm(points - nearest, axis=1), angle / total
+
+
+def _angle(offset: FloatArray, first: FloatArray, second: FloatArray) -> FloatArray:
+    """Angle from `first` towards `second` [rad], in [0, 2 pi)."""
+    turned: FloatArray = np.arctan2(np.sum(offset * second, axis=1), np.sum(offset * first, axis=1))
+    return np.where(turned < 0, turned + 2 * np.pi, turned)

@@ -1,0 +1,154 @@
+"""always, never, eventually, and a bare predicate: from a margin at every sample to a verdict."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.assertions import temporal
+from harness.assertions.registry import MarginSignal
+from harness.assertions.temporal import Decision, TooShort, longest_hold
+from harness.assertions.text import amount
+from harness.assertions.window import NotObservable, NotReached, Window
+from harness.core.types import FloatArray
+from harness.recording.run import Verdict, VerdictStatus
+from harness.spec.checks import Always, AnyPredicate, Eventually, Never
+
+WORDS = (Always, Never, Eventually)
+
+
+@dataclass(frozen=True)
+class Terms:
+    """An expectation taken apart: the predicate, its temporal word and the words beside both."""
+
+    predicate: AnyPredicate
+    word: str
+    hold: float | None
+    within: float | None
+    step: str
+    points: float | None
+
+
+def terms_of(spec: AnyPredicate | Always | Never | Eventually, step: str) -> Terms:
+    """Words inside and outside a temporal word both count; of two numbers the stricter one.
+
+    Raises:
+        NotObservable: It names two steps.
+    """
+    predicate = spec.predicate if isinstance(spec, WORDS) else spec
+    word = spec.check if isinstance(spec, WORDS) else predicate.judged
+    holds = [value for value in (spec.for_, predicate.for_) if value is not None]
+    withins = [value for value in (spec.within, predicate.within) if value is not None]
+    return Terms(
+        predicate,
+        word,
+        max(holds, default=None),
+        min(withins, default=None),
+        one_step((spec.during, predicate.during), step),
+        predicate.points if spec.points is None else spec.points,
+    )
+
+
+def one_step(during: tuple[str | None, ...], step: str) -> str:
+    """The step that an expectation is judged over.
+
+    Args:
+        during: As its parts say it.
+        step: Where it stands, if none of them does.
+
+    Raises:
+        NotObservable: They name two.
+    """
+    named = {name for name in during if name is not None}
+    if len(named) > 1:
+        raise NotObservable(f"`during` names two steps: {' and '.join(sorted(named))}")
+    return next(iter(named), step)
+
+
+def decide(terms: Terms, window: Window, margins: MarginSignal) -> Verdict:
+    """The verdict of a temporal word, without its place in the file.
+
+    Raises:
+        NotReached: There was nothing to judge.
+    """
+    values, times = margins.values, window.times
+    applies = np.ones(len(values), dtype=bool) if margins.applies is None else margins.applies
+    if not (applies & ~np.isnan(values)).any():
+        raise NotReached("what it is about was not there in the time it is judged over")
+    chosen = np.arange(len(values))
+    if terms.word == "always":
+        chosen = np.flatnonzero(applies)
+    try:
+        decision = _reduce(terms, values[chosen], times[chosen], applies[chosen], margins.progress)
+    except TooShort:
+        return _too_short(terms, times[chosen])
+    index = int(chosen[decision.index])
+    time = window.time(index)
+    status: VerdictStatus = "passed" if decision.holds else "failed"
+    if not math.isfinite(decision.value):
+        if decision.holds:
+            raise NotReached("what it is about was not there for that long")
+        return Verdict("", status, time=time, reason=f"not known, or not there, at t={time:.3f} s")
+    if terms.word == "eventually" and terms.hold is not None and not (values >= 0).any():
+        index = _nearest(values, times, margins.progress)
+        time = window.time(index)
+    evidence = margins.evidence(index)
+    margin, unit = decision.value, margins.unit
+    if evidence.margin is not None:
+        margin = -evidence.margin if terms.word == "never" else evidence.margin
+        unit = evidence.unit
+    reason = evidence.text + (f" at t={time:.3f} s" if evidence.is_moment else "")
+    reason += _held(terms, values, times, decision)
+    measures = evidence.measures
+    return Verdict("", status, margin + 0.0, unit, time, reason=reason, measures=measures)
+
+
+def _reduce(
+    terms: Terms,
+    values: FloatArray,
+    times: FloatArray,
+    applies: np.ndarray,
+    progress: FloatArray | None,
+) -> Decision:
+    """What nobody knows speaks against the expectation; where it does not apply, nothing holds."""
+    hold, within = terms.hold, terms.within
+    unknown = np.isnan(values)
+    low = np.where(unknown | ~applies, -np.inf, values)
+    match terms.word:
+        case "always":
+            return temporal.always(low, times, hold, within)
+        case "never":
+            against = np.where(unknown & applies, np.inf, low)
+            return temporal.never(against, times, hold, within, progress)
+        case "eventually":
+            return temporal.eventually(low, times, hold, within, progress)
+        case _:
+            return temporal.at_end(low, times, hold, within, progress)
+
+
+def _nearest(values: FloatArray, times: FloatArray, progress: FloatArray | None) -> int:
+    """The sample that came nearest to what never held at all: it says most about why."""
+    known = np.where(np.isnan(values), -np.inf, values)
+    return temporal.eventually(known, times, progress=progress).index
+
+
+def _too_short(terms: Terms, times: FloatArray) -> Verdict:
+    hold, span = terms.hold or 0.0, float(times[-1] - times[0])
+    reason = f"judged over {span:.3f} s, which leaves no room for {hold:.3f} s"
+    if terms.within is not None:
+        reason += f" begun within {terms.within:.3f} s"
+    if terms.word == "never":
+        raise NotReached(reason)
+    return Verdict("", "failed", span - hold, "s", float(times[-1]), reason=reason)
+
+
+def _held(terms: Terms, values: FloatArray, times: FloatArray, decision: Decision) -> str:
+    """How long it held at most, where a time was asked for and was not reached."""
+    if terms.hold is None or terms.word == "never" or decision.holds:
+        return ""
+    longest = longest_hold(np.nan_to_num(values, nan=-1.0), times)
+    if longest >= terms.hold:
+        return f"; it held for {amount(terms.hold, 's')}, but not when it was asked to"
+    return f"; held for {amount(longest, 's')} at most, {amount(terms.hold, 's')} asked for"

@@ -1,0 +1,284 @@
+"""Signal temporal logic: the text, its places, and its values against a brute-force evaluator."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from harness.assertions.formula import TINY, Evaluation, formula_verdict
+from harness.assertions.temporal import TooShort, always, eventually, never, until
+from harness.assertions.window import NotObservable, NotReached, Window
+from harness.spec.checks import Formula
+from harness.spec.formula import Comparison, Const, Interval, Logic, Signal, Temporal
+from harness.spec.formula_parser import parse_formula
+from harness.spec.formula_text import FormulaError
+from tests.assertions.synthetic_run import at, force, heights, lift_run, make_run, verdict
+
+EPS = 1e-9
+
+
+def window_of(run):
+    return Window(run, 0, len(run.signals.times))
+
+
+def run_of(a, b, times):
+    """A run in which `x(tcp)` is one signal and `y(tcp)` another."""
+    tcp = at(len(times))
+    tcp[:, 0], tcp[:, 1] = a, b
+    return make_run(len(times), times=np.asarray(times, dtype=float), tcp_pose=tcp)
+
+
+@st.composite
+def signals(draw):
+    """Two margins, and rising times on a grid of 10 ms with gaps."""
+    n = draw(st.integers(1, 25))
+    column = st.lists(st.integers(-3, 3), min_size=n, max_size=n)
+    gaps = draw(st.lists(st.integers(1, 4), min_size=n, max_size=n))
+    return np.array(draw(column), float), np.array(draw(column), float), np.cumsum(gaps) * 0.01
+
+
+spans = st.integers(0, 40).map(lambda ticks: ticks * 0.01)
+intervals = st.tuples(spans, spans).map(lambda ends: Interval(min(ends), max(ends)))
+intervals = intervals | st.just(Interval()) | spans.map(lambda first: Interval(first, math.inf))
+
+
+def _grow(inner):
+    two = st.tuples(inner, inner)
+    return st.one_of(
+        inner.map(lambda a: Logic("not", (a,), 0)),
+        st.tuples(st.sampled_from(["and", "or", "implies"]), two).map(
+            lambda t: Logic(t[0], t[1], 0)
+        ),
+        st.tuples(st.sampled_from(["always", "eventually"]), inner, intervals).map(
+            lambda t: Temporal(t[0], (t[1],), t[2], 0)
+        ),
+        st.tuples(two, intervals).map(lambda t: Temporal("until", t[0], t[1], 0)),
+    )
+
+
+atoms = st.tuples(
+    st.sampled_from(["x", "y"]), st.sampled_from(["<", "<=", ">", ">="]), st.integers(-2, 2)
+).map(lambda t: Comparison(Signal(t[0], ("tcp",), (0,), 0), t[1], Const(t[2], "", 0), 0, "a"))
+formulas = st.recursive(atoms, _grow, max_leaves=6)
+
+
+def brute(node, i, columns, times, side):
+    """The least (side -1) or largest (side 1) margin at a sample, by the definitions alone."""
+    if isinstance(node, Comparison):
+        value = columns[node.left.name][i] - node.right.value
+        value = value if node.operator[0] == ">" else -value
+        return value or (TINY if "=" in node.operator else -TINY)
+    if isinstance(node, Logic):
+        first = node.operands[0]
+        if node.operator == "not":
+            return -brute(first, i, columns, times, -side)
+        second = brute(node.operands[1], i, columns, times, side)
+        if node.operator == "and":
+            return min(brute(first, i, columns, times, side), second)
+        if node.operator == "or":
+            return max(brute(first, i, columns, times, side), second)
+        return max(-brute(first, i, columns, times, -side), second)
+    begin, end = times[i] + node.interval.first, times[i] + node.interval.last
+    n, is_bounded = len(times), not math.isinf(node.interval.last)
+    beyond = is_bounded and end > times[-1] + EPS
+    inside = [j for j in range(n) if begin - EPS <= times[j] <= end + EPS]
+    if node.operator == "always":
+        late = [j for j in range(n) if times[j] >= end - EPS]
+        if late and times[late[0]] >= begin - EPS and is_bounded:
+            inside = sorted({*inside, late[0]})
+        if not inside:
+            return side * math.inf
+        held = min(brute(node.operands[0], j, columns, times, side) for j in inside)
+        return -math.inf if beyond and side < 0 else held
+    if node.operator == "eventually":
+        if not inside:
+            return side * math.inf
+        best = max(brute(node.operands[0], j, columns, times, side) for j in inside)
+        return math.inf if beyond and side > 0 else best
+    held = [brute(node.operands[0], k, columns, times, side) for k in range(i, n)]
+    options = [
+        min([brute(node.operands[1], j, columns, times, side), *held[: j - i]]) for j in inside
+    ]
+    if not inside and not beyond:
+        if not is_bounded:
+            return min([*held, side * math.inf])
+        before = [held[k - i] for k in range(i, n) if times[k] < begin - EPS]
+        return min([*before, side * math.inf])
+    if beyond and side > 0:
+        options.append(min(held))
+    return max(options, default=-math.inf)
+
+
+@settings(deadline=None, derandomize=True, max_examples=400)
+@given(signals(), formulas)
+def test_a_formula_is_worth_what_its_definition_says(signal, formula):
+    x, y, times = signal
+    window = window_of(run_of(x, y, times))
+    bounds = Evaluation(window).bounds(formula)
+    columns = {"x": x, "y": y}
+    for i in range(len(times)):
+        assert bounds.low[i] == brute(formula, i, columns, times, -1), "at least"
+        assert bounds.high[i] == brute(formula, i, columns, times, 1), "at most"
+
+
+@settings(deadline=None, derandomize=True, max_examples=400)
+@given(signals(), formulas)
+def test_what_decides_a_formula_is_a_sample_with_its_margin(signal, formula):
+    x, y, times = signal
+    evaluation = Evaluation(window_of(run_of(x, y, times)))
+    bounds = evaluation.bounds(formula)
+    for holds in (True, False):
+        value = (bounds.low if holds else bounds.high)[0]
+        if math.isfinite(value):
+            node, index, _ = evaluation.decider(formula, 0, at_least=holds)
+            difference = {"x": x, "y": y}[node.left.name][index] - node.right.value
+            assert abs(difference) == pytest.approx(abs(value))
+
+
+def _said(text, x, y, times):
+    try:
+        return formula_verdict(text, window_of(run_of(x, y, times))).status
+    except NotReached:
+        return "not reached"
+
+
+def _word(function, *arguments):
+    try:
+        decision = function(*arguments)
+    except TooShort:
+        return None
+    decision = decision[0] if isinstance(decision, tuple) else decision
+    return "passed" if decision.holds else "failed"
+
+
+optional = st.none() | spans
+
+
+@settings(deadline=None, derandomize=True, max_examples=200)
+@given(signals(), optional, optional)
+def test_temporal_words_agree_with_their_formulas(signal, hold, within):
+    """Where a formula is not decided, because a hold or deadline ends too late, a word may fail."""
+    x, y, times = signal
+    held = "{}" if hold is None else f"always[0, {hold:.2f}] {{}}"
+    by = "" if within is None else f"[0, {within:.2f}]"
+    came = held.format("y(tcp) >= 0")
+    pairs = [
+        (f"eventually{by} ({came})", _word(eventually, y, times, hold, within)),
+        (f"not eventually{by} ({came})", _word(never, y, times, hold, within)),
+        (f"x(tcp) >= 0 until{by} ({came})", _word(until, x, y, times, hold, within)),
+    ]
+    if hold is None and within is not None:
+        pairs.append((f"eventually{by} always y(tcp) >= 0", _word(always, y, times, None, within)))
+    if hold is None and within is None:
+        pairs.append(("always y(tcp) >= 0", _word(always, y, times)))
+    for text, answer in pairs:
+        said = _said(text, x, y, times)
+        if said == "not reached":
+            assert hold is not None or within is not None, text
+            continue
+        if answer is None:  # no room for the hold: a formula can still be known not to hold
+            assert hold is not None
+            assert said == ("passed" if text.startswith("not") else "failed"), text
+            continue
+        assert said == answer, text
+
+
+def test_during_is_the_formula_on_the_step_s_samples():
+    run = lift_run()
+    for step, status in (("approach", "failed"), ("lift", "passed")):
+        spec = Formula(formula="eventually z(box) > 10 cm", during=step)
+        assert verdict(run, spec).status == status
+        assert verdict(run, Formula(formula="eventually z(box) > 10 cm"), step).status == status
+
+
+def test_a_formula_tells_margin_unit_sample_and_numbers():
+    answer = verdict(lift_run(), Formula(formula="eventually z(box) > 7 cm"))
+    assert (answer.status, answer.unit) == ("passed", "m")
+    assert answer.margin == pytest.approx(0.05)
+    assert answer.time == pytest.approx(1.5)
+    assert answer.reason == "z(box) > 7 cm holds: 120 mm against 70.0 mm at t=1.500 s"
+    barely = verdict(lift_run(), Formula(formula="eventually z(box) > 121 mm"))
+    assert barely.status == "failed"
+    assert barely.margin == pytest.approx(-0.001)
+    never = verdict(lift_run(), Formula(formula="not eventually force(Table, box) > 2 N"))
+    assert (never.status, never.unit, never.margin) == ("passed", "N", pytest.approx(1.0))
+
+
+def test_a_formula_of_every_kind_of_signal():
+    run = lift_run(
+        clearances={("robot", "box"): np.full(200, 0.1)},
+        frames={"arm_link": heights(np.full(200, 0.4))},
+    )
+    for text in (
+        "always distance(robot, box) >= 10 cm",
+        "always (force(gripper, box) >= 0 N and tilt(box) < 1 deg)",
+        "always abs(position(shoulder) - command(shoulder)) < 0.1 deg",
+        "always max(velocity(shoulder), -velocity(shoulder)) <= 2",
+        "always effort(finger) * 2 <= 5 + 1 / 2",
+        "always z(arm_link) > 0.3",
+        "F[0, 1.8] G[0, 100 ms] speed(box) < 1 & time <= 1.99",
+        'x("box") < 1 -> y(tcp) < 1',
+        "!(z(box) > 1) U z(box) > 0.1",
+        "not time < 0",
+    ):
+        assert verdict(run, Formula(formula=text)).status == "passed", text
+
+
+def test_a_window_too_short_for_a_formula_is_not_reached_and_never_a_pass():
+    answer = verdict(lift_run(), Formula(formula="always[0, 5] z(box) >= 0"))
+    assert answer.status == "not reached"
+    assert verdict(lift_run(), Formula(formula="always[0, 5] z(box) >= 1")).status == "failed"
+    assert verdict(lift_run(), Formula(formula="eventually[5, 6] time > 0")).status == "not reached"
+    absent = make_run(object_poses={"box": np.full((200, 7), np.nan)})
+    for text in ("always z(box) > 0", "not eventually z(box) > 1", "z(box) > 0 until time > 1"):
+        assert verdict(absent, Formula(formula=text)).status == "not observable", text
+    assert verdict(lift_run(), Formula(formula="time >= 0"), "gone").status == "not reached"
+
+
+def test_a_pending_obligation_is_what_leaves_a_formula_open():
+    contact = force(200, (195, 200))
+    run = make_run(contact_forces={("left_finger", "box"): contact})
+    text = "always (force(gripper, box) > 0.5 implies eventually[0, 0.2] z(box) > 1)"
+    assert verdict(run, Formula(formula=text)).status == "not reached"
+    early = make_run(contact_forces={("left_finger", "box"): force(200, (50, 60))})
+    assert verdict(early, Formula(formula=text)).status == "failed"
+    never = make_run()
+    assert verdict(never, Formula(formula=text)).status == "passed"
+
+
+def test_what_the_run_does_not_know_is_not_observable():
+    for text in ("z(ghost) > 0", "position(elbow) > 0", "distance(robot, box) > 0"):
+        assert verdict(make_run(), Formula(formula=text)).status == "not observable"
+    with pytest.raises(NotObservable):
+        formula_verdict("z(arm_link) > 0", window_of(make_run()))
+
+
+@pytest.mark.parametrize(
+    ("text", "start", "message"),
+    [
+        ("always z(box > 1", 13, "`)` is missing behind the names of `z`"),
+        ("alwys z(box) > 1", 0, "no signal is called `alwys`"),
+        ("z(box)", 0, "here is a number; a formula is needed"),
+        ("z(box) > 1 and 2", 15, "here is a number; a formula is needed"),
+        ("z(box) > force(a, b)", 7, "`>` joins m and N"),
+        ("1 < z(box) < 2", 11, "one comparison at a time"),
+        ("always[2, 1] time > 0", 6, "an interval ends before it begins"),
+        ("always[0, 2 m] time > 0", 10, "an interval is of seconds"),
+        ("z(box) > 5 parsec", 11, "no unit is called `parsec`"),
+        ("z(box) > 5 ; import os", 11, "`;` has no meaning in a formula"),
+        ("z(box) >", 8, "the formula ends too early: a signal or a number is needed"),
+        ("force(a) > 1", 6, "`force` is of 2 names, not 1"),
+        ("z > 1", 0, "`z` is of one name"),
+        ("", 0, "the formula ends too early: a signal or a number is needed"),
+        ("(" * 100 + "time > 0" + ")" * 100, 60, "nested more than 60 deep"),
+        ("time > 0 " * 400, 0, "a formula has 2000 characters at most; this has 3600"),
+        ("__import__('os')", 0, "no signal is called `__import__`"),
+    ],
+)
+def test_a_formula_that_cannot_be_read_is_refused_at_its_place(text, start, message):
+    with pytest.raises(FormulaError) as caught:
+        parse_formula(text)
+    assert caught.value.message == message
+    assert caught.value.span[0] == start
