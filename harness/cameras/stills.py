@@ -72,7 +72,7 @@ def save_stills(
     picture = build_picture_model(
         description,
         world_objects,
-        floor_height=_floor_height(description, world_objects),
+        floor_height=floor_height(description, world_objects),
         width=WIDTH,
         height=HEIGHT,
     )
@@ -84,7 +84,7 @@ def save_stills(
         for number, step in enumerate(steps, start=1):
             sample = min(max(step.end_index - 1, 0), len(run.signals.times) - 1)
             picture.pose(poses_at(description, world_objects, run, sample, step))
-            files.append(folder / f"{number:02d}-{_slug(step.id)}.jpg")
+            files.append(folder / f"{number:02d}-{slug(step.id)}.jpg")
             _write(files[-1], renderer, viewpoint, step, f"{number}/{len(steps)}")
     finally:
         renderer.close()
@@ -129,7 +129,8 @@ def overview(
     return fit_viewpoint(np.array(points), np.array(radii), WIDTH, HEIGHT)
 
 
-def _floor_height(description: RobotDescription, world_objects: Sequence[WorldObject]) -> float:
+def floor_height(description: RobotDescription, world_objects: Sequence[WorldObject]) -> float:
+    """Height of the floor [m]: of a plane among the objects, else at most that of the base."""
     for obj in world_objects:
         for shape in obj.shapes:
             if isinstance(shape.geometry, Plane):
@@ -138,7 +139,8 @@ def _floor_height(description: RobotDescription, world_objects: Sequence[WorldOb
     return min(0.0, float(base.translation[2]))
 
 
-def _slug(text: str) -> str:
+def slug(text: str) -> str:
+    """A step's id as part of a file name."""
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:48] or "step"
 
 

@@ -28,11 +28,14 @@ def _run(arguments: argparse.Namespace) -> int:
         outcome = "invalid" if found.problems else "failed" if found.predicted else "passed"
         code = max(code, EXIT_CODES[outcome])
         documents.append({"file": str(file), "outcome": outcome, "problems": found.problems,
-                          "predicted": found.predicted})  # fmt: skip
+                          "predicted": found.predicted,
+                          "explanations": found.explanations})  # fmt: skip
         if arguments.json:
             continue
-        for problem in (*found.problems, *found.predicted):
+        for problem in found.problems:
             say(str(problem))
+        for problem, lines in zip(found.predicted, found.explanations, strict=True):
+            say("\n".join([str(problem), *(f"    {line}" for line in lines)]))
         count = len(found.problems)
         told = {
             "invalid": f"{count} problem{'s' if count != 1 else ''}",

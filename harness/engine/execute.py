@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Any, Literal
 
 from harness.core.errors import StepFailed
 from harness.engine import executors as executors
+from harness.engine.advice import advice
 from harness.engine.cell import Belief, Cell, Presence, StepNotes
 from harness.engine.program import Program, ProgramStep
 from harness.engine.registry import execute
@@ -83,7 +84,7 @@ class _Runner:
             end_index=cell.simulator.sample_count,
             trajectory=notes.trajectory,
             planner=notes.planner,
-            explanation={**notes.explanation, **(failure.facts if failure else {})},
+            explanation={**notes.explanation, **(_facts(failure, cell) if failure else {})},
             result=notes.result,
         )
         self.on_step("step_finished", step, self.records[place])
@@ -162,6 +163,12 @@ def _own(failure: StepFailed | _RunEndedError | None) -> StepFailed | None:
     if isinstance(failure, _RunEndedError):
         return StepFailed(failure.failure.code, f"its step `{failure.summary}` failed")
     return failure
+
+
+def _facts(failure: StepFailed, cell: Cell) -> dict[str, Any]:
+    """A failure's facts, with what to do about it where that is known."""
+    said = advice(failure, cell)
+    return {**failure.facts, "advice": said} if said else failure.facts
 
 
 def _too_long(step: ProgramStep, seconds: float) -> StepFailed | None:

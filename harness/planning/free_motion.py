@@ -145,14 +145,14 @@ def _not_found(
             {**explanation, **defect.facts},
         )
     options = task.options
+    attempts = "" if options.attempts == 1 else f"{options.attempts} searches with "
     message = (
-        f"no free path to the goal was found with {used} state checks "
-        f"({options.attempts} of at most {options.max_state_checks})"
+        f"no free path to the goal was found in {attempts}at most {options.max_state_checks} "
+        "state checks"
     )
     facts: dict[str, Any] = {**explanation, "state_checks": used}
     if gaps:
         facts["gap"] = min(gaps)
-        message += f"; the search came within {min(gaps):.2f} rad of it"
     blocked = task.checker.first_block(task.start, goals[0], FINAL_RESOLUTION)
     if blocked is not None:
         share, touches = blocked

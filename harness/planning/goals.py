@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sized
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,14 +10,14 @@ import numpy as np
 
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
-from harness.planning.checker import MotionChecker, describe_touches, touch_facts
-from harness.planning.ik_numeric import LinkGoal, nearest_attempt, pitch_of
-from harness.planning.kinematics import IkAnswer, LimitedSolution, PinocchioKinematics
+from harness.planning.checker import MotionChecker, touch_facts
+from harness.planning.goal_study import GoalStudy, broken_limits, limit_sentence, study_goal
+from harness.planning.ik_answer import LimitedSolution, MissedSolution
+from harness.planning.kinematics import PinocchioKinematics
+from harness.planning.nearest_pose import nearest_pose, target_of
 from harness.planning.robot_model import GroupSpace
+from harness.planning.wording import angle, count, joint_value, length, point, touches
 from harness.ports import Goal, JointGoal, PoseGoal, PositionGoal, Touch
-
-MOST_GOALS = 8
-"""Inverse kinematics' solutions that are checked and planned to, nearest first."""
 
 _REACHED = 1e-6  # [m] a nearest attempt this near has reached the point
 
@@ -48,153 +48,114 @@ def find_goals(
 
     Raises:
         PlanningFailed: GOAL_STATE_INVALID (joints outside their limits), NO_IK_SOLUTION,
+            GOAL_CONSTRAINTS_VIOLATED (the arm's joints are too few for the orientation),
             GOAL_IN_COLLISION, INVALID_LINK_NAME; each with its numbers.
     """
     if isinstance(goal, JointGoal):
         return _joint_goal(checker, goal)
-    space = checker.space
-    answer = kinematics.analyse(space, goal, start, seed)
-    if not answer.solutions:
-        raise _no_solution(space, answer, start, goal, seed)
-    reference = space.part(start)
-    free: list[FloatArray] = []
-    facts: list[dict[str, Any]] = []
-    first_touches: list[Touch] = []
-    for positions in answer.solutions[:MOST_GOALS]:
-        touches = [] if checker.state_free(positions) else checker.touches(positions)
-        facts.append(
-            {
-                "joint_positions": [float(value) for value in positions],
-                "distance": space.distance(reference, positions),
-                "status": "in collision" if touches else "free",
-                "touches": touch_facts(touches),
-            }
-        )
-        first_touches = first_touches or touches
-        if not touches:
-            free.append(positions)
-    explanation = {
-        "ik_method": answer.method,
-        "ik_solutions": facts,
-        "outside_limits": [solution.facts() for solution in answer.outside_limits],
-    }
+
+    def find_touches(positions: FloatArray) -> Sequence[Touch]:
+        return [] if checker.state_free(positions) else checker.touches(positions)
+
+    study = study_goal(kinematics, checker.space, find_touches, start, goal, seed)
+    if not study.answer.solutions:
+        raise _no_solution(checker.space, study, start, goal, seed)
+    free = tuple(branch.positions for branch in study.branches if not branch.touches)
     if not free:
+        ways = count(study.branches, "way")
+        each = "that one" if len(study.branches) == 1 else "each of them"
         raise PlanningFailed(
             "GOAL_IN_COLLISION",
-            f"the goal of {goal.link} can be reached in {_count(facts, 'way')}, each of them in "
-            f"collision; the nearest: {describe_touches(first_touches)}"
-            + _limits_sentence(answer.outside_limits),
-            explanation,
+            f"{goal.link} reaches {point(target_of(goal))} in {ways}, {each} in collision; "
+            f"the nearest: {touches(study.branches[0].touches)}",
+            study.facts(),
         )
-    return GoalCandidates(tuple(free), explanation)
+    return GoalCandidates(free, study.facts())
 
 
 def _joint_goal(checker: MotionChecker, goal: JointGoal) -> GoalCandidates:
     space = checker.space
     positions = np.asarray(goal.positions, dtype=float)
-    broken = [
-        {
-            "joint": name,
-            "value": float(value),
-            "lower": float(low),
-            "upper": float(high),
-            "excess": float(max(low - value, value - high)),
-        }
-        for name, value, low, high in zip(
-            space.joint_names, positions, space.lower, space.upper, strict=True
-        )
-        if not low - 1e-9 <= value <= high + 1e-9
-    ]
+    broken = broken_limits(space, positions)
     if broken:
-        worst = broken[0]
+        more = len(broken) - 1
         raise PlanningFailed(
             "GOAL_STATE_INVALID",
-            f"{worst['joint']} cannot be at {worst['value']:.4f}: its limits are "
-            f"{worst['lower']:.4f} to {worst['upper']:.4f}, which is {worst['excess']:.4f} too far"
-            + (f"; {len(broken) - 1} more joints are outside theirs" if len(broken) > 1 else ""),
+            limit_sentence(space, broken[0])
+            + (f"; {count(more, 'more joint')} outside limits" if more else ""),
             {"outside_limits": broken},
         )
     positions = np.clip(positions, space.lower, space.upper)
     if not checker.state_free(positions):
-        touches = checker.touches(positions)
+        found = checker.touches(positions)
         raise PlanningFailed(
             "GOAL_IN_COLLISION",
-            f"at the goal's joint positions these are in collision: {describe_touches(touches)}",
-            {"touches": touch_facts(touches)},
+            f"at the goal's joint positions these are in collision: {touches(found)}",
+            {"touches": touch_facts(found)},
         )
     return GoalCandidates((positions,), {})
 
 
 def _no_solution(
-    space: GroupSpace,
-    answer: IkAnswer,
-    start: FloatArray,
-    goal: LinkGoal,
-    seed: int,
+    space: GroupSpace, study: GoalStudy, start: FloatArray, goal: PoseGoal | PositionGoal, seed: int
 ) -> PlanningFailed:
     """Say why nothing reaches the goal, and what comes nearest."""
+    missed = study.answer.missed
+    if missed:
+        return _constraints_violated(space, study, missed[0], goal)
+    target = target_of(goal)
     reference = space.part(start)
-    target = goal.pose.translation if isinstance(goal, PoseGoal) else goal.position
-    point = PositionGoal(goal.link, np.asarray(target, dtype=float))
-    _, nearest_point = nearest_attempt(space, point, reference, seed)
-    too_far = float(np.linalg.norm(nearest_point.translation - target))
-    facts: dict[str, Any] = {
-        "ik_method": answer.method,
-        "ik_solutions": [],
-        "outside_limits": [solution.facts() for solution in answer.outside_limits],
-        "point_out_of_reach_by": 0.0 if too_far < _REACHED else too_far,
-        "wrist_out_of_reach_by": answer.excess,
+    alone = PositionGoal(goal.link, target)
+    nearest_point = nearest_pose(space, alone, reference, seed)
+    too_far = 0.0 if nearest_point.shift < _REACHED else nearest_point.shift
+    nearest = nearest_pose(space, goal, nearest_point.positions, seed)
+    facts = study.facts() | {
+        "point_out_of_reach_by": too_far,
+        "wrist_out_of_reach_by": study.answer.excess,
+        "nearest_position": nearest_point.pose.translation.tolist(),
+        "position_error": nearest.shift,
+        "orientation_error": nearest.turn,
     }
-    if too_far >= _REACHED:
+    if too_far:
         message = (
-            f"{goal.link} cannot reach ({_xyz(target)}): the nearest point it reaches, "
-            f"({_xyz(nearest_point.translation)}), is {1000 * too_far:.1f} mm away"
+            f"{goal.link} cannot reach {point(target)}: the nearest point it reaches, "
+            f"{point(nearest_point.pose.translation)}, is {length(too_far)} away"
         )
-        facts["nearest_position"] = nearest_point.translation.tolist()
-        return PlanningFailed(
-            "NO_IK_SOLUTION", message + _limits_sentence(answer.outside_limits), facts
+    elif study.answer.outside_limits and nearest.shift + nearest.turn > _REACHED:
+        ways = count(study.answer.outside_limits, "way")
+        message = (
+            f"{goal.link} would reach {point(target)} in {ways}, but only beyond the joint limits: "
+            f"{_nearest_limit(space, study.answer.outside_limits)}"
         )
-    positions, nearest = nearest_attempt(space, goal, reference, seed)
-    facts["nearest_joint_positions"] = positions.tolist()
-    facts["nearest_position"] = nearest.translation.tolist()
-    facts["nearest_quat_wxyz"] = nearest.quat_wxyz.tolist()
-    if isinstance(goal, PoseGoal):
-        shift, angle = goal.pose.distance_to(nearest)
-        what = "orientation"
     else:
-        shift = float(np.linalg.norm(nearest.translation - target))
-        angle = abs(pitch_of(nearest.rotation) - float(goal.pitch or 0.0))
-        what = "pitch"
-    facts["position_error"], facts["orientation_error"] = shift, angle
-    message = (
-        f"{goal.link} can reach ({_xyz(target)}), but not with the {what} asked for: the nearest "
-        f"pose found is {1000 * shift:.1f} mm and {angle:.4f} rad ({np.degrees(angle):.1f}°) away"
-    )
-    if space.dof < 6 and isinstance(goal, PoseGoal):
-        message += (
-            f"; with {space.dof} joints only the position and the pitch can be chosen: give "
-            "`position` and `pitch` instead of `pose`"
+        what = "orientation" if isinstance(goal, PoseGoal) else "pitch"
+        message = (
+            f"{goal.link} reaches {point(target)}, but not with the {what} asked for: the nearest "
+            f"pose is {length(nearest.shift)} and {angle(nearest.turn)} away"
         )
+    return PlanningFailed("NO_IK_SOLUTION", message, facts)
+
+
+def _constraints_violated(
+    space: GroupSpace, study: GoalStudy, missed: MissedSolution, goal: PoseGoal | PositionGoal
+) -> PlanningFailed:
+    """The arm reaches what its joints can choose, and misses the rest of the pose."""
+    turned_by = angle(missed.turn)
+    tolerance = goal.orientation_tolerance if isinstance(goal, PoseGoal) else goal.pitch_tolerance
+    write = "`position` and `pitch`" if "pitch" in study.answer.task else "`position`"
     return PlanningFailed(
-        "NO_IK_SOLUTION", message + _limits_sentence(answer.outside_limits), facts
+        "GOAL_CONSTRAINTS_VIOLATED",
+        f"with {space.dof} joints {goal.link} reaches the {study.answer.task} of the pose, but is "
+        f"then turned {turned_by} away from it, and {angle(tolerance)} are allowed: "
+        f"give {write} instead of `pose`, or a wider `tolerance`",
+        study.facts() | {"position_error": missed.shift, "orientation_error": missed.turn},
     )
 
 
-def _limits_sentence(outside: tuple[LimitedSolution, ...]) -> str:
-    if not outside:
-        return ""
+def _nearest_limit(space: GroupSpace, outside: Sequence[LimitedSolution]) -> str:
     nearest = min(outside, key=lambda solution: abs(solution.value - solution.limit))
-    excess = abs(nearest.value - nearest.limit)
+    name, value, limit = nearest.joint, nearest.value, nearest.limit
     return (
-        f"; {_count(outside, 'more solution')} outside the joint limits, the nearest with "
-        f"{nearest.joint} at {nearest.value:.3f}, {excess:.3f} beyond its limit {nearest.limit:.3f}"
+        f"the nearest needs {name} at {joint_value(space, name, value)}, "
+        f"{joint_value(space, name, abs(value - limit))} beyond its limit"
     )
-
-
-def _count(things: Sized, noun: str) -> str:
-    number = len(things)
-    return f"{number} {noun}" + ("" if number == 1 else "s")
-
-
-def _xyz(point: FloatArray) -> str:
-    return ", ".join(f"{value:.3f}" for value in point)

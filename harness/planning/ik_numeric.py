@@ -29,11 +29,16 @@ class LinkTask:
 
     Rows are metres and radians in world axes: position (3), then for a pose the rotation vector
     from the link to the goal (3), for a position with pitch the pitch (1; 2 when x is vertical).
+    Rows of turns are multiplied by `metres_per_radian`: what a turn counts beside a distance where
+    both cannot be had.
     """
 
-    def __init__(self, space: GroupSpace, goal: LinkGoal) -> None:
+    def __init__(
+        self, space: GroupSpace, goal: LinkGoal, *, metres_per_radian: float = 1.0
+    ) -> None:
         self.space = space
         self.goal = goal
+        self._turn = metres_per_radian
         self._robot = space.robot
         self._frame = space.robot.frame_id(goal.link)
         self._columns = space.robot.velocity_columns
@@ -44,6 +49,12 @@ class LinkTask:
 
     def evaluate(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Error (m,) and Jacobian (m, dof) at positions; a step `pinv(J) @ error` closes in."""
+        error, jacobian = self._evaluate(positions)
+        error[3:] *= self._turn
+        jacobian[3:] *= self._turn
+        return error, jacobian
+
+    def _evaluate(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
         model, data = self._robot.model, self._robot.data
         configuration = self._robot.configuration(self.space.whole(positions))
         pin.computeJointJacobians(model, data, configuration)
@@ -163,20 +174,3 @@ def solve_numeric(
         if error < 1e-8 and all(space.distance(positions, other) > 1e-4 for other in found):
             found.append(positions)
     return found
-
-
-def nearest_attempt(
-    space: GroupSpace, goal: LinkGoal, seed_positions: FloatArray, seed: int, *, restarts: int = 12
-) -> tuple[FloatArray, SE3]:
-    """The positions inside the limits that come nearest to a goal out of reach, and the link there.
-
-    A local search from several starts: what it says is reachable is; something nearer may exist.
-    """
-    task = LinkTask(space, goal)
-    rng = np.random.default_rng(seed)
-    starts = [np.asarray(seed_positions, dtype=float)]
-    starts += [random_positions(space, rng) for _ in range(restarts)]
-    attempts = [task.least_squares(start) for start in starts]
-    best = min(range(len(attempts)), key=lambda index: (attempts[index][1], index))
-    positions = attempts[best][0]
-    return positions, task.link_pose(positions)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -12,7 +10,8 @@ from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.planning.forward_kinematics import LinkPoses, quats_wxyz
-from harness.planning.ik_numeric import LinkGoal, LinkTask, solve_numeric
+from harness.planning.ik_answer import IkAnswer, LimitedSolution, MissedSolution
+from harness.planning.ik_numeric import LinkGoal, LinkTask, pitch_of, solve_numeric
 from harness.planning.ik_open_manipulator import (
     PlanarArm,
     headings,
@@ -22,59 +21,19 @@ from harness.planning.ik_open_manipulator import (
     solve_planar,
 )
 from harness.planning.ik_ur import UrGeometry, is_ur_like, solve_ur
+from harness.planning.nearest_pose import distance_to_goal
 from harness.planning.robot_model import GroupSpace, RobotModel
 from harness.ports import PoseGoal, PositionGoal
 from harness.robot.description import Joint, RobotDescription
+
+WHOLE_POSE_JOINTS, PITCH_JOINTS = 6, 4
+"""Joints that an arm needs to take any pose, and any position with any pitch."""
 
 PITCH_SAMPLES = 73
 """Pitches tried for a position goal that leaves the pitch free: every 5 degrees of a whole turn."""
 
 _POLISHED = 1e-7  # [m, rad] closed forms that Newton's method cannot bring below are no solutions
 _LIMIT_SLACK = 1e-9  # [rad] a solution this far outside a limit is put on it
-
-
-@dataclass(frozen=True, eq=False)
-class LimitedSolution:
-    """A solution of the geometry that the position limits forbid.
-
-    Attributes:
-        positions: Group positions, as near to the limits as whole turns bring them.
-        joint: The joint that is farthest outside.
-        value: Its position [rad or m].
-        limit: The limit it breaks.
-    """
-
-    positions: FloatArray
-    joint: str
-    value: float
-    limit: float
-
-    def facts(self) -> dict[str, Any]:
-        """As plain data."""
-        return {
-            "joint_positions": [float(value) for value in self.positions],
-            "joint": self.joint,
-            "value": self.value,
-            "limit": self.limit,
-            "excess": abs(self.value - self.limit),
-        }
-
-
-@dataclass(frozen=True)
-class IkAnswer:
-    """Everything inverse kinematics found.
-
-    Attributes:
-        solutions: Inside the limits and the tolerance, nearest to the seed first.
-        outside_limits: Solutions of the geometry that limits forbid.
-        excess: How much too far away the goal is for the chain [m]; 0 when unknown or within.
-        method: `ur`, `open_manipulator_x` or `numeric`.
-    """
-
-    solutions: tuple[FloatArray, ...]
-    outside_limits: tuple[LimitedSolution, ...]
-    excess: float
-    method: str
 
 
 class PinocchioKinematics:
@@ -130,8 +89,17 @@ class PinocchioKinematics:
         else:
             method = "numeric"
             raw = solve_numeric(space, goal, reference, seed)
-        solutions, outside = self._sort(space, goal, raw, reference, polish=method == "ur")
-        return IkAnswer(tuple(solutions), tuple(outside), excess, method)
+            if whole_pose and not raw and space.dof < WHOLE_POSE_JOINTS:
+                raw = solve_numeric(space, reduced(space, goal), reference, seed)
+        inside, outside, missed = self._sort(space, goal, raw, reference, polish=method == "ur")
+        task = task_of(space, goal)
+        return IkAnswer(tuple(inside), tuple(outside), excess, method, task, tuple(missed))
+
+    def residual(
+        self, space: GroupSpace, goal: LinkGoal, positions: FloatArray
+    ) -> tuple[float, float]:
+        """How far group positions miss a goal: [m], and [rad] of what it says of the turn."""
+        return distance_to_goal(goal, self.link_pose(space.whole(positions), goal.link))
 
     def _sort(
         self,
@@ -141,11 +109,12 @@ class PinocchioKinematics:
         reference: FloatArray,
         *,
         polish: bool,
-    ) -> tuple[list[FloatArray], list[LimitedSolution]]:
-        """Polish, turn into the limits, drop what misses the tolerance, put the nearest first."""
+    ) -> tuple[list[FloatArray], list[LimitedSolution], list[MissedSolution]]:
+        """Polish, turn into the limits, part from what misses the tolerance, nearest first."""
         task = LinkTask(space, goal)
         inside: list[FloatArray] = []
         outside: list[LimitedSolution] = []
+        missed: list[MissedSolution] = []
         for positions in raw:
             if polish:
                 exact, error = task.polish(positions)
@@ -153,7 +122,9 @@ class PinocchioKinematics:
                     continue
             else:
                 exact = positions
-                if not meets_tolerance(goal, task.link_pose(exact)):
+                pose = task.link_pose(exact)
+                if not meets_tolerance(goal, pose):
+                    missed += self._missed(space, goal, exact, pose, reference)
                     continue
             turned = into_limits(space, exact, reference)
             if isinstance(turned, LimitedSolution):
@@ -161,7 +132,24 @@ class PinocchioKinematics:
             elif all(space.distance(turned, other) > 1e-6 for other in inside):
                 inside.append(turned)
         inside.sort(key=lambda q: (round(space.effort(reference, q), 9), tuple(q)))
-        return inside, outside
+        missed.sort(key=lambda one: (round(one.turn, 9), tuple(one.positions)))
+        return inside, outside, missed
+
+    def _missed(
+        self,
+        space: GroupSpace,
+        goal: LinkGoal,
+        positions: FloatArray,
+        pose: SE3,
+        reference: FloatArray,
+    ) -> list[MissedSolution]:
+        """One at a pose's point inside the limits, turned away from it; or none."""
+        kept = into_limits(space, positions, reference)
+        shift, turn = distance_to_goal(goal, pose)
+        at_the_point = isinstance(goal, PoseGoal) and shift <= goal.position_tolerance
+        if isinstance(kept, LimitedSolution) or not at_the_point:
+            return []
+        return [MissedSolution(kept, pose, shift, turn)]
 
     def _ur(
         self, joints: tuple[Joint, ...], T_last_link: SE3, goal: PoseGoal, reference: FloatArray
@@ -220,6 +208,21 @@ class PinocchioKinematics:
     def _in_front(self, joint: Joint) -> SE3:
         """T_world_parent of a first joint's parent, which stands still."""
         return self.link_pose(np.zeros(len(self.description.joint_names)), joint.parent)
+
+
+def task_of(space: GroupSpace, goal: LinkGoal) -> str:
+    """What is solved for, chosen from the arm: fewer than six joints cannot take any pose."""
+    if isinstance(goal, PositionGoal):
+        return "position" if goal.pitch is None else "position and pitch"
+    if space.dof >= WHOLE_POSE_JOINTS:
+        return "pose"
+    return "position and pitch" if space.dof >= PITCH_JOINTS else "position"
+
+
+def reduced(space: GroupSpace, goal: PoseGoal) -> PositionGoal:
+    """The part of a pose that an arm with fewer than six joints can choose."""
+    pitch = pitch_of(goal.pose.rotation) if space.dof >= PITCH_JOINTS else None
+    return PositionGoal(goal.link, goal.pose.translation, pitch)
 
 
 def into_limits(

@@ -71,7 +71,7 @@ class LinkMotions:
                 "PLANNING_FAILED",
                 f"{link} gets {scale * reached:.1f} of {scale * least:.1f} {unit} far: "
                 f"{traced.stop}",
-                {"reached": reached, "least": least, "reason": traced.reason, **traced.facts},
+                {"reached": reached, "least": least, **_stopped(traced)},
             )
         explanation = {
             "lowered_margins": list(task.checker.lowered),
@@ -158,7 +158,9 @@ class LinkMotions:
         try:
             return time_on_path(path, traced, names, self.task.limits, rates)
         except TimingError as problem:
-            raise PlanningFailed("INVALID_MOTION_PLAN", str(problem)) from problem
+            raise PlanningFailed(
+                "INVALID_MOTION_PLAN", str(problem), {"broken": "timing"}
+            ) from problem
 
     def check_path(self, path: LinkPath, trajectory: JointTrajectory) -> dict[str, float]:
         """How far a trajectory's link leaves its way.
@@ -226,5 +228,11 @@ def path_failed(path: LinkPath, traced: Trace) -> PlanningFailed:
         CODES[traced.reason],
         f"{path.link} can follow the {kind} for {100 * traced.share:.0f} % of {amount}: "
         f"{traced.stop}",
-        {"free_share": traced.share, "reason": traced.reason, **traced.facts},
+        {"free_share": traced.share, **_stopped(traced)},
     )
+
+
+def _stopped(traced: Trace) -> dict[str, Any]:
+    """What stopped a trace, and the group's positions there."""
+    end = traced.positions[-1].tolist()
+    return {"reason": traced.reason, "joint_positions": end, **traced.facts}

@@ -11,6 +11,7 @@ import numpy as np
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
+from harness.planning.explanation import explained
 from harness.planning.free_motion import find_motion
 from harness.planning.goals import find_goals
 from harness.planning.kinematics import PinocchioKinematics
@@ -43,6 +44,7 @@ class VerifiedPlanner:
         """Of the robot that is planned for."""
         return self.scene.description
 
+    @explained
     def plan(
         self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
     ) -> MotionPlan:
@@ -52,6 +54,7 @@ class VerifiedPlanner:
         explanation = {**found.explanation, "lowered_margins": list(task.checker.lowered)}
         return find_motion(task, found.positions, explanation)
 
+    @explained
     def plan_joint_motion(
         self,
         group: str,
@@ -79,18 +82,21 @@ class VerifiedPlanner:
         statistics = task.statistics("PTP", trajectory, [task.start, end])
         return MotionPlan(trajectory, statistics, explanation)
 
+    @explained
     def plan_linear(
         self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
     ) -> MotionPlan:
         """Plan Pilz's LIN: the link on a straight line, turning at an even rate."""
         return self._links(group, start, options).linear(goal)
 
+    @explained
     def plan_circular(
         self, group: str, start: FloatArray, goal: Goal, point: ArcPoint, options: PlanningOptions
     ) -> MotionPlan:
         """Plan Pilz's CIRC: the link on an arc through a point or about a centre."""
         return self._links(group, start, options).circular(goal, point)
 
+    @explained
     def plan_relative(
         self,
         group: str,
@@ -103,6 +109,7 @@ class VerifiedPlanner:
         """Move a link along a direction as far as goes between two distances."""
         return self._links(group, start, options).relative(link, twist, distances)
 
+    @explained
     def check_goal(
         self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
     ) -> Mapping[str, Any]:

@@ -38,6 +38,7 @@ class StepLine:
     Attributes:
         sim_time: Its duration in simulation time [s].
         line: In the scenario file, from 1; 0 if unknown.
+        explanation: Why it failed, a line each: what became of every stage, what to do.
     """
 
     id: str
@@ -48,6 +49,7 @@ class StepLine:
     message: str = ""
     sim_time: float = 0.0
     line: int = 0
+    explanation: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -153,11 +153,12 @@ def _innermost_failures(steps: Sequence[StepLine]) -> Iterable[StepLine]:
 
 
 def step_failure(file: str, step: StepLine, source: Sequence[str] = ()) -> str:
-    """Place, step, error code, message and source line."""
+    """Place, step, error code, message, source line, and the explanation where there is one."""
     place = f"{file}:{step.line}" if step.line else file
     said = step.message.removeprefix(f"{step.error_code}: ")
     why = ": ".join(part for part in (step.error_code, said) if part)
-    return "\n".join([f"{place}: {step.summary}: {why}", *_excerpt(source, step.line)])
+    explained = [f"    {line}" for line in step.explanation]
+    return "\n".join([f"{place}: {step.summary}: {why}", *_excerpt(source, step.line), *explained])
 
 
 def verdict_failure(file: str, verdict: Verdict, source: Sequence[str] = ()) -> str:

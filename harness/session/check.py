@@ -11,6 +11,7 @@ from harness.core.errors import Problem, SpecError
 from harness.engine.explain import explain
 from harness.engine.predict import predict, unexpected
 from harness.engine.program import Loc, Program
+from harness.reporting.explanation import explanation_lines
 from harness.session.prepare import prepare
 
 
@@ -22,12 +23,14 @@ class CheckResult:
         title: The scenario's; its file name when it cannot be read.
         problems: Mistakes of the file.
         predicted: Steps that will fail though the file does not expect it, each at its line.
+        explanations: Of each of them, a line a stage; empty where there is nothing to add.
         steps: How many steps there are.
     """
 
     title: str
     problems: tuple[Problem, ...] = ()
     predicted: tuple[Problem, ...] = ()
+    explanations: tuple[tuple[str, ...], ...] = ()
     steps: int = 0
 
 
@@ -41,14 +44,14 @@ def check_file(
         return CheckResult(path.name, problems=tuple(error.problems))
     program = prepared.program
     records = predict(program, prepared.scene, prepared.kinematics, prepared.planner)
-    predicted = [
-        prepared.loaded.lines.problem(
-            _loc(program, record.path),
-            f"{record.error_code}: {record.message}",
-        )
-        for record in unexpected(records)
-    ]
-    return CheckResult(program.title, (), tuple(dict.fromkeys(predicted)), len(program.steps))
+    predicted: dict[Problem, tuple[str, ...]] = {}
+    for record in unexpected(records):
+        said = f"{record.error_code}: {record.message}"
+        problem = prepared.loaded.lines.problem(_loc(program, record.path), said)
+        predicted.setdefault(problem, explanation_lines(record.explanation, record.message))
+    return CheckResult(
+        program.title, (), tuple(predicted), tuple(predicted.values()), len(program.steps)
+    )
 
 
 def _loc(program: Program, path: str) -> Loc:

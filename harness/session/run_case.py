@@ -18,9 +18,11 @@ from harness.engine.program import Program, ProgramStep
 from harness.recording.digest import digest
 from harness.recording.run import Outcome, Run, Signals, StepRecord, Verdict
 from harness.recording.store import write_run
+from harness.reporting.explanation import explanation_lines
 from harness.reporting.result import CaseResult, ProgressEvent, StepLine
 from harness.session.agreement import plan_against_physics
 from harness.session.beliefs import believed_poses
+from harness.session.failure_pictures import draw_pictures, with_pictures
 from harness.session.prepare import Prepared, prepare
 from harness.session.record import run_record
 from harness.session.timing import Clock
@@ -64,6 +66,8 @@ def run_case(
     on_progress(ProgressEvent("compiled", 0, len(program.steps), program.title, "", 0.0, ""))
     try:
         run = _execute(prepared, str(path), clock, on_progress, report_dir)
+        if report_dir is not None and stills:
+            run = with_pictures(run)
         with clock.part("judge"):
             verdicts = judge(run, _placed(program))
         outcome = _outcome(run, verdicts)
@@ -113,6 +117,7 @@ def step_line(step: StepRecord) -> StepLine:
         message=step.message,
         sim_time=step.end_time - step.start_time,
         line=step.line,
+        explanation=explanation_lines(step.explanation, step.message),
     )
 
 
@@ -243,6 +248,7 @@ def _write(
 
         program = prepared.program
         report = save_stills(program.description, program.all_objects(), run, target / "images")
+        draw_pictures(program.description, program.all_objects(), run, target)
         return (report.note,) if report.note else ()
 
     run = replace(run, meshes=mesh_records(run))

@@ -1,0 +1,150 @@
+"""The later stages of an explanation: start state, path, time parameterisation."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from harness.core.types import FloatArray
+from harness.planning.checker import touch_facts
+from harness.planning.stage_request import Finding, StageRequest
+from harness.planning.verify import FINAL_RESOLUTION
+from harness.planning.wording import count, touch, touches
+from harness.recording.explanation import Stage
+
+RESOLUTION = FINAL_RESOLUTION
+"""Joint-space distance between states when a straight way is looked along [rad]."""
+
+_GOAL_CODES = (
+    "NO_IK_SOLUTION",
+    "GOAL_IN_COLLISION",
+    "GOAL_CONSTRAINTS_VIOLATED",
+    "GOAL_STATE_INVALID",
+)
+_TIMING_DEFECTS = (
+    "timing",
+    "velocity limit",
+    "acceleration limit",
+    "effort limit",
+    "jerk limit",
+    "stamps",
+)
+
+
+def start_finding(request: StageRequest) -> Finding:
+    """Whether the motion could begin where the robot stands."""
+    failure = request.failure
+    if failure.code == "START_STATE_INVALID":
+        stage = Stage("start state", "failed", failure.message, failure.code)
+        return Finding(stage, advice="start inside the limits: `robot: {start_state: ...}`")
+    found = request.scene.distances(request.start)
+    if request.checker is not None:
+        to_objects = [item for item, pair in found if pair.keeps_padding]
+        nearest = (to_objects or [item for item, _ in found])[:1]
+        said = f"; nearest are {touch(nearest[0])}" if nearest else ""
+        return Finding(Stage("start state", "passed", f"free{said}"))
+    deep = [item for item, _ in found if item.distance < 0]
+    first, second = deep[0].first, deep[0].second
+    stage = Stage(
+        "start state",
+        "failed",
+        f"in collision before anything moves: {count(deep, 'pair')}",
+        "START_STATE_IN_COLLISION",
+        tuple(map(touch, deep)),
+    )
+    nearest_state = {
+        "shows": "start state in collision",
+        "joint_positions": request.joints(request.space.part(request.start)),
+        "touches": touch_facts(deep),
+    }
+    advice = (
+        f"move {second} away, or start elsewhere (`robot: {{start_state: ...}}`); where the "
+        f"contact is meant, plan inside `allow_collisions` with the pair [{first}, {second}]"
+    )
+    return Finding(stage, nearest_state, advice)
+
+
+def path_finding(request: StageRequest, target: FloatArray | None) -> Finding:
+    """What blocked the way; `target` are the group's positions it would have gone to first."""
+    failure = request.failure
+    if failure.code.startswith("START_STATE"):
+        return Finding(Stage("path", "not reached", "there is no start to go from"))
+    if is_timing(request):
+        return Finding(Stage("path", "passed", "found"))
+    if failure.code in _GOAL_CODES and "free_share" not in failure.facts:
+        return Finding(Stage("path", "not reached", "there is no goal to go to"))
+    details, nearest = _blocked(request, target)
+    stage = Stage("path", "failed", failure.message, failure.code, tuple(details))
+    return Finding(stage, nearest, _path_advice(request))
+
+
+def timing_finding(request: StageRequest) -> Finding:
+    """Whether a path could be given times under the limits."""
+    failure = request.failure
+    if not is_timing(request):
+        return Finding(Stage("time parameterisation", "not reached", "there is no path"))
+    advice = "lower the scaling factors in `planning`"
+    if "shortest_duration" in failure.facts:
+        advice = f"give it `duration: {failure.facts['shortest_duration']:.3f}` or more"
+    stage = Stage("time parameterisation", "failed", failure.message, failure.code)
+    return Finding(stage, advice=advice)
+
+
+def is_timing(request: StageRequest) -> bool:
+    """Whether the failure came when a path was given its times."""
+    facts = request.failure.facts
+    return facts.get("broken") in _TIMING_DEFECTS or "shortest_duration" in facts
+
+
+def _blocked(request: StageRequest, target: FloatArray | None) -> tuple[list[str], dict[str, Any]]:
+    """How far the motion came, and a state to draw: its end, or where the straight way ends."""
+    facts, options = request.failure.facts, request.options
+    details: list[str] = []
+    shown: dict[str, Any] = {}
+    if facts.get("joint_positions") is not None:
+        shown = {
+            "shows": "as far as it goes",
+            "joint_positions": request.joints(facts["joint_positions"]),
+            "touches": facts.get("touches", []),
+        }
+    elif request.checker is not None and target is not None:
+        start = request.space.part(request.start)
+        blocked = request.checker.first_block(start, target, RESOLUTION)
+        if blocked is not None:
+            share, found = blocked
+            details.append(
+                f"what blocks: after {100 * share:.0f} % of the straight way, {touches(found)}"
+            )
+            shown = {
+                "shows": "where the straight way is blocked",
+                "joint_positions": request.joints(start + share * (target - start)),
+                "touches": touch_facts(found),
+            }
+    if "gap" in facts:
+        details.append(
+            f"how far the trees came: {facts['gap']:.2f} rad of joint space are left between what "
+            "was reached from the start and the goal"
+        )
+    if "state_checks" in facts:
+        searches = count(options.attempts, "search")
+        details.append(
+            f"budget: {facts['state_checks']} state checks used in {searches} of "
+            f"{options.max_state_checks}"
+        )
+    return details, shown
+
+
+def _path_advice(request: StageRequest) -> str:
+    failure = request.failure
+    if failure.code == "PLANNING_FAILED" and "state_checks" in failure.facts:
+        return (
+            "raise `max_state_checks` or `planning_attempts` in `planning`, put a `move_to` in "
+            "between that leads around, or try another `planner_id` (`harness bench` compares them)"
+        )
+    if failure.code == "INVALID_MOTION_PLAN":
+        return "`move_to` goes around what is in the way; or put a step in between that leads past"
+    if failure.facts.get("reason") in ("unreachable", "limit", "jump"):
+        return (
+            "begin the line in another posture (a `move_to` with `joints` before it), make it "
+            "shorter, or use `move_to`, which need not keep to the line"
+        )
+    return ""

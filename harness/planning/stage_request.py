@@ -1,0 +1,84 @@
+"""A planning call that failed, as its explanation looks at it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from harness.core.errors import PlanningFailed
+from harness.core.types import FloatArray
+from harness.planning.checker import MotionChecker
+from harness.planning.ik_numeric import LinkGoal
+from harness.planning.kinematics import PinocchioKinematics
+from harness.planning.nearest_pose import NearestPose
+from harness.planning.robot_model import GroupSpace
+from harness.planning.scene import CoalScene
+from harness.ports import Goal, PlanningOptions, PoseGoal, Touch
+from harness.recording.explanation import Stage
+
+
+@dataclass(frozen=True, eq=False)
+class Finding:
+    """A stage, with what it adds for the report.
+
+    Attributes:
+        stage: What became of it.
+        nearest: A state to draw: `shows`, `joint_positions` ...; empty where there is none.
+        advice: What to do, for the first stage that failed.
+    """
+
+    stage: Stage
+    nearest: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    advice: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class StageRequest:
+    """What was asked, and how it failed.
+
+    Attributes:
+        failure: As it was raised.
+        space: The group, the rest of the robot at its start.
+        start: Description order.
+        goal: None for a motion without one, as along a direction.
+        options: How it was to be planned.
+        checker: Of the motion's states; None where it cannot begin.
+    """
+
+    failure: PlanningFailed
+    kinematics: PinocchioKinematics
+    scene: CoalScene
+    space: GroupSpace
+    start: FloatArray
+    goal: Goal | None
+    options: PlanningOptions
+    checker: MotionChecker | None
+
+    def touches(self, positions: FloatArray) -> Sequence[Touch]:
+        """What is too near at group positions, nearest first."""
+        if self.checker is None:
+            return self.scene.touches(self.space.whole(positions), self.options.padding)
+        return self.checker.touches(positions)
+
+    def joints(self, positions: FloatArray) -> dict[str, float]:
+        """Every joint of the robot by name, at positions of the group."""
+        whole = self.space.whole(np.asarray(positions, dtype=float))
+        names = self.space.robot.description.joint_names
+        return dict(zip(names, map(float, whole), strict=True))
+
+
+def nearest_facts(request: StageRequest, goal: LinkGoal, nearest: NearestPose) -> dict[str, Any]:
+    """A nearest pose as plain data: the robot's joints, link, target, what is missed."""
+    target = goal.pose.as_vector() if isinstance(goal, PoseGoal) else goal.position
+    return {
+        "shows": "nearest pose",
+        "link": goal.link,
+        "target": [float(value) for value in target],
+        "pose": [float(value) for value in nearest.pose.as_vector()],
+        "position_error": nearest.shift,
+        "orientation_error": nearest.turn,
+        "joint_positions": request.joints(nearest.positions),
+    }

@@ -1,0 +1,190 @@
+"""Explanations are true: the nearest pose is nearest, what is advised is reached, names differ."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from harness.core.errors import PlanningFailed
+from harness.core.geometry import Box, Shape
+from harness.core.spatial import SE3, wxyz_from_xyzw
+from harness.planning.branches import branch_name
+from harness.planning.nearest_pose import (
+    EVEN,
+    KEEP_TURN,
+    distance_to_goal,
+    nearest_pose,
+)
+from harness.planning.robot_model import GroupSpace
+from harness.ports import JointGoal, PlanningOptions, PoseGoal, PositionGoal
+from harness.recording.explanation import stages_of
+from tests.planning.lesson import (
+    ARM,
+    TCP,
+    Cell,
+    at,
+    grasp_goal,
+    open_manipulator,
+    thing,
+    ur,
+)
+
+OPTIONS = PlanningOptions(seed=3)
+
+
+def explained(call, *args):
+    with pytest.raises(PlanningFailed) as caught:
+        call(*args)
+    return caught.value
+
+
+def stage(error, name):
+    return {stage.name: stage for stage in stages_of(error.facts)}[name]
+
+
+@pytest.mark.parametrize(
+    ("make", "group", "goal"),
+    [
+        (lambda: ur("ur3e"), ARM, grasp_goal(1.1, 0.2, 0.4)),
+        (lambda: ur("ur5e"), ARM, grasp_goal(0.02, 0.03, 0.1)),
+        (open_manipulator, "arm", PositionGoal(TCP, np.array([0.5, 0.1, 1.3]), 0.4)),
+    ],
+)
+def test_no_random_state_comes_nearer_than_the_nearest_pose(make, group, goal):
+    """Against 4000 states drawn from the whole joint space, and the best of them improved."""
+    cell = Cell(make())
+    space = GroupSpace(cell.kinematics.robot, group, cell.state)
+    found = nearest_pose(space, goal, space.part(cell.state), 0)
+    assert np.all((found.positions >= space.lower) & (found.positions <= space.upper))
+    pose = cell.kinematics.link_pose(space.whole(found.positions), TCP)
+    assert distance_to_goal(goal, pose) == pytest.approx((found.shift, found.turn), abs=1e-9)
+    rng = np.random.default_rng(8)
+    states = rng.uniform(space.lower, space.upper, (4000, space.dof))
+    away = [
+        np.hypot(shift, EVEN * turn)
+        for q in states
+        for shift, turn in [distance_to_goal(goal, cell.kinematics.link_pose(space.whole(q), TCP))]
+    ]
+    assert np.hypot(found.shift, EVEN * found.turn) <= min(away) + 1e-6
+    for index in np.argsort(away)[:20]:  # a descent by a second method from the best of them
+        best, step = states[index], 0.05
+        cost = away[index]
+        while step > 1e-4:
+            trials = np.clip(
+                best + step * np.vstack([np.eye(space.dof), -np.eye(space.dof)]),
+                space.lower,
+                space.upper,
+            )
+            costs = []
+            for q in trials:
+                shift, turn = distance_to_goal(goal, cell.kinematics.link_pose(space.whole(q), TCP))
+                costs.append(np.hypot(shift, EVEN * turn))
+            least = int(np.argmin(costs))
+            if costs[least] < cost:
+                best, cost = trials[least], costs[least]
+            else:
+                step /= 2
+        assert np.hypot(found.shift, EVEN * found.turn) <= cost + 1e-4
+
+
+def test_a_turn_that_is_kept_is_kept():
+    cell = Cell(ur("ur3e"))
+    space = GroupSpace(cell.kinematics.robot, ARM, cell.state)
+    found = nearest_pose(
+        space, grasp_goal(0.5, -0.1, 0.3), space.part(cell.state), 0, metres_per_radian=KEEP_TURN
+    )
+    assert found.turn < 1e-4
+    assert found.shift == pytest.approx(0.0884, abs=0.001)
+
+
+@pytest.mark.parametrize("xyz", [(0.9, 0, 0.3), (0.5, -0.1, 0.3), (0.2, 0.6, 0.6), (0, 0.05, 0.2)])
+def test_a_goal_that_is_advised_is_reached_as_it_is_written(xyz):
+    cell = Cell(ur("ur3e"))
+    error = explained(cell.planner.plan, ARM, cell.state, grasp_goal(*xyz), OPTIONS)
+    assert error.code == "NO_IK_SOLUTION"
+    numbers = r"\[([^\]]*)\]"
+    found = re.search(rf"frame: world, xyz: {numbers}, quat_xyzw: {numbers}", error.facts["advice"])
+    position, quat = (np.array([float(v) for v in group.split(",")]) for group in found.groups())
+    pose = SE3.from_xyz_quat(position, wxyz_from_xyzw(quat))
+    assert cell.kinematics.solve(ARM, PoseGoal(TCP, pose), cell.state, 0)
+
+
+def test_a_goal_in_collision_is_free_where_the_explanation_moves_it():
+    cell = Cell(ur("ur3e"))
+    goal = grasp_goal(0.32, -0.17, -0.02)
+    error = explained(cell.planner.plan, ARM, cell.state, goal, OPTIONS)
+    shift = np.array(error.facts["nearest"]["nearest_free"]["shift"])
+
+    def moved(share):
+        pose = SE3(goal.pose.rotation, goal.pose.translation + share * shift)
+        return replace(goal, pose=pose)
+
+    cell.planner.check_goal(ARM, cell.state, moved(1.0), OPTIONS)
+    explained(cell.planner.check_goal, ARM, cell.state, moved(0.8), OPTIONS)
+    assert f"{np.ceil(1000 * shift[2]):.1f} mm along +z" in error.facts["advice"]
+
+
+def test_the_branches_of_a_ur_have_eight_names():
+    cell = Cell(ur("ur5e"))
+    space = GroupSpace(cell.kinematics.robot, ARM, cell.state)
+    found = cell.kinematics.solve(ARM, grasp_goal(0.32, -0.17, 0.08), cell.state, 0)
+    names = {branch_name(cell.kinematics, space, "ur", q) for q in found}
+    assert len(names) == len(found) == 8
+    zero = branch_name(cell.kinematics, space, "ur", np.array([0.3, -1.2, 1.5, -1.0, 1.0, 0]))
+    assert zero == "forwards, elbow up, wrist_2_joint > 0"
+    over = branch_name(cell.kinematics, space, "ur", np.array([0.3, -1.9, -1.5, -1.0, -1.0, 0]))
+    assert over == "backwards, elbow up, wrist_2_joint < 0"
+
+
+def test_a_start_in_collision_is_told_beside_what_is_known_of_the_goal():
+    cell = Cell(ur("ur3e"))
+    tip = cell.kinematics.link_pose(cell.state, "wrist_1_link").translation
+    cell.scene.add_object(thing("crate", at(*tip), Shape(Box((0.2, 0.2, 0.2)))), at(*tip))
+    error = explained(cell.planner.plan, ARM, cell.state, grasp_goal(0.9, 0, 0.3), OPTIONS)
+    assert error.code == "START_STATE_IN_COLLISION"
+    assert stage(error, "reach").code == "NO_IK_SOLUTION"
+    assert stage(error, "start state").code == "START_STATE_IN_COLLISION"
+    assert any("crate" in line for line in stage(error, "start state").details)
+    assert stage(error, "path").status == "not reached"
+
+
+def test_limits_that_forbid_every_branch_are_told_with_joint_and_excess():
+    narrow = ur("ur3e")
+    joints = tuple(
+        replace(joint, lower=-0.2, upper=0.2) if joint.name == "wrist_2_joint" else joint
+        for joint in narrow.joints
+    )
+    cell = Cell(replace(narrow, joints=joints))
+    error = explained(cell.planner.plan, ARM, cell.state, grasp_goal(0.32, -0.17, 0.3), OPTIONS)
+    assert error.code == "NO_IK_SOLUTION"
+    branches = stage(error, "inverse kinematics")
+    assert branches.code == "NO_IK_SOLUTION"
+    assert "0 free, 4 beyond a joint limit" in branches.text
+    beyond = [line for line in branches.details if "wrist_2_joint would be at" in line]
+    assert len(beyond) >= 3
+    assert "1.371 rad (78.5°) beyond its limit" in beyond[0]
+
+
+def test_four_joints_report_what_of_a_pose_they_miss_and_take_it_where_that_is_allowed():
+    cell = Cell(open_manipulator())
+    pose = at(0.25, 0.0, 1.095, rpy=(0, 0, 0.02))
+    error = explained(cell.planner.plan, "arm", cell.state, PoseGoal(TCP, pose), OPTIONS)
+    assert error.code == "GOAL_CONSTRAINTS_VIOLATED"
+    assert error.facts["orientation_error"] == pytest.approx(0.02)
+    allowed = PoseGoal(TCP, pose, orientation_tolerance=0.03)
+    found = cell.planner.plan("arm", cell.state, allowed, OPTIONS).explanation
+    assert found["ik_task"] == "position and pitch"
+    for solution in found["ik_solutions"]:
+        assert solution["residual"]["orientation"] == pytest.approx(0.02)
+        assert solution["residual"]["position"] < 1e-9
+
+
+def test_joints_are_told_in_their_own_units():
+    cell = Cell(ur("ur3e"))
+    beyond = JointGoal(np.array([-3.5, -1.57, 0, 0, 0, 0]))
+    error = explained(cell.planner.plan, ARM, cell.state, beyond, OPTIONS)
+    [line] = stage(error, "reach").details
+    assert "at -3.500 rad (-200.5°), 0.159 rad (9.1°) beyond its limit -3.341 rad" in line
+    nearest = error.facts["nearest"]["joint_positions"]
+    assert nearest["shoulder_pan_joint"] == pytest.approx(-3.3406585, abs=1e-6)
