@@ -100,6 +100,42 @@ class ArcPoint:
     position: FloatArray
 
 
+@dataclass(frozen=True, eq=False)
+class SequenceItem:
+    """One motion of a sequence.
+
+    Attributes:
+        kind: Of the motion.
+        goal: Where it ends.
+        point: What makes the arc of a circ; None for others.
+        blend_radius: Around its end, inside which it goes over into the next one [m].
+        cartesian_limits: Of lines and arcs.
+    """
+
+    kind: Literal["ptp", "lin", "circ"]
+    goal: Goal
+    point: ArcPoint | None = None
+    blend_radius: float = 0.0
+    cartesian_limits: CartesianLimits = CartesianLimits()
+
+
+@dataclass(frozen=True)
+class CartesianPathOptions:
+    """What is asked of a Cartesian path.
+
+    Attributes:
+        max_step: Between the poses that are solved [m].
+        precision: Largest distance from the straight lines, corners included [m].
+        min_fraction: Least share of the path.
+        jump: What no joint may exceed from one pose to the next.
+    """
+
+    max_step: float
+    precision: float
+    min_fraction: float
+    jump: JumpThreshold
+
+
 @dataclass(frozen=True)
 class PlanningOptions:
     """How to plan; every number known.
@@ -292,6 +328,30 @@ class MotionPlanner(Protocol):
             twist: Unit translation or rotation in world axes, shape (6,): linear, then angular.
             distances: Least and most [m or rad]; equal for a fixed distance.
             options: How to plan.
+        """
+        ...
+
+    def plan_sequence(
+        self,
+        group: str,
+        start: FloatArray,
+        items: Sequence[SequenceItem],
+        options: PlanningOptions,
+    ) -> MotionPlan:
+        """Plan Pilz's sequence: motions blended into each other, all of them or none."""
+        ...
+
+    def plan_cartesian_path(
+        self,
+        group: str,
+        start: FloatArray,
+        goals: Sequence[PoseGoal | PositionGoal],
+        wanted: CartesianPathOptions,
+        options: PlanningOptions,
+    ) -> MotionPlan:
+        """Plan straight lines through waypoints, as far as they go.
+
+        The plan's result has `fraction`, `largest_joint_step` [rad or m] and `deviation` [m].
         """
         ...
 

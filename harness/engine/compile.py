@@ -76,7 +76,7 @@ class _Compiler:
     def __init__(self, sources: Sources) -> None:
         self.sources = sources
         self.problems = Problems(sources.lines)
-        self.scope = Scope(sources.description, self.problems)
+        self.scope = Scope(sources.description, self.problems, sources.kinematics.link_pose)
         self.later: dict[str, WorldObject] = {}
         self.later_specs: dict[str, ObjectSpec] = {}  # without poses
         self.step_locs: dict[str, Loc] = {}

@@ -6,7 +6,7 @@ missing objects come out as they would, contacts are taken to happen as the file
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -19,6 +19,7 @@ from harness.engine.grasping import turn_about
 from harness.engine.program import Program
 from harness.ports import (
     ArcPoint,
+    CartesianPathOptions,
     Goal,
     GripperResult,
     JointGoal,
@@ -27,6 +28,8 @@ from harness.ports import (
     MotionPlanner,
     PlanningOptions,
     PoseGoal,
+    PositionGoal,
+    SequenceItem,
 )
 from harness.recording.run import Signals
 from harness.robot.description import RobotDescription
@@ -188,6 +191,27 @@ class DryPlanner:
     ) -> MotionPlan:
         options = replace(options, path_only=True)
         return self._planner.plan_circular(group, start, goal, point, options)
+
+    def plan_sequence(
+        self,
+        group: str,
+        start: FloatArray,
+        items: Sequence[SequenceItem],
+        options: PlanningOptions,
+    ) -> MotionPlan:
+        options = replace(options, path_only=True)
+        return self._planner.plan_sequence(group, start, items, options)
+
+    def plan_cartesian_path(
+        self,
+        group: str,
+        start: FloatArray,
+        goals: Sequence[PoseGoal | PositionGoal],
+        wanted: CartesianPathOptions,
+        options: PlanningOptions,
+    ) -> MotionPlan:
+        options = replace(options, path_only=True)
+        return self._planner.plan_cartesian_path(group, start, goals, wanted, options)
 
     def plan_relative(
         self,

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from harness.core.errors import Problem, SpecError
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.engine.program import Loc
 from harness.ports import LONGEST_RUN
@@ -76,11 +78,18 @@ class Scope:
         added: Objects that steps added and nothing removed.
         asked_time: Simulated time that steps have asked for by number [s].
         problems: Where to report.
+        link_pose: T_world_link at joint positions in description order.
     """
 
-    def __init__(self, description: RobotDescription, problems: Problems) -> None:
+    def __init__(
+        self,
+        description: RobotDescription,
+        problems: Problems,
+        link_pose: Callable[[FloatArray, str], SE3] | None = None,
+    ) -> None:
         self.description = description
         self.problems = problems
+        self.link_pose = link_pose
         self.objects: dict[str, WorldObject] = {}
         self.present: dict[str, None] = {}
         self.attached: dict[str, None] = {}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from harness.core.registry import Registry
+from harness.engine.blends import check_blends
 from harness.engine.program import Loc
 from harness.engine.scope import Scope
 from harness.spec.goals import GoalFields
@@ -13,6 +14,7 @@ from harness.spec.steps import (
     AnyStep,
     ArcFields,
     AttachObject,
+    CartesianPath,
     Circ,
     ClearObjects,
     DetachObject,
@@ -28,6 +30,7 @@ from harness.spec.steps import (
     Ptp,
     Release,
     RemoveObject,
+    Sequence,
     Wait,
 )
 
@@ -121,6 +124,28 @@ def _check_arc(arc: ArcFields, at: At) -> None:
         point = getattr(arc, key)
         if point is not None:
             at.scope.check_frame(point.frame, at.key(key, "frame"))
+
+
+@check.handles(CartesianPath)
+def _cartesian_path(step: CartesianPath, at: At) -> None:
+    at.scope.check_group(step.group, at.key("group"))
+    at.scope.check_link_or_held(step.link, at.key("link"))
+    for index, waypoint in enumerate(step.waypoints):
+        _check_pose(waypoint, at, "waypoints", index)
+
+
+@check.handles(Sequence)
+def _sequence(step: Sequence, at: At) -> None:
+    group = at.scope.check_group(step.group, at.key("group"))
+    for index, item in enumerate(step.items):
+        for kind in ("ptp", "lin", "circ"):
+            motion = getattr(item, kind)
+            if motion is not None:
+                inside = At(at.scope, at.key("items", index, kind))
+                _check_goal(motion, step.group, inside)
+                if isinstance(motion, ArcFields):
+                    _check_arc(motion, inside)
+    check_blends(step, group, at.loc, at.scope)
 
 
 @check.handles(MoveRelative)

@@ -11,12 +11,14 @@ from harness.spec.steps import (
     AllowCollisions,
     AnyStep,
     AttachObject,
+    CartesianPath,
     ClearObjects,
     Grasp,
     Gripper,
     Inject,
     MoveRelative,
     RemoveObject,
+    Sequence,
     Wait,
 )
 
@@ -39,6 +41,13 @@ def _content(step: AnyStep) -> str:
     match step:
         case GoalFields():
             return _goal(step)
+        case CartesianPath():
+            return f"through {len(step.waypoints)} waypoints"
+        case Sequence():
+            return ", ".join(
+                next(word for word in ("ptp", "lin", "circ") if getattr(item, word) is not None)
+                for item in step.items
+            )
         case Gripper():
             if step.named_target is not None:
                 return step.named_target

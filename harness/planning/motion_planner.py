@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -11,17 +11,29 @@ import numpy as np
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
+from harness.planning.cartesian_path import plan_waypoints
 from harness.planning.explanation import explained
 from harness.planning.free_motion import find_motion
 from harness.planning.goals import find_goals
 from harness.planning.kinematics import PinocchioKinematics
 from harness.planning.limits import Limits
 from harness.planning.link_motion import LinkMotions
+from harness.planning.motion_sequence import plan_items
 from harness.planning.profiles import cubic_curve, on_grid, sample
 from harness.planning.scene import CoalScene
 from harness.planning.task import PlanningTask, make_task
 from harness.planning.timing import time_straight
-from harness.ports import ArcPoint, Goal, JointGoal, MotionPlan, PlanningOptions
+from harness.ports import (
+    ArcPoint,
+    CartesianPathOptions,
+    Goal,
+    JointGoal,
+    MotionPlan,
+    PlanningOptions,
+    PoseGoal,
+    PositionGoal,
+    SequenceItem,
+)
 from harness.robot.description import RobotDescription
 
 STATE_CHECKS_PER_SECOND = 20_000
@@ -108,6 +120,29 @@ class VerifiedPlanner:
     ) -> MotionPlan:
         """Move a link along a direction as far as goes between two distances."""
         return self._links(group, start, options).relative(link, twist, distances)
+
+    @explained
+    def plan_sequence(
+        self,
+        group: str,
+        start: FloatArray,
+        items: Sequence[SequenceItem],
+        options: PlanningOptions,
+    ) -> MotionPlan:
+        """Plan Pilz's sequence: motions blended into each other, all of them or none."""
+        return plan_items(self._links(group, start, options), items)
+
+    @explained
+    def plan_cartesian_path(
+        self,
+        group: str,
+        start: FloatArray,
+        goals: Sequence[PoseGoal | PositionGoal],
+        wanted: CartesianPathOptions,
+        options: PlanningOptions,
+    ) -> MotionPlan:
+        """Plan straight lines through waypoints, as far as they go."""
+        return plan_waypoints(self._links(group, start, options), goals, wanted)
 
     @explained
     def check_goal(

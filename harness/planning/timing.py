@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -45,18 +46,23 @@ def time_stopping(
     pieces = [
         time_straight(joint_names, first, second, limits) for first, second in pairwise(waypoints)
     ]
+    return joined(pieces)
+
+
+def joined(pieces: Sequence[JointTrajectory]) -> JointTrajectory:
+    """One trajectory after the other, each beginning where the one before came to rest."""
     times, offset = [pieces[0].times], pieces[0].duration
     for piece in pieces[1:]:
         times.append(piece.times[1:] + offset)
         offset += piece.duration
     rest = [slice(None), *[slice(1, None)] * (len(pieces) - 1)]
-    joined: list[FloatArray] = [
+    columns: list[FloatArray] = [
         np.concatenate(
             [getattr(piece, name)[part] for piece, part in zip(pieces, rest, strict=True)]
         )
         for name in ("positions", "velocities", "accelerations")
     ]
-    return JointTrajectory(joint_names, np.concatenate(times), *joined)
+    return JointTrajectory(pieces[0].joint_names, np.concatenate(times), *columns)
 
 
 def time_blended(

@@ -16,6 +16,7 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.checker import MotionChecker, describe_touches, touch_facts
 from harness.planning.ik_numeric import LinkGoal, LinkTask, pitch_of
+from harness.planning.splines import uniform_spline
 from harness.ports import JumpThreshold, PoseGoal, PositionGoal
 
 STEP_LENGTH = 0.005
@@ -35,6 +36,12 @@ CODES: dict[str, ErrorCode] = {
     "collision": "INVALID_MOTION_PLAN",
 }
 """Failure of a way that must be followed to its end, by the reason of the stop."""
+
+STRIDES = (1, 2, 4, 8)
+"""How many poses are tried for one step, until a curve through them stays on the way."""
+
+OFF_BETWEEN = 3e-5
+"""How far the curve may leave it in the middle between two poses [m]."""
 
 _FEWEST_STEPS = 8
 _SOLVED = 1e-8  # [m, rad]
@@ -81,6 +88,7 @@ class Trace:
         stop: Why it went no farther: in words; empty when it reached the end.
         reason: `end`, `unreachable`, `limit`, `jump` or `collision`.
         facts: The numbers behind `stop`.
+        stride: How many poses stand for one step that was asked for.
     """
 
     parameters: FloatArray
@@ -88,6 +96,7 @@ class Trace:
     stop: str = ""
     reason: str = "end"
     facts: dict[str, Any] = field(default_factory=dict)
+    stride: int = 1
 
     @property
     def share(self) -> float:
@@ -101,10 +110,11 @@ class Trace:
 
     @property
     def largest_step(self) -> float:
-        """Farthest that a joint moves from one pose to the next [rad or m]."""
-        if len(self.positions) < 2:
+        """Farthest that a joint moves within one step [rad or m]."""
+        stride = min(self.stride, len(self.positions) - 1)
+        if stride < 1:
             return 0.0
-        return float(np.abs(np.diff(self.positions, axis=0)).max())
+        return float(np.abs(self.positions[stride:] - self.positions[:-stride]).max())
 
 
 def trace(
@@ -118,6 +128,9 @@ def trace(
 
     Arms with fewer than six joints keep position and pitch; their yaw follows from the position.
 
+    Where a curve through the joint positions leaves the way between them, as near a singularity,
+    the poses are taken nearer to each other; the trace ends where that does not help.
+
     Args:
         path: Where the link goes.
         checker: Of the states on it.
@@ -129,20 +142,64 @@ def trace(
     steps = max(path.length / min(step_length, STEP_SWEEP * path.radius), path.angle / STEP_ANGLE)
     count = max(_FEWEST_STEPS, int(np.ceil(steps)))
     largest = np.where(space.wraps, jump.revolute, jump.prismatic)
-    parameters = np.linspace(0.0, 1.0, count + 1)
+    traced, off = _attempt(path, checker, start, count, largest, 1), np.zeros(0)
+    for stride in STRIDES:
+        if stride > 1:
+            traced = _attempt(path, checker, start, count, largest, stride)
+        if len(traced.positions) <= _FEWEST_STEPS:
+            return traced
+        off = _off_between(path, traced, checker)
+        if np.all(off <= OFF_BETWEEN):
+            return traced
+    kept = max(1, int(np.argmax(off > OFF_BETWEEN)) - _FEWEST_STEPS)
+    return Trace(
+        traced.parameters[:kept],
+        traced.positions[:kept],
+        f"the joints cannot turn as fast as the {path.name} asks (the arm is at or near a "
+        "singularity)",
+        "jump",
+        {"deviation": float(off.max())},
+        traced.stride,
+    )
+
+
+def _attempt(
+    path: LinkPath,
+    checker: MotionChecker,
+    start: FloatArray,
+    count: int,
+    largest: FloatArray,
+    stride: int,
+) -> Trace:
+    """A trace with `stride` poses for each of `count` steps."""
+    space = checker.space
+    parameters = np.linspace(0.0, 1.0, count * stride + 1)
     positions = [np.asarray(start, dtype=float)]
-    for number in range(1, count + 1):
+    for number in range(1, len(parameters)):
         goal = link_goal(path.link, path.pose(float(parameters[number])), space.dof)
         task = LinkTask(space, goal)
         guess = 2 * positions[-1] - positions[-2] if number > 1 else positions[-1]
         found, error = task.polish(guess, iterations=20)
-        stopped = _stopped(path, checker, positions[-1], found, error, largest)
+        stopped = _stopped(path, checker, positions[-1], found, error, largest / stride)
         if stopped is not None:
             reason, message, facts = stopped
             reached = parameters[:number]
-            return Trace(reached, np.array(positions), message, reason, facts)
+            return Trace(reached, np.array(positions), message, reason, facts, stride)
         positions.append(found)
-    return Trace(parameters, np.array(positions))
+    return Trace(parameters, np.array(positions), stride=stride)
+
+
+def _off_between(path: LinkPath, traced: Trace, checker: MotionChecker) -> FloatArray:
+    """How far a spline through a trace leaves the way between neighbouring poses [m], (K - 1,)."""
+    middles = np.arange(len(traced.positions) - 1) + 0.5
+    between = uniform_spline(traced.positions)(middles / (len(traced.positions) - 1))[0]
+    space = checker.space
+    return np.array(
+        [
+            path.nearest(space.robot.link_pose(space.whole(positions), path.link))[1]
+            for positions in between
+        ]
+    )
 
 
 def link_goal(link: str, pose: SE3, dof: int) -> LinkGoal:

@@ -90,17 +90,16 @@ class Ptp(GoalFields, StepFields):
     )
 
 
-class Lin(GoalFields, StepFields):
-    """Pilz LIN: the link moves on a straight line."""
+class LineFields(GoalFields):
+    """A straight line of the link to a goal."""
 
-    do: Literal["lin"] = "lin"
     cartesian_limits: CartesianLimits | None = Field(
-        default=None, description="Of the link on its line."
+        default=None, description="Of the link on its way."
     )
 
 
-class ArcFields(SpecModel):
-    """What makes an arc of a start and a goal."""
+class ArcFields(LineFields):
+    """An arc of the link to a goal, through `interim` or about `center`."""
 
     interim: Position | None = Field(
         default=None, description="A point on the arc, which may be any but a full circle."
@@ -116,13 +115,16 @@ class ArcFields(SpecModel):
         return self
 
 
-class Circ(ArcFields, GoalFields, StepFields):
+class Lin(LineFields, StepFields):
+    """Pilz LIN: the link moves on a straight line."""
+
+    do: Literal["lin"] = "lin"
+
+
+class Circ(ArcFields, StepFields):
     """Pilz CIRC: the link moves on an arc, through `interim` or about `center`."""
 
     do: Literal["circ"] = "circ"
-    cartesian_limits: CartesianLimits | None = Field(
-        default=None, description="Of the link on its arc."
-    )
 
 
 class MoveRelative(StepFields):
@@ -173,36 +175,51 @@ class JumpThreshold(SpecModel):
     prismatic: PositiveLength = Field(default=0.1, description="Of a sliding joint [m].")
 
 
+class Waypoint(Pose):
+    """A pose; without a rotation the link stays turned as it is."""
+
+
 class CartesianPath(StepFields):
-    """MoveIt's computeCartesianPath: straight segments through waypoints."""
+    """MoveIt's computeCartesianPath: straight lines of the link through waypoints.
+
+    Corners are rounded within the precision, so that the link need not stop there. The step reports
+    the `fraction` of the path that was followed, the `largest_joint_step` from one pose to the
+    next, and the `deviation` of the final samples from the lines.
+    """
 
     do: Literal["cartesian_path"] = "cartesian_path"
-    waypoints: Annotated[tuple[Pose, ...], Field(min_length=1)] = Field(
-        description="Poses of the link, in order."
+    waypoints: Annotated[tuple[Waypoint, ...], Field(min_length=1, max_length=1000)] = Field(
+        description="Poses of the link, in order; without a rotation it stays turned as it is."
     )
     link: Name | None = Field(default=None, description="Default: the TCP.")
-    max_step: PositiveLength = Field(
+    max_step: Annotated[Length, Field(ge=1e-4)] = Field(
         default=0.005, description="Distance between the poses solved for [m]."
     )
-    precision: PositiveLength = Field(
-        default=0.001, description="Largest deviation from the straight line [m]."
+    precision: Annotated[Length, Field(ge=1e-4)] = Field(
+        default=0.001,
+        description="Largest deviation from the straight lines, corners included [m].",
     )
     min_fraction: Fraction = Field(
         default=1.0, description="Share of the path that must be reached."
     )
     jump_threshold: JumpThreshold = Field(
-        default=JumpThreshold(), description="Refuses a path on which a joint jumps."
+        default=JumpThreshold(), description="Ends a path where a joint jumps."
+    )
+    cartesian_limits: CartesianLimits | None = Field(
+        default=None, description="Of the link on its way."
     )
 
 
 class SequenceItem(SpecModel):
     """One motion of a sequence, and how it blends into the next."""
 
-    ptp: GoalFields | None = Field(default=None, description="A joint motion.")
-    lin: GoalFields | None = Field(default=None, description="A straight line.")
-    circ: Circ | None = Field(default=None, description="An arc.")
+    ptp: GoalFields | None = Field(default=None, description="A joint motion: see `ptp`.")
+    lin: LineFields | None = Field(default=None, description="A straight line: see `lin`.")
+    circ: ArcFields | None = Field(default=None, description="An arc: see `circ`.")
     blend_radius: NonNegativeLength = Field(
-        default=0.0, description="Where the next motion may begin before the end of this one [m]."
+        default=0.0,
+        description="Inside this distance of its goal it goes over into the next motion [m]; 0: "
+        "it stops there.",
     )
 
     @model_validator(mode="after")
@@ -213,13 +230,19 @@ class SequenceItem(SpecModel):
 
 
 class Sequence(StepFields):
-    """Pilz's motion sequence with blends."""
+    """Pilz's motion sequence: all motions or none, blended into each other.
+
+    The blend radii of two motions that follow each other are together less than the distance
+    between their goals.
+    """
 
     short = "items"
     short_is_list = True
 
     do: Literal["sequence"] = "sequence"
-    items: Annotated[tuple[SequenceItem, ...], Field(min_length=1)] = Field(description="In order.")
+    items: Annotated[tuple[SequenceItem, ...], Field(min_length=1, max_length=1000)] = Field(
+        description="In order."
+    )
 
 
 class Gripper(StepFields):

@@ -12,8 +12,6 @@ from harness.spec.checks import AnyExpectation
 from harness.spec.steps import AnyStep
 
 VERBS = {
-    "cartesian_path": "{waypoints: [{xyz: [0.3, 0, 0.3]}]}",
-    "sequence": "{items: [{ptp: home}]}",
     "capture": "{camera: gripper_camera}",
     "inject": "{gripper_effort: 0.5}",
     "repeat": "{times: 2, steps: [{wait: 1 s}]}",
@@ -29,7 +27,8 @@ CHECKS = {
     "formula": "formula: {formula: x > 0}",
 }
 PROMISED_VERBS = """
-    move_to ptp lin circ move_relative gripper grasp release attach_object detach_object add_object
+    move_to ptp lin circ sequence cartesian_path
+    move_relative gripper grasp release attach_object detach_object add_object
     remove_object move_object clear_objects allow_collisions pick place wait settle
 """
 PROMISED_CHECKS = """

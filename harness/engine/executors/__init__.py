@@ -3,6 +3,7 @@
 from harness.engine.executors import (
     allow_collisions,
     attach_object,
+    cartesian_path,
     circ,
     grasp,
     gripper,
@@ -15,12 +16,14 @@ from harness.engine.executors import (
     place,
     ptp,
     release,
+    sequence,
     waiting,
 )
 
 __all__ = [
     "allow_collisions",
     "attach_object",
+    "cartesian_path",
     "circ",
     "grasp",
     "gripper",
@@ -33,5 +36,6 @@ __all__ = [
     "place",
     "ptp",
     "release",
+    "sequence",
     "waiting",
 ]

@@ -1,0 +1,44 @@
+"""A smooth curve through many joint positions, parametrised by the way the joints go."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from harness.core.types import FloatArray
+
+_NEAREST = 1e-7  # [rad] samples nearer than this to the one before are left out
+
+
+class JointSpline:
+    """Twice differentiable through samples that lie densely on a curve without corners.
+
+    Attributes:
+        samples: Group positions that it passes, shape (K, dof).
+        kept: Which of the given samples these are, shape (K,).
+        knots: Their parameters, shape (K,), from 0 to `length` [rad].
+        length: Of the polyline through the samples [rad].
+    """
+
+    def __init__(self, samples: FloatArray) -> None:
+        steps = np.linalg.norm(np.diff(samples, axis=0), axis=1)
+        kept = np.concatenate([[True], steps > _NEAREST])
+        self.kept = np.flatnonzero(kept)
+        self.samples = samples[kept]
+        steps = np.linalg.norm(np.diff(self.samples, axis=0), axis=1)
+        self.knots: FloatArray = np.concatenate([[0.0], np.cumsum(steps)])
+        self.length = float(self.knots[-1])
+        self._spline = CubicSpline(self.knots, self.samples) if len(self.knots) > 1 else None
+
+    def evaluate(self, parameter: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Positions and their first two derivatives, (M, dof) each, at parameters (M,)."""
+        if self._spline is None:
+            raise ValueError("the curve has no length")
+        s = np.clip(np.atleast_1d(np.asarray(parameter, dtype=float)), 0.0, self.length)
+        return self._spline(s), self._spline(s, 1), self._spline(s, 2)
+
+    def grid(self, pieces: int = 2) -> FloatArray:
+        """The knots, and points evenly between them."""
+        parts = np.linspace(0.0, 1.0, pieces, endpoint=False)
+        inner = self.knots[:-1, None] + np.diff(self.knots)[:, None] * parts
+        return np.append(inner.ravel(), self.length)
