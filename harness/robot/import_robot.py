@@ -19,6 +19,7 @@ from harness.robot.robot_yaml import RobotYaml
 from harness.robot.srdf import Srdf, parse_srdf
 from harness.robot.srdf_check import checked_srdf, default_srdf
 from harness.robot.urdf import Urdf, parse_urdf
+from harness.robot.xacro_file import render
 from harness.spec.scenario import RobotSpec, StartState
 from harness.spec.xml_file import read_bounded
 
@@ -38,7 +39,7 @@ START_STATES = ("home", "ready", "start", "default", "init", "rest")
 
 
 def read_robot(spec: RobotSpec, base_dir: Path) -> Part:
-    """The robot of `urdf:`, with what its SRDF says, or a plain one without.
+    """The robot of `urdf:` or `xacro:`, with what its SRDF says, or a plain one without.
 
     Args:
         spec: The scenario's `robot:`.
@@ -48,12 +49,16 @@ def read_robot(spec: RobotSpec, base_dir: Path) -> Part:
         SpecError: A file says what cannot be meant; at its line and column.
         RobotError: A file is not found, or an option does not fit it.
     """
-    if spec.args:
-        raise RobotError("robot.args: a `urdf` takes no arguments")
+    key = "urdf" if spec.urdf is not None else "xacro"
     given = tuple(_folder(each, base_dir) for each in spec.packages)
-    path = find_file(spec.urdf or "", "urdf", base_dir, given)
+    path = find_file(getattr(spec, key), key, base_dir, given)
     packages = PackagePath.of_file(path, given)
-    text = read_bounded(path)
+    if key == "xacro":
+        text = render(path, spec.args, packages).encode()
+    elif spec.args:
+        raise RobotError("robot.args: a `urdf` takes no arguments; a `xacro` does")
+    else:
+        text = read_bounded(path)
     urdf = _own_world(parse_urdf(text, path.parent, str(path), packages))
     refuse_weightless(urdf, str(path))
     srdf = default_srdf(urdf, spec.tcp_link)

@@ -16,14 +16,15 @@ from harness.robot.compose import Part, compose
 from harness.robot.description import Joint, RobotDescription
 from harness.robot.import_robot import read_robot
 from harness.robot.options import with_options
+from harness.robot.packages import PackagePath
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml
 from harness.robot.srdf import parse_srdf
 from harness.robot.urdf import parse_urdf
+from harness.robot.xacro_file import arguments_of, render, render_bundled
 from harness.spec.scenario import RobotSpec
-from harness.spec.xml_file import parse_xml
+from harness.spec.xml_file import read_xml
 
-XACRO_ARG = "xacro:arg"
-LATER = ("xacro", "mjcf", "kinematics")
+LATER = ("mjcf", "kinematics")
 OF_FILES = ("srdf", "packages", "group", "flange_link")
 
 
@@ -80,7 +81,7 @@ def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
 
 def _main(spec: RobotSpec, base_dir: Path) -> Part | None:
     """The arm, or the gripper that stands alone; None where only `gripper` is given."""
-    if spec.urdf is not None:
+    if spec.urdf is not None or spec.xacro is not None:
         return read_robot(spec, base_dir)
     for key in OF_FILES:
         if getattr(spec, key):
@@ -111,15 +112,22 @@ def _known(names: tuple[str, ...]) -> str:
 @lru_cache(maxsize=32)
 def _bundled(name: str, args: tuple[tuple[str, str], ...]) -> Part:
     folder, facts = _catalogue()[name]
-    return _read(folder, facts, name if facts.variants else "", dict(args))
+    return _read(folder, facts, name if facts.variants else "", dict(args), is_bundled=True)
 
 
-def _read(folder: Path, facts: RobotYaml, variant: str, args: Mapping[str, Any]) -> Part:
+def _read(
+    folder: Path,
+    facts: RobotYaml,
+    variant: str,
+    args: Mapping[str, Any],
+    *,
+    is_bundled: bool = False,
+) -> Part:
     """URDF and SRDF of a folder, with the limits of its robot.yaml."""
     name = variant or facts.robot
     if facts.xacro is not None:
         path = folder / facts.xacro.file
-        text = _rendered(path, facts.xacro, variant, args)
+        text = _rendered(path, facts.xacro, variant, args, is_bundled=is_bundled)
     else:
         path = folder / (facts.urdf or "")
         text = _text(path)
@@ -141,15 +149,11 @@ def _text(path: Path) -> str:
         raise RobotError(f"{path}: cannot be read: {error.strerror}") from error
 
 
-def _rendered(path: Path, xacro_file: XacroFile, variant: str, args: Mapping[str, Any]) -> str:
+def _rendered(
+    path: Path, xacro_file: XacroFile, variant: str, args: Mapping[str, Any], *, is_bundled: bool
+) -> str:
     """The URDF text of a xacro file."""
-    import xacro  # here: parsing plain URDFs does not need it
-
-    declared = {
-        item.get("name")
-        for item in parse_xml(_text(path), str(path)).walk()
-        if item.tag == XACRO_ARG
-    }
+    declared = arguments_of(read_xml(path))
     for key in args:
         if key not in declared or key == xacro_file.variant_arg:
             known = ", ".join(sorted(filter(None, declared - {xacro_file.variant_arg})))
@@ -164,11 +168,9 @@ def _rendered(path: Path, xacro_file: XacroFile, variant: str, args: Mapping[str
             importlib.util.find_spec(xacro_file.mesh_package or "") is not None
         )
         mappings[xacro_file.mesh_arg] = str(has_meshes).lower()
-    try:
-        document: Any = xacro.process_file(str(path), mappings=mappings)
-    except (xacro.XacroException, OSError) as error:
-        raise RobotError(f"{path}: cannot be rendered: {error}") from error
-    return str(document.toxml())
+    if is_bundled:
+        return render_bundled(path, mappings)
+    return render(path, mappings, PackagePath.of_file(path))
 
 
 def _with_facts(joint: Joint, facts: RobotYaml) -> Joint:

@@ -203,6 +203,8 @@ class _Reader:
         mark = attributes.pop(PLACE_ATTRIBUTE, "")
         if mark:
             place = self._marked(mark, len(tag))
+        elif self._others and self._open:
+            place = self._open[-1].place  # made by the preprocessor: stands where its parent does
         element = XmlElement(tag, attributes, place)
         if self._open:
             self._open[-1].children.append(element)

@@ -25,7 +25,7 @@ from tests.robot.models import robot
         ({"model": "./nowhere"}, ["nowhere has no robot.yaml"]),
         ({"urdf": "arm.urdf"}, ["robot.urdf: there is no file arm.urdf"]),
         ({"model": "ur3e", "srdf": "a.srdf"}, ["robot.srdf goes with a robot's file"]),
-        ({"xacro": "arm.xacro"}, ["`xacro` is not yet available"]),
+        ({"xacro": "arm.xacro"}, ["robot.xacro: there is no file"]),
         ({"mjcf": "arm.xml"}, ["`mjcf` is not yet available"]),
         ({"model": "ur3e", "kinematics": "c.yaml"}, ["`kinematics` is not yet available"]),
         ({"model": "ur3e", "base": {"frame": "Table"}}, ["'world'", "'Table'"]),
