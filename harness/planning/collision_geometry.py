@@ -8,14 +8,16 @@ import coal
 import numpy as np
 import pinocchio as pin
 
-from harness.core.errors import RobotError
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.planning.robot_model import pin_from_se3
+from harness.robot.mesh_file import convex_hull
 
 
 def coal_geometry(shape: Shape) -> coal.CollisionGeometry:
-    """Coal's geometry of a shape, in the shape's own frame.
+    """Coal's geometry of a shape, in the shape's own frame; meshes as their convex hulls.
+
+    The physics touches the same hulls.
 
     Raises:
         RobotError: A mesh file cannot be read.
@@ -31,11 +33,8 @@ def coal_geometry(shape: Shape) -> coal.CollisionGeometry:
             return coal.Capsule(radius, length)
         case Plane():
             return coal.Halfspace(np.array([0.0, 0.0, 1.0]), 0.0)
-        case Mesh(path=path, scale=scale):
-            try:
-                return coal.MeshLoader().load(str(path), np.array(scale, dtype=float))
-            except (RuntimeError, ValueError) as problem:
-                raise RobotError(f"mesh {path} cannot be read: {problem}") from problem
+        case Mesh() as mesh:
+            return convex_hull(mesh)
 
 
 def geometry_object(

@@ -8,18 +8,15 @@ from pathlib import Path
 
 import numpy as np
 
-from harness.core.errors import SpecError
+from harness.core.errors import RobotError, SpecError
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Rgba, Shape, Sphere
 from harness.robot.description import Inertial, Link
+from harness.robot.mesh_file import SUFFIXES, convex_hull
 from harness.robot.packages import NotFoundError, PackagePath
 from harness.robot.urdf_values import number, pose, positive, rgba, three
 from harness.spec.xml_file import XmlElement
 
 DEFAULT_RGBA: Rgba = (0.6, 0.6, 0.6, 1.0)
-MESHES = (".stl", ".obj", ".dae")
-LARGEST_MESH = 64_000_000
-"""Bytes of a mesh file at most."""
-
 SMALLEST_RADIUS = 0.005
 """Radius of the solid sphere that a link's inertia is no less than [m]."""
 
@@ -143,7 +140,7 @@ class LinkReader:
         scale = three(item, "scale", (1.0, 1.0, 1.0))
         if 0 in scale:
             item.refuse(f"link '{link}': a mesh's scale is not zero", at="scale")
-        if Path(name).suffix.lower() not in MESHES:
+        if Path(name).suffix.lower() not in SUFFIXES:
             if is_visual:
                 self.notes.append(
                     f"link '{link}': the visual '{name}' is not drawn (no STL, OBJ, DAE)"
@@ -154,11 +151,10 @@ class LinkReader:
             path = self.packages.file(name, self.folder)
         except NotFoundError as error:
             item.refuse(f"link '{link}': mesh {error}", at="filename")
-        size = path.stat().st_size
-        if size > LARGEST_MESH:
-            item.refuse(
-                f"link '{link}': mesh '{name}' has {size / 1e6:.0f} MB, and at most "
-                f"{LARGEST_MESH / 1e6:.0f} MB are read",
-                at="filename",
-            )
-        return Mesh(path, scale)
+        mesh = Mesh(path, scale)
+        try:
+            if not is_visual:
+                convex_hull(mesh)
+        except RobotError as error:
+            item.refuse(f"link '{link}': mesh {error}", at="filename")
+        return mesh

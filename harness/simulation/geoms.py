@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import mujoco
 
-from harness.core.errors import RobotError
 from harness.core.geometry import (
     Box,
     Capsule,
@@ -21,6 +20,7 @@ from harness.core.geometry import (
     Shape,
     Sphere,
 )
+from harness.robot.mesh_file import hull_points
 
 CONTACT_SOLREF = (0.002, 1.0)
 """Time constant [s] and damping ratio of a contact: two steps of 1 ms, critically damped.
@@ -109,12 +109,11 @@ def add_mesh(spec: mujoco.MjSpec, geometry: Mesh) -> str:
     """Register a mesh file once, as its convex hull collides; returns the asset's name.
 
     Raises:
-        RobotError: The file is of a kind that MuJoCo cannot read.
+        RobotError: The file cannot be read, or is flat.
     """
-    if geometry.path.suffix.lower() not in {".stl", ".obj", ".msh"}:
-        raise RobotError(f"{geometry.path.name}: collision meshes must be STL or OBJ files")
     name = f"{geometry.path}|{geometry.scale}"
     if spec.mesh(name) is None:
-        mesh = spec.add_mesh(name=name, file=str(geometry.path), scale=geometry.scale)
+        mesh = spec.add_mesh(name=name)
+        mesh.uservert = hull_points(geometry).ravel()
         mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
     return name

@@ -137,9 +137,9 @@ def test_a_step_overrides_the_scenarios_planning_key_by_key(tmp_path):
 @pytest.mark.parametrize(
     ("file", "content", "reason"),
     [
-        ("mug.dae", "<COLLADA/>", "mug.dae: collision meshes must be STL or OBJ files"),
-        ("mug.stl", "solid nothing", "mug.stl cannot be used: stl_decoder: invalid header"),
-        ("mug.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "mug.obj cannot be used: at least 4"),
+        ("mug.dae", "<COLLADA/>", "mug.dae cannot be read: it is no DAE file, or damaged"),
+        ("mug.stl", "solid nothing", "mug.stl cannot be read: it is no STL file, or damaged"),
+        ("mug.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "mug.obj is flat"),
     ],
 )
 def test_a_mesh_that_cannot_be_used_is_told_at_its_object(tmp_path, file, content, reason):

@@ -1,0 +1,114 @@
+"""Mesh files (STL, OBJ, DAE) as triangles and convex hulls, the same for planner and physics.
+
+Read by Coal, which brings Assimp, as MoveIt and RViz do: as there, a COLLADA file's `up_axis` is
+not applied, and its `unit` is.
+"""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from harness.core.errors import RobotError
+from harness.core.geometry import Mesh
+from harness.core.types import FloatArray, IntArray
+
+SUFFIXES = (".stl", ".obj", ".dae")
+LARGEST_FILE = 64_000_000
+"""Bytes of a mesh file at most."""
+
+HEADER = 20_000
+UNIT = re.compile(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']\s*([0-9.eE+-]+)\s*[\"']")
+DECLARATION = re.compile(rb"<!\s*(DOCTYPE|ENTITY)", re.IGNORECASE)
+
+
+@dataclass(frozen=True, eq=False)
+class Triangles:
+    """A mesh.
+
+    Attributes:
+        vertices: Shape (N, 3) [m].
+        faces: Shape (M, 3), indices of vertices.
+    """
+
+    vertices: FloatArray
+    faces: IntArray
+
+
+@lru_cache(maxsize=128)
+def read_triangles(geometry: Mesh) -> Triangles:
+    """All triangles of a file, for pictures.
+
+    Raises:
+        RobotError: The file is of a kind that is not read, too large, or damaged.
+    """
+    model = _load(geometry)
+    corners = [model.tri_indices(number) for number in range(model.num_tris)]
+    faces = np.array([(face[0], face[1], face[2]) for face in corners], dtype=np.int64)
+    return Triangles(np.array(model.vertices()), faces.reshape(-1, 3))
+
+
+@lru_cache(maxsize=512)
+def convex_hull(geometry: Mesh) -> Any:
+    """The convex hull of a file's points as Coal's: the solid that touches things.
+
+    Raises:
+        RobotError: As `read_triangles`; or the mesh is flat.
+    """
+    model = _load(geometry)
+    try:
+        model.buildConvexHull(False, "Qt")
+    except (RuntimeError, ValueError) as error:
+        raise RobotError(f"{geometry.path.name} is flat: it encloses nothing to touch") from error
+    return model.convex
+
+
+def hull_points(geometry: Mesh) -> FloatArray:
+    """Corners of the convex hull, shape (N, 3) [m]."""
+    hull = convex_hull(geometry)
+    return np.array(hull.points(), dtype=float).reshape(-1, 3)
+
+
+def _load(geometry: Mesh) -> Any:
+    import coal  # here: most robots are known without their meshes
+
+    path = geometry.path
+    scale = np.array(geometry.scale, dtype=float) * _unit(geometry)
+    try:
+        model = coal.MeshLoader().load(str(path), scale)
+    except (RuntimeError, ValueError) as error:
+        kind = path.suffix[1:].upper()
+        raise RobotError(f"{path.name} cannot be read: it is no {kind} file, or damaged") from error
+    if model.num_tris == 0 or not np.isfinite(model.vertices()).all():
+        raise RobotError(f"{path.name} has no triangles")
+    return model
+
+
+def _unit(geometry: Mesh) -> float:
+    """Metres of a COLLADA file's unit; 1 for other files, which are taken in metres."""
+    path = geometry.path
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise RobotError(f"{path.name} is no STL, OBJ or DAE file")
+    try:
+        size = path.stat().st_size
+        with path.open("rb") as file:
+            header = file.read(HEADER)
+    except OSError as error:
+        raise RobotError(f"{path.name} cannot be read: {error.strerror}") from error
+    if size > LARGEST_FILE:
+        largest = LARGEST_FILE / 1e6
+        raise RobotError(f"{path.name} has {size / 1e6:.0f} MB; at most {largest:.0f} MB are read")
+    if suffix != ".dae":
+        return 1.0
+    if DECLARATION.search(header):
+        raise RobotError(f"{path.name} declares a document type or entities, which are not read")
+    found = UNIT.search(header)
+    unit = float(found[1]) if found else 1.0
+    return unit if unit > 0 else 1.0
