@@ -1,40 +1,15 @@
-"""Our shapes as Coal's."""
+"""Our shapes as geometries of Pinocchio's models."""
 
 # pyright: reportAttributeAccessIssue=false
 
 from __future__ import annotations
 
-import coal
-import numpy as np
 import pinocchio as pin
 
-from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
+from harness.core.geometry import Shape
 from harness.core.spatial import SE3
 from harness.planning.robot_model import pin_from_se3
-from harness.robot.mesh_file import convex_hull
-
-
-def coal_geometry(shape: Shape) -> coal.CollisionGeometry:
-    """Coal's geometry of a shape, in the shape's own frame; meshes as their convex hulls.
-
-    The physics touches the same hulls.
-
-    Raises:
-        RobotError: A mesh file cannot be read.
-    """
-    match shape.geometry:
-        case Box(size=size):
-            return coal.Box(*size)
-        case Cylinder(radius=radius, length=length):
-            return coal.Cylinder(radius, length)
-        case Sphere(radius=radius):
-            return coal.Sphere(radius)
-        case Capsule(radius=radius, length=length):
-            return coal.Capsule(radius, length)
-        case Plane():
-            return coal.Halfspace(np.array([0.0, 0.0, 1.0]), 0.0)
-        case Mesh() as mesh:
-            return convex_hull(mesh)
+from harness.robot.solids import coal_geometry
 
 
 def geometry_object(

@@ -11,6 +11,7 @@ import numpy as np
 
 from harness.core.errors import RobotError
 from harness.robot.compose import WORLD, Part
+from harness.robot.default_pairs import touching_pairs
 from harness.robot.description import Joint, Link, PlanningGroup
 from harness.robot.groups import planning_groups
 from harness.robot.mass import refuse_weightless
@@ -144,6 +145,13 @@ def _part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: str) -> P
     )
     for key in ("tcp_link", "flange_link"):
         _refuse_unknown_link(getattr(spec, key), key, urdf.links)
+    start = _start(urdf.joints, srdf, arm)
+    if not srdf.disabled:
+        pairs = touching_pairs(urdf, start)
+        srdf = replace(srdf, disabled=dict.fromkeys(pairs, "Default"))
+        notes += [f"no allowed pairs: those that touch at the start are: {_told(pairs)}"] * bool(
+            pairs
+        )
     facts = RobotYaml(
         robot=path.stem[:100],
         kind="arm",
@@ -155,9 +163,13 @@ def _part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: str) -> P
         ik_solver="auto",
         max_acceleration=TURNING_ACCELERATION,
         effort_source="",
-        start_state=StartState(joints=_start(urdf.joints, srdf, arm)),
+        start_state=StartState(joints=start),
     )
     return Part(path.stem, facts, urdf, srdf, source, (*urdf.notes, *srdf.notes, *notes))
+
+
+def _told(pairs: Sequence[tuple[str, str]]) -> str:
+    return ", ".join(f"{first} - {second}" for first, second in pairs)
 
 
 def _limited(joint: Joint, notes: list[str]) -> Joint:

@@ -12,6 +12,7 @@ from typing import Any
 
 from harness.core.errors import RobotError
 from harness.core.resources import data_folder
+from harness.robot.acceleration import with_possible_accelerations
 from harness.robot.compose import Part, compose
 from harness.robot.description import Joint, RobotDescription
 from harness.robot.import_robot import read_robot
@@ -76,6 +77,8 @@ def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
             raise RobotError(f"robot.model: '{spec.model}' is a gripper and carries no other one")
         main, tool = None, main
     description = compose(main, tool, spec.base.se3())
+    if spec.model is None and main is not None:
+        description = with_possible_accelerations(description)
     return with_options(description, spec)
 
 

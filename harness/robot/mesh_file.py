@@ -63,7 +63,7 @@ def convex_hull(geometry: Mesh) -> Any:
     """
     model = _load(geometry)
     try:
-        model.buildConvexHull(False, "Qt")
+        model.buildConvexHull(True, "Qt")
     except (RuntimeError, ValueError) as error:
         raise RobotError(f"{geometry.path.name} is flat: it encloses nothing to touch") from error
     return model.convex

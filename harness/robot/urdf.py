@@ -61,6 +61,9 @@ def parse_urdf(
     root = parse_xml(text, source)
     if root.tag != "robot":
         root.refuse(f"the root element is <{root.tag}>, a URDF's is <robot>")
+    macro = next((item for item in root.walk() if item.tag.startswith("xacro:")), None)
+    if macro is not None:
+        macro.refuse("this is a xacro file", "name it with `xacro`, not with `urdf`")
     notes: list[str] = []
     materials = {
         item.get("name"): rgba(color)

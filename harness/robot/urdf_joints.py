@@ -9,6 +9,7 @@ import numpy as np
 
 from harness.robot.description import Joint, JointKind, Mimic
 from harness.robot.urdf_values import number, pose, three
+from harness.robot.write_urdf import NO_LIMIT
 from harness.spec.xml_file import XmlElement
 
 KINDS: dict[str, JointKind] = {
@@ -92,6 +93,11 @@ def _positions(element: XmlElement, name: str, kind: JointKind) -> tuple[float, 
         lower, upper = number(limit, "lower", 0.0), number(limit, "upper", 0.0)
         if lower > upper:
             limit.refuse(f"joint '{name}': lower {lower:g} is above upper {upper:g}", at="lower")
+        if lower == upper and element.find("mimic") is None:
+            limit.refuse(
+                f"joint '{name}' cannot move: lower and upper are both {lower:g}",
+                "give its range, or make it fixed or continuous",
+            )
     if safety is not None and kind != "fixed":
         soft = (
             max(lower, number(safety, "soft_lower_limit", -1e9)),
@@ -105,7 +111,11 @@ def _positions(element: XmlElement, name: str, kind: JointKind) -> tuple[float, 
 def _rate(limit: XmlElement | None, key: str, name: str, notes: list[str]) -> float:
     if limit is None or key not in limit.attributes:
         return np.inf
-    value = float("inf") if limit.get(key).strip() in ("inf", "+inf") else number(limit, key)
+    if limit.get(key).strip() in ("inf", "+inf"):
+        return np.inf
+    value = number(limit, key)
+    if value >= NO_LIMIT:
+        return np.inf
     if value < 0:
         limit.refuse(f"joint '{name}': {key} is {value:g}; it has to be above zero", at=key)
     if value == 0:

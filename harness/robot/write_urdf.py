@@ -15,6 +15,9 @@ from harness.core.spatial import SE3, rotation_from_rpy
 from harness.core.types import FloatArray
 from harness.robot.description import Inertial, Joint, Link
 
+NO_LIMIT = 1e30
+"""What is written for a velocity or effort without limit, and from which on one is read as such."""
+
 
 def write_urdf(name: str, links: Iterable[Link], joints: Iterable[Joint]) -> str:
     """A URDF of the links and joints, every number with all its digits."""
@@ -115,6 +118,11 @@ def _mesh_name(path: Path) -> str:
     return str(path)
 
 
+def _rate(limit: float) -> str:
+    """A velocity or effort limit; URDF has no infinity."""
+    return repr(float(limit)) if np.isfinite(limit) else repr(NO_LIMIT)
+
+
 def _write_joint(parent: ET.Element, joint: Joint) -> None:
     element = ET.SubElement(parent, "joint", name=joint.name, type=joint.kind)
     _write_pose(element, joint.pose)
@@ -123,8 +131,8 @@ def _write_joint(parent: ET.Element, joint: Joint) -> None:
     if not joint.is_movable:
         return
     ET.SubElement(element, "axis", xyz=_text(joint.axis))
-    limit = {"effort": repr(float(joint.effort)), "velocity": repr(float(joint.velocity))}
-    if joint.kind != "continuous":
+    limit = {"effort": _rate(joint.effort), "velocity": _rate(joint.velocity)}
+    if joint.kind != "continuous" and np.isfinite([joint.lower, joint.upper]).all():
         limit = {"lower": repr(float(joint.lower)), "upper": repr(float(joint.upper)), **limit}
     ET.SubElement(element, "limit", limit)
     dynamics = {"damping": repr(float(joint.damping)), "friction": repr(float(joint.friction))}

@@ -1,8 +1,11 @@
 """Robots from URDF and SRDF files of their own."""
 
+import numpy as np
+import pinocchio as pin
 import pytest
 
 from harness.core.errors import RobotError
+from harness.robot.urdf import parse_urdf
 from tests.robot.arm_files import SRDF, URDF, load_arm, write_arm
 
 
@@ -53,6 +56,7 @@ def test_what_is_ignored_or_assumed_is_noted(tmp_path):
         "joint 'reach': a limit of 0 for its velocity counts as none",
         "SRDF: state 'home' has bend at 7, outside its limits [-2, 2]",
         "joint 'reach' has no velocity limit: 0.2 m/s is assumed",
+        "no acceleration limits in the URDF: 5 rad/s^2 and 1 m/s^2 are assumed",
     )
 
 
@@ -73,3 +77,30 @@ def test_an_option_that_does_not_fit_is_told_with_the_way_out(tmp_path, options,
         load_arm(tmp_path, **options)
     for word in words:
         assert word in str(caught.value)
+
+
+def test_links_in_each_other_at_the_start_are_allowed_where_no_srdf_says(tmp_path):
+    wide = URDF.replace('radius="0.03" length="0.14"', 'radius="0.03" length="0.5"')
+    write_arm(tmp_path, wide)
+    arm = load_arm(tmp_path, srdf=None)
+    assert arm.allowed_collisions["upper", "wrist"] == "Default"
+    assert any("touch at the start are: upper - wrist" in note for note in arm.notes)
+
+
+@pytest.mark.parametrize(("effort", "least", "most"), [(30, 5.0, 5.0), (7, 0.5, 4.5)])
+def test_accelerations_are_assumed_that_the_efforts_are_enough_for(tmp_path, effort, least, most):
+    write_arm(tmp_path, URDF.replace('velocity="2" effort="30"', f'velocity="2" effort="{effort}"'))
+    assert least <= load_arm(tmp_path).joint_by_name["bend"].acceleration <= most
+
+
+def test_a_joint_that_gravity_is_too_much_for_is_told(tmp_path):
+    write_arm(tmp_path, URDF.replace('velocity="2" effort="30"', 'velocity="2" effort="3"'))
+    assert any("'bend' cannot hold the arm everywhere" in note for note in load_arm(tmp_path).notes)
+
+
+def test_a_joint_without_effort_limit_is_written_so_that_others_read_it(tmp_path):
+    write_arm(tmp_path, URDF.replace(' effort="30"/>', "/>"))
+    arm = load_arm(tmp_path)
+    assert np.isinf(arm.joint_by_name["bend"].effort)
+    assert pin.buildModelFromXML(arm.urdf).nq == 4  # a continuous joint has two numbers
+    assert np.isinf(parse_urdf(arm.urdf, tmp_path, "again").joints[2].effort)

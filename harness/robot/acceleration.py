@@ -1,0 +1,94 @@
+"""Accelerations that an imported arm's efforts are enough for: no URDF says any."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.robot.description import Joint, RobotDescription
+from harness.robot.write_urdf import write_urdf
+
+SAMPLES = 60
+"""Random configurations, the same for every run, in which efforts are looked at."""
+
+SHARE = 0.7
+"""Part of what gravity leaves of an effort that may go into acceleration."""
+
+LEAST = 0.05
+"""Part of the assumed acceleration that is never gone below."""
+
+
+def with_possible_accelerations(
+    description: RobotDescription, known: frozenset[str] = frozenset()
+) -> RobotDescription:
+    """The robot with assumed accelerations lowered to what the joints' efforts can do.
+
+    In each sampled configuration a joint must hold the arm against gravity and accelerate it with
+    all joints at their assumed accelerations at once.
+
+    Args:
+        description: Whose joints have the accelerations to begin with.
+        known: Joints whose acceleration is given, and not assumed.
+    """
+    driven = [joint for joint in description.movable_joints if joint.mimic is None]
+    if not any(np.isfinite(joint.effort) for joint in driven):
+        return description
+    needed, gravity = _efforts(description)
+    shares: dict[str, float] = {}
+    notes: list[str] = []
+    for index, joint in enumerate(driven):
+        if not np.isfinite(joint.effort) or joint.name in known:
+            continue
+        left = joint.effort - gravity[:, index]
+        share = float(np.min(SHARE * left / np.maximum(needed[:, index], 1e-9)))
+        shares[joint.name] = min(1.0, max(LEAST, share))
+        if left.min() <= 0:
+            notes.append(
+                f"joint '{joint.name}' cannot hold the arm everywhere: gravity takes up to "
+                f"{gravity[:, index].max():.3g} of its {joint.effort:.3g}"
+            )
+    joints = tuple(
+        replace(joint, acceleration=joint.acceleration * shares.get(joint.name, 1.0))
+        for joint in description.joints
+    )
+    notes += _told(description.joints, shares)
+    return replace(description, joints=joints, notes=(*description.notes, *notes))
+
+
+def _told(joints: tuple[Joint, ...], shares: Mapping[str, float]) -> list[str]:
+    lowered = [
+        f"{joint.name} {joint.acceleration * shares[joint.name]:.2g}"
+        for joint in joints
+        if shares.get(joint.name, 1.0) < 1.0
+    ]
+    text = "no acceleration limits in the URDF: 5 rad/s^2 and 1 m/s^2 are assumed"
+    return [text + (f", and what efforts allow: {', '.join(lowered)}" if lowered else "")]
+
+
+def _efforts(description: RobotDescription) -> tuple[FloatArray, FloatArray]:
+    """Efforts of the driven joints for their accelerations and against gravity, (SAMPLES, m)."""
+    import pinocchio as pin  # here: bundled robots do without
+
+    names = [joint.name for joint in description.movable_joints if joint.mimic is None]
+    model = pin.buildModelFromXML(write_urdf("robot", description.links, description.joints))
+    data = model.createData()
+    joints = [model.joints[model.getJointId(name)] for name in names]
+    columns = [joint.idx_v for joint in joints]
+    rates = np.array([description.joint_by_name[name].acceleration for name in names])
+    lower = np.maximum(model.lowerPositionLimit, -np.pi)
+    upper = np.minimum(model.upperPositionLimit, np.pi)
+    rng = np.random.default_rng(0)
+    needed, gravity = np.empty((SAMPLES, len(names))), np.empty((SAMPLES, len(names)))
+    for row in range(SAMPLES):
+        configuration = pin.normalize(model, rng.uniform(lower, upper))
+        mass = np.array(pin.crba(model, data, configuration))
+        mass = np.triu(mass) + np.triu(mass, 1).T
+        held = pin.computeGeneralizedGravity(model, data, configuration)
+        needed[row] = np.abs(mass[np.ix_(columns, columns)]) @ rates
+        gravity[row] = np.abs(held[columns])
+    return needed, gravity

@@ -1,0 +1,84 @@
+"""Link pairs that touch where a robot starts: allowed where no SRDF says which are."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from harness.core.spatial import SE3
+from harness.robot.solids import coal_geometry
+from harness.robot.srdf import link_pair
+from harness.robot.tree import carriers
+from harness.robot.urdf import Urdf
+
+NEARNESS = 0.001
+"""Links this near count as touching [m]: what is in touch by a hair is now and then not."""
+
+
+def touching_pairs(urdf: Urdf, positions: Mapping[str, float]) -> tuple[tuple[str, str], ...]:
+    """Pairs of links that touch at joint positions: not of one rigid piece, nor at one joint.
+
+    Args:
+        urdf: The robot.
+        positions: Of the driven joints, by name; mimic joints follow.
+    """
+    import coal  # here: robots with an SRDF do not need it
+
+    request = coal.CollisionRequest()
+    request.security_margin = NEARNESS
+    poses = link_poses(urdf, positions)
+    carrier = carriers(urdf.joints, urdf.root)
+    joined = [
+        {carrier[joint.parent], carrier[joint.child]} for joint in urdf.joints if joint.is_movable
+    ]
+    solids = [
+        (link.name, shape, coal_geometry(shape)) for link in urdf.links for shape in link.collisions
+    ]
+    found: dict[tuple[str, str], None] = {}
+    for later, (second, shape, solid) in enumerate(solids):
+        T_second = _transform(poses[second] @ shape.pose)
+        for first, other_shape, other in solids[:later]:
+            pair = link_pair(first, second)
+            pieces = carrier[first], carrier[second]
+            if pieces[0] == pieces[1] or set(pieces) in joined or pair in found:
+                continue
+            T_first = _transform(poses[first] @ other_shape.pose)
+            result = coal.CollisionResult()
+            coal.collide(other, T_first, solid, T_second, request, result)
+            if result.isCollision():
+                found[pair] = None
+    return tuple(found)
+
+
+def link_poses(urdf: Urdf, positions: Mapping[str, float]) -> dict[str, SE3]:
+    """T_root_link of every link."""
+    poses = {urdf.root: SE3.identity()}
+    for joint in urdf.joints:
+        value = positions.get(joint.name, 0.0)
+        if joint.mimic is not None:
+            value = joint.mimic.multiplier * positions.get(joint.mimic.joint, 0.0)
+            value += joint.mimic.offset
+        moved = SE3.identity()
+        if joint.kind == "prismatic":
+            moved = SE3(np.eye(3), joint.axis * value)
+        elif joint.is_movable:
+            moved = SE3(_turn(joint.axis, value), np.zeros(3))
+        poses[joint.child] = poses[joint.parent] @ joint.pose @ moved
+    return poses
+
+
+def _turn(axis: np.ndarray, angle: float) -> np.ndarray:
+    """Rotation about a unit axis: Rodrigues' formula, shape (3, 3)."""
+    x, y, z = axis
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * (K @ K)
+
+
+def _transform(pose: SE3) -> Any:
+    import coal
+
+    return coal.Transform3s(np.asarray(pose.rotation), np.asarray(pose.translation))
