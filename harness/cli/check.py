@@ -29,9 +29,12 @@ def _run(arguments: argparse.Namespace) -> int:
         code = max(code, EXIT_CODES[outcome])
         documents.append({"file": str(file), "outcome": outcome, "problems": found.problems,
                           "predicted": found.predicted,
-                          "explanations": found.explanations})  # fmt: skip
+                          "explanations": found.explanations,
+                          "notes": found.notes})  # fmt: skip
         if arguments.json:
             continue
+        for note in found.notes:
+            say(f"note: {note}")
         for problem in found.problems:
             say(str(problem))
         for problem, lines in zip(found.predicted, found.explanations, strict=True):

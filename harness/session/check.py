@@ -25,6 +25,7 @@ class CheckResult:
         predicted: Steps that will fail though the file does not expect it, each at its line.
         explanations: Of each of them, a line a stage; empty where there is nothing to add.
         steps: How many steps there are.
+        notes: What of the robot's and the world's files was left out or assumed.
     """
 
     title: str
@@ -32,6 +33,7 @@ class CheckResult:
     predicted: tuple[Problem, ...] = ()
     explanations: tuple[tuple[str, ...], ...] = ()
     steps: int = 0
+    notes: tuple[str, ...] = ()
 
 
 def check_file(
@@ -50,7 +52,11 @@ def check_file(
         problem = prepared.loaded.lines.problem(_loc(program, record.path), said)
         predicted.setdefault(problem, explanation_lines(record.explanation, record.message))
     return CheckResult(
-        program.title, (), tuple(predicted), tuple(predicted.values()), len(program.steps)
+        program.title,
+        predicted=tuple(predicted),
+        explanations=tuple(predicted.values()),
+        steps=len(program.steps),
+        notes=prepared.notes,
     )
 
 

@@ -8,6 +8,11 @@ from typing import Any
 from harness.recording.run import Finding, StepRecord
 
 
+def told(notes: Sequence[str]) -> tuple[Finding, ...]:
+    """What of the robot's and the world's files was left out or assumed."""
+    return tuple(Finding(kind="note", message=note) for note in notes)
+
+
 def findings_of(steps: Sequence[StepRecord]) -> tuple[Finding, ...]:
     """Pairs that a motion was let start nearer than planned, as an object on the table it leaves.
 

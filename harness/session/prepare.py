@@ -12,24 +12,38 @@ from harness.core.errors import Problem, RobotError, SpecError
 from harness.core.geometry import Mesh
 from harness.engine.compile import Sources, compile_scenario
 from harness.engine.program import Loc, Program
+from harness.importers.imported import ImportedWorld
 from harness.planning.backend import make_planning
 from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
 from harness.planning.planner_names import resolve_planner_id
 from harness.ports import Kinematics, MotionPlanner, PlanningScene
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
-from harness.spec.load import LoadedScenario, LoadedWorld, Reading, load_world, read_scenario
+from harness.spec.load import (
+    SDF_SUFFIXES,
+    LoadedScenario,
+    Reading,
+    file_path,
+    load_world,
+    read_scenario,
+    world_path,
+)
 
 
 @dataclass(frozen=True, eq=False)
 class Prepared:
-    """A scenario ready to be executed, checked or explained."""
+    """A scenario ready to be executed, checked or explained.
+
+    Attributes:
+        notes: What of the robot's and the world's files was left out or assumed.
+    """
 
     loaded: LoadedScenario
     program: Program
     scene: PlanningScene
     kinematics: Kinematics
     planner: MotionPlanner
+    notes: tuple[str, ...] = ()
 
 
 def prepare(
@@ -93,7 +107,8 @@ def _prepared(loaded: LoadedScenario) -> Prepared:
         checks_per_second=STATE_CHECKS_PER_SECOND,
         check_mesh=_check_mesh,
     )
-    return Prepared(loaded, compile_scenario(sources), scene, kinematics, planner)
+    notes = (*description.notes, *map(str, world.notes))
+    return Prepared(loaded, compile_scenario(sources), scene, kinematics, planner, notes)
 
 
 def _robot(loaded: LoadedScenario) -> RobotDescription:
@@ -109,10 +124,16 @@ def _place(message: str) -> Loc:
     return ("robot", key[1]) if key else ("robot",)
 
 
-def _world(loaded: LoadedScenario) -> LoadedWorld:
+def _world(loaded: LoadedScenario) -> ImportedWorld:
     """The world; one that cannot be found is a mistake of the scenario's line."""
+    choice, folder = loaded.scenario.world, loaded.path.parent
     try:
-        return load_world(loaded.scenario.world, loaded.path.parent)
+        if Path(choice.name).suffix.lower() in SDF_SUFFIXES:
+            from harness.importers.sdf_world import load_sdf  # few scenarios have such a world
+
+            searched = [file_path(each, folder) for each in choice.model_path]
+            return load_sdf(world_path(choice.name, folder), searched)
+        world = load_world(choice.name, folder)
     except SpecError as error:
         raise SpecError(
             problem
@@ -120,6 +141,7 @@ def _world(loaded: LoadedScenario) -> LoadedWorld:
             else loaded.lines.problem(("world",), problem.message, problem.hint)
             for problem in error.problems
         ) from error
+    return ImportedWorld(world.model, world.path)
 
 
 def _check_mesh(geometry: Mesh) -> None:

@@ -16,7 +16,7 @@ from harness.recording.run import (
     Signals,
 )
 from harness.robot.description import RobotDescription
-from harness.session.findings import findings_of
+from harness.session.findings import findings_of, told
 from harness.session.receipts import with_receipts
 
 LIBRARIES = ("armharness", "mujoco", "pin", "coal", "ompl", "toppra", "numpy")
@@ -99,6 +99,7 @@ def run_record(
     file: str,
     source: str,
     resolved: str,
+    notes: tuple[str, ...] = (),
 ) -> Run:
     """Everything that happened, in one noun."""
     robot = robot_record(program.description, kinematics)
@@ -116,7 +117,7 @@ def run_record(
         gravity=program.world.gravity,
         timestep=program.world.timestep,
         allowed_contacts=tuple(sorted(program.description.allowed_collisions)),
-        findings=(*findings_of(steps), *findings),
+        findings=(*told(notes), *findings_of(steps), *findings),
         source=source,
         resolved=resolved,
         versions={name: version(name) for name in LIBRARIES},

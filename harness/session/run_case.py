@@ -165,6 +165,7 @@ def _execute(
         file=file,
         source=prepared.loaded.text,
         resolved=resolved_text(prepared.loaded, seeds, folder=report_dir),
+        notes=prepared.notes,
     )
     with clock.part("judge"):
         return _compared_with_plan(prepared, run)

@@ -27,6 +27,8 @@ from harness.spec.yaml_file import parse_yaml, read_text
 M = TypeVar("M", bound=SpecModel)
 
 WORLD_SUFFIXES = (".yaml", ".yml")
+SDF_SUFFIXES = (".sdf", ".world")
+SCENE_SUFFIX = ".scene"
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,7 +147,7 @@ def parse_scenario(
 
 
 def load_world(name_or_path: str, base_dir: Path) -> LoadedWorld:
-    """A bundled world by its name, or a world file.
+    """A bundled world by its name, or a world file of ours.
 
     Args:
         name_or_path: As a scenario's `world` says it.
@@ -177,16 +179,19 @@ def world_path(name_or_path: str, base_dir: Path) -> Path:
         SpecError: No such world; the problem has no line, which the scenario knows.
     """
     suffix = Path(name_or_path).suffix.lower()
-    if suffix in (".sdf", ".world"):
-        raise _no_world(name_or_path, "SDF worlds are not yet available", "write the world as YAML")
-    if suffix in WORLD_SUFFIXES:
+    if suffix == SCENE_SUFFIX:
+        hint = f"`harness import scene {name_or_path}` writes it as a world file"
+        raise _no_world(name_or_path, "a MoveIt scene is no world yet", hint)
+    if suffix in (*WORLD_SUFFIXES, *SDF_SUFFIXES):
         return file_path(name_or_path, base_dir)
     names = bundled_worlds()
     if name_or_path in names:
         return data_folder("worlds") / f"{name_or_path}.yaml"
     hint = did_you_mean(name_or_path, names, "worlds")
     raise _no_world(
-        name_or_path, f"no world is called `{name_or_path}`", f"{hint}; or a .yaml path"
+        name_or_path,
+        f"no world is called `{name_or_path}`",
+        f"{hint}; or the path of a .yaml or .sdf file",
     )
 
 

@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-from harness.spec.load import WORLD_SUFFIXES, LoadedScenario
+from harness.spec.load import SDF_SUFFIXES, WORLD_SUFFIXES, LoadedScenario
 from harness.spec.params import PARAMS, escaped
 from harness.spec.scenario import Scenario
 from harness.spec.short_forms import models_shape
@@ -15,6 +15,7 @@ from harness.spec.yaml_file import parse_yaml
 from harness.spec.yaml_text import yaml_text
 
 ROBOT_FILES = ("urdf", "xacro", "mjcf", "srdf", "kinematics")
+FOLDER_LISTS = ("packages", "model_path")
 BLOCK_KEYS = ("steps", "during", "expect")
 """Keys whose lists begin a line for each item, so that a step can be found by its line."""
 
@@ -81,7 +82,11 @@ def _paths_from(root: Located, old: Path, new: Path) -> Located:
             is_file = key == "file" and above in ("mesh", "include")
             is_robots = above == "robot" and (key in ROBOT_FILES or _is_folder(key, child))
             is_include = key == "include" and isinstance(child.value, str)
-            is_world = item is root and key == "world" and _is_world_file(child)
+            is_world = _is_world_file(child) and (
+                (item is root and key == "world") or (above == "world" and key == "name")
+            )
+            if key in FOLDER_LISTS and above in ("robot", "world"):
+                child = Located([moved(folder) for folder in child.items()], child.place)
             is_moved = is_file or is_robots or is_include or is_world
             entries[key] = Entry(place, moved(child) if is_moved else walk(child, key))
         return Located(entries, item.place)
@@ -98,4 +103,4 @@ def _is_folder(key: str, item: Located) -> bool:
 
 
 def _is_world_file(item: Located) -> bool:
-    return Path(str(item.value)).suffix.lower() in (*WORLD_SUFFIXES, ".sdf", ".world")
+    return Path(str(item.value)).suffix.lower() in (*WORLD_SUFFIXES, *SDF_SUFFIXES)

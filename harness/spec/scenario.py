@@ -117,6 +117,19 @@ class RobotSpec(SpecModel):
         return self
 
 
+class WorldChoice(SpecModel):
+    """The world: a bundled one, or a file."""
+
+    short = "name"
+
+    name: str = Field(description="A name under worlds/, or the path of a .yaml or .sdf file.")
+    model_path: tuple[str, ...] = Field(
+        default=(),
+        description="Folders where an SDF world's models are looked up and may be read;"
+        " before those of GZ_SIM_RESOURCE_PATH.",
+    )
+
+
 class Expected(SpecModel):
     """A success rate to be shown by sampled cases."""
 
@@ -137,8 +150,8 @@ class Scenario(SpecModel):
     )
     verifies: tuple[str, ...] = Field(default=(), description="Requirements.")
     robot: RobotSpec = Field(description="A model's name, or its keys.")
-    world: str = Field(
-        default="empty", description="A name under worlds/, or the path of a .yaml file."
+    world: WorldChoice = Field(
+        default=WorldChoice(name="empty"), description="A world's name, or its keys."
     )
     objects: tuple[ObjectSpec, ...] = Field(
         default=(), description="Added to, or replacing, the world's."

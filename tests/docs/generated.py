@@ -5,6 +5,7 @@ from pathlib import Path
 import harness.engine.executors
 from harness.assertions.judge import EXECUTED
 from harness.engine.registry import execute
+from harness.importers.reference import formats_page
 from harness.spec.language import VERBS
 from harness.spec.reference import expectations_reference, scenario_reference, steps_reference
 from harness.spec.schema import schema_text, world_schema_text
@@ -24,6 +25,7 @@ def generated():
         "scenarios/SCENARIO.md": scenario_reference(),
         "scenarios/STEPS.md": steps_reference(executed),
         "scenarios/EXPECTATIONS.md": expectations_reference(EXECUTED),
+        "worlds/FORMATS.md": formats_page(),
     }
 
 

@@ -200,7 +200,7 @@ def test_a_world_is_a_name_or_a_file_beside_the_scenario(tmp_path):
     for name, message, hint in (
         ("lesson_urr", "no world is called `lesson_urr`", "did you mean `lesson_ur`?"),
         ("none.yaml", "world `none.yaml`: there is no such file", ""),
-        ("room.sdf", "SDF worlds are not yet available", ""),
+        ("room.scene", "a MoveIt scene is no world yet", "`harness import scene room.scene`"),
         ("https://example.org/w.yaml", "is a URL", ""),
         ("a\0b.yaml", "is not a path", ""),
     ):

@@ -107,6 +107,17 @@ steps: [{include: parts/one.yaml}, {include: {file: two.yaml}}]
     again = parse_scenario(resolved, tmp_path / "out" / "case" / "f.yaml").scenario
     assert again.robot.urdf == "../../in/arm/arm.urdf"
     assert again.robot.srdf == "/abs/arm.srdf"
-    assert again.world == "../../in/worlds/my.yaml"
+    assert again.world.name == "../../in/worlds/my.yaml"
     assert again.objects[0].mesh.file == "../../in/a.stl"
     assert [step.file for step in again.steps] == ["../../in/parts/one.yaml", "../../in/two.yaml"]
+
+
+def test_the_folders_of_a_worlds_models_are_written_as_from_the_new_folder(tmp_path):
+    text = "scenario: x\nrobot: {urdf: a.urdf, packages: [.]}\n"
+    text += "world: {name: w.sdf, model_path: [models, /abs]}\nsteps: [settle]\n"
+    loaded = parse_scenario(text, tmp_path / "in" / "f.yaml")
+    resolved = resolved_text(loaded, folder=tmp_path / "out")
+    again = parse_scenario(resolved, tmp_path / "out" / "f.yaml").scenario
+    assert again.world.name == "../in/w.sdf"
+    assert again.world.model_path == ("../in/models", "/abs")
+    assert again.robot.packages == ("../in",)

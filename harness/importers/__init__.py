@@ -1,0 +1,1 @@
+"""Files of other programs as ours: SDF worlds, MoveIt scenes."""

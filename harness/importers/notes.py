@@ -1,0 +1,46 @@
+"""What of a file has no meaning here, told once for each kind of thing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from harness.spec.source import Place
+
+
+@dataclass(frozen=True)
+class Note:
+    """Something in a file that is not taken over, or not as it stands there.
+
+    Attributes:
+        path: The file, as the user named it.
+        line: Of the first such thing, from 1.
+        message: What it is, and what became of it.
+        count: How many there are of the kind.
+    """
+
+    path: str
+    line: int
+    message: str
+    count: int = 1
+
+    def __str__(self) -> str:
+        more = f" ({self.count} times; here first)" if self.count > 1 else ""
+        return f"{self.path}:{self.line}: {self.message}{more}"
+
+
+class Notes:
+    """Collects notes; equal messages of a file become one with their number."""
+
+    def __init__(self) -> None:
+        self._found: dict[tuple[str, str], Note] = {}
+
+    def add(self, place: Place, message: str) -> None:
+        """Note something at a place."""
+        key = (place.source.path, message)
+        known = self._found.get(key)
+        line, count = (known.line, known.count + 1) if known else (place.line, 1)
+        self._found[key] = Note(place.source.path, line, message, count)
+
+    def all(self) -> tuple[Note, ...]:
+        """Every note, by file and line."""
+        return tuple(sorted(self._found.values(), key=lambda note: (note.path, note.line)))

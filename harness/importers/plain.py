@@ -1,0 +1,30 @@
+"""Poses and numbers as a file of ours writes them: without the dust of arithmetic."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.core.spatial import SE3
+from harness.spec.poses import Pose
+
+DECIMALS = 12
+"""Of a metre, and of a quaternion's part: far below what any file means."""
+
+
+def rounded(value: float) -> float:
+    """A number without its last digits, and without the sign of zero."""
+    return round(float(value), DECIMALS) + 0.0
+
+
+def significant(value: float) -> float:
+    """A mass or moment with its first twelve digits."""
+    return float(f"{value:.12g}") + 0.0
+
+
+def pose_spec(pose: SE3) -> Pose:
+    """A pose of a file; without a rotation where there is none."""
+    x, y, z = (rounded(value) for value in pose.translation)
+    if np.allclose(pose.rotation, np.eye(3), rtol=0, atol=1e-12):
+        return Pose(xyz=(x, y, z))
+    a, b, c, d = (rounded(value) for value in pose.quat_wxyz)
+    return Pose(xyz=(x, y, z), quat_wxyz=(a, b, c, d))

@@ -1,0 +1,64 @@
+"""The page on worlds of other programs: what of their files is read, ignored, refused."""
+
+from __future__ import annotations
+
+from harness.importers.model_path import VARIABLES
+from harness.importers.sdf_words import WORDS
+
+HEAD = """# Worlds of other programs
+
+A scenario names an SDF file as it does a world of its own:
+
+```yaml
+world: cell.sdf
+```
+
+or, with folders to look models up in,
+
+```yaml
+world: {name: cell.sdf, model_path: [models, ../shared]}
+```
+
+Nothing is converted on the way: the file is read each time, and what of it has no meaning here
+is told by `harness check` and stands among the findings of every run."""
+
+MODELS = """## Where models and meshes are found
+
+`model://name/...` and `package://name/...` are looked up in the folders of `model_path`, the
+world file's folder, `models` beside it, and the folders of {variables}, in this order; a path
+is relative to the file that has it. Nothing outside of these folders is read, and nothing is
+downloaded: an address of Fuel is looked up in Gazebo's cache (`~/.gz/fuel`). `model://sun` and
+`model://ground_plane` are there without Gazebo."""
+
+BECOMES = """## What a model becomes
+
+A model is one object, called as the model. Its links are rigid: what joints hold together is
+one object, and a joint that could move is held where it stands, with a note. Links that no
+joint holds are objects of their own, called `model::link`. Collisions are its shapes, each with
+its friction; visuals that are the same shapes colour them, others are drawn in their place. A
+link without an inertial has 1 kg and 1 kg m^2, as SDF has it, with a note. An inertia that no
+body can have, and a mass of 0, are refused."""
+
+WORDS_HEAD = """## Words of SDF
+
+SDF 1.4 to 1.11. *Read* words count; *ignored* ones are told of, unless they say what is so
+anyway (`static` false, gravity on); *refused* ones are errors. Any other element is told of as
+not known."""
+
+
+def formats_page() -> str:
+    """The page as Markdown."""
+    variables = ", ".join(f"`{name}`" for name in VARIABLES)
+    parts = [HEAD, MODELS.format(variables=variables), BECOMES, WORDS_HEAD, sdf_table()]
+    return "\n\n".join(parts) + "\n"
+
+
+def sdf_table() -> str:
+    """The words of SDF as a Markdown table."""
+    rows = ["| in | element | here | |", "| --- | --- | --- | --- |"]
+    for kind, words in WORDS.items():
+        rows += [
+            f"| `{kind}` | `{tag}` | {word.treatment} | {word.meaning} |"
+            for tag, word in words.items()
+        ]
+    return "\n".join(rows)

@@ -1,0 +1,143 @@
+"""Mass and inertia of SDF links, and of the object that several links make up."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Sphere
+from harness.core.solids import solid_of
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.importers.notes import Notes
+from harness.importers.sdf_values import is_true, number, pose_of
+from harness.importers.sdf_words import note_what_is_left
+from harness.spec.world import ShapeSpec
+from harness.spec.xml_file import XmlElement
+
+WATER = 1000.0
+"""Density of an automatic inertial that names none [kg/m^3]: SDF 1.11."""
+
+
+@dataclass(frozen=True, eq=False)
+class MassProperties:
+    """Of a rigid body.
+
+    Attributes:
+        mass: [kg].
+        center: Of mass, in the object's frame [m], shape (3,).
+        inertia: About the centre of mass, object's axes [kg m^2], shape (3, 3).
+    """
+
+    mass: float
+    center: FloatArray
+    inertia: FloatArray
+
+    def placed(self, pose: SE3) -> MassProperties:
+        """The same, given in the frame of a link, in that of the object: T_object_link."""
+        turn = pose.rotation
+        return MassProperties(self.mass, pose.apply(self.center), turn @ self.inertia @ turn.T)
+
+
+def together(parts: Sequence[MassProperties]) -> MassProperties:
+    """Of several bodies that hold together; parallel axes."""
+    if len(parts) == 1:
+        return parts[0]
+    mass = sum(part.mass for part in parts)
+    center = sum((part.mass * part.center for part in parts), np.zeros(3)) / mass
+    inertia = np.zeros((3, 3))
+    for part in parts:
+        offset = part.center - center
+        inertia += part.inertia
+        inertia += part.mass * (offset @ offset * np.eye(3) - np.outer(offset, offset))
+    return MassProperties(mass, center, inertia)
+
+
+def link_masses(
+    link: XmlElement, shapes: Sequence[tuple[XmlElement, ShapeSpec]], T_object_link: SE3,
+    notes: Notes,
+) -> MassProperties:  # fmt: skip
+    """Of a link, in the object's frame.
+
+    Args:
+        link: The `<link>`.
+        shapes: Its collisions with what they became, placed on the object; for automatic inertia.
+        T_object_link: Where the link stands on the object.
+        notes: Told of a link without inertial.
+
+    Raises:
+        SpecError: No body can have these numbers.
+    """
+    inertial = link.find("inertial")
+    if inertial is None:
+        notes.add(link.place, "a <link> without <inertial> has 1 kg and 1 kg m^2, as SDF has it")
+        return MassProperties(1.0, np.zeros(3), np.eye(3)).placed(T_object_link)
+    note_what_is_left(inertial, "inertial", notes)
+    if is_true(inertial, inertial.get("auto", "false")):
+        return _automatic(inertial, shapes)
+    mass = number(inertial, "mass", 1.0)
+    if mass <= 0:
+        (inertial.find("mass") or inertial).refuse(
+            f"what can move has a mass above 0, not {mass:g} kg", "or say <static>true</static>"
+        )
+    tensor = _tensor(inertial)
+    own = MassProperties(mass, np.zeros(3), tensor).placed(pose_of(inertial).pose)
+    return own.placed(T_object_link)
+
+
+def _tensor(inertial: XmlElement) -> FloatArray:
+    element = inertial.find("inertia")
+    if element is None:
+        return np.eye(3)
+    xx, yy, zz = (number(element, tag, 1.0) for tag in ("ixx", "iyy", "izz"))
+    xy, xz, yz = (number(element, tag, 0.0) for tag in ("ixy", "ixz", "iyz"))
+    tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    least, middle, most = (float(moment) for moment in np.linalg.eigvalsh(tensor))
+    if least <= 0 or most > least + middle + 1e-12:
+        element.refuse(
+            f"no body has this inertia: its principal moments are {least:.3g}, {middle:.3g} and"
+            f" {most:.3g} kg m^2",
+            "each is above 0 and no more than the sum of the others",
+        )
+    return tensor
+
+
+def _automatic(
+    inertial: XmlElement, shapes: Sequence[tuple[XmlElement, ShapeSpec]]
+) -> MassProperties:
+    """From the collisions and their densities; a mass that is given as well scales them."""
+    density = number(inertial, "density", WATER)
+    parts: list[MassProperties] = []
+    for collision, spec in shapes:
+        solid = None if (kind := _geometry(spec)) is None else solid_of(kind)
+        if solid is None:
+            hint = "say <mass> and <inertia>"
+            collision.refuse("automatic inertia is of boxes, cylinders, spheres, capsules", hint)
+        volume, tensor = solid
+        own = number(collision, "density", density)
+        if own <= 0:
+            collision.refuse(f"a density is above 0, not {own:g}")
+        pose = spec.pose.se3()
+        turned = pose.rotation @ tensor @ pose.rotation.T
+        parts.append(MassProperties(own * volume, pose.translation, own * turned))
+    if not parts:
+        inertial.refuse("automatic inertia is of collisions, and the link has none")
+    whole = together(parts)
+    scale = number(inertial, "mass", whole.mass) / whole.mass
+    if scale <= 0:
+        inertial.refuse("a mass is above 0")
+    return MassProperties(whole.mass * scale, whole.center, whole.inertia * scale)
+
+
+def _geometry(spec: ShapeSpec) -> Geometry | None:
+    if spec.box is not None:
+        return Box(spec.box.size)
+    if spec.cylinder is not None:
+        return Cylinder(spec.cylinder.radius, spec.cylinder.length)
+    if spec.sphere is not None:
+        return Sphere(spec.sphere.radius)
+    if spec.capsule is not None:
+        return Capsule(spec.capsule.radius, spec.capsule.length)
+    return None

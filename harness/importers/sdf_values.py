@@ -1,0 +1,123 @@
+"""Numbers, flags and poses of SDF, each wrong one told at its place."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from harness.core.spatial import SE3, wxyz_from_xyzw
+from harness.spec.xml_file import XmlElement
+
+TRUE, FALSE = ("true", "1"), ("false", "0")
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedPose:
+    """A pose as SDF writes it.
+
+    Attributes:
+        pose: In the frame `relative_to`.
+        relative_to: A frame's name; empty for the element's own default.
+        element: Where it is written, for messages.
+    """
+
+    pose: SE3
+    relative_to: str
+    element: XmlElement
+
+
+def numbers_of(element: XmlElement, count: int) -> tuple[float, ...]:
+    """An element's numbers.
+
+    Raises:
+        SpecError: Not that many, or one is no finite number.
+    """
+    text = " ".join(element.text.split())
+    try:
+        values = tuple(float(word) for word in text.split())
+    except ValueError:
+        values = ()
+    if len(values) != count or not all(map(math.isfinite, values)):
+        meant = "a finite number is" if count == 1 else f"{count} finite numbers are"
+        found = f"`{text[:60]}`" if text else "nothing"
+        element.refuse(f"<{element.tag}>: {meant} meant, not {found}")
+    return values
+
+
+def number(parent: XmlElement, tag: str, default: float) -> float:
+    """The number of a child, or a default where there is none."""
+    child = parent.find(tag)
+    return default if child is None else numbers_of(child, 1)[0]
+
+
+def positive(parent: XmlElement, tag: str) -> float:
+    """The number above 0 that a child must give.
+
+    Raises:
+        SpecError: There is no such child, or it is not above 0.
+    """
+    child = parent.find(tag)
+    if child is None:
+        parent.refuse(f"<{parent.tag}> lacks its <{tag}>")
+    (value,) = numbers_of(child, 1)
+    if value <= 0:
+        child.refuse(f"<{tag}> of a <{parent.tag}> is above 0, not {value:g}")
+    return value
+
+
+def is_flag(parent: XmlElement, tag: str, default: bool = False) -> bool:
+    """The truth of a child, or a default where there is none.
+
+    Raises:
+        SpecError: It is none of true, false, 1, 0.
+    """
+    child = parent.find(tag)
+    return default if child is None else is_true(child, child.text.strip())
+
+
+def is_true(element: XmlElement, text: str) -> bool:
+    """The truth of a word, told at the element where it is none."""
+    word = text.lower()
+    if word not in (*TRUE, *FALSE):
+        element.refuse(f"`{text[:40]}` is neither true nor false")
+    return word in TRUE
+
+
+def text_of(parent: XmlElement, tag: str, default: str = "") -> str:
+    """The text of a child, or a default where there is none."""
+    child = parent.find(tag)
+    return default if child is None else child.text.strip()
+
+
+def pose_of(parent: XmlElement) -> PlacedPose:
+    """The pose of an element; nothing said is no displacement.
+
+    Raises:
+        SpecError: It has not the numbers of its format.
+    """
+    element = parent.find("pose")
+    if element is None:
+        return PlacedPose(SE3.identity(), "", parent)
+    # `frame` was the word of SDF 1.5 and 1.6
+    relative_to = element.get("relative_to") or element.get("frame")
+    return PlacedPose(_se3(element), relative_to.strip(), element)
+
+
+def _se3(element: XmlElement) -> SE3:
+    form = element.get("rotation_format", "euler_rpy")
+    is_in_degrees = is_true(element, element.get("degrees", "false"))
+    if form not in ("euler_rpy", "quat_xyzw"):
+        hint = "formats: euler_rpy, quat_xyzw"
+        element.refuse(f"no rotation format is called `{form}`", hint, at="rotation_format")
+    if not element.text.strip():
+        return SE3.identity()
+    if form == "quat_xyzw":
+        if is_in_degrees:
+            element.refuse("a quaternion is not in degrees", at="degrees")
+        values = numbers_of(element, 7)
+        if math.hypot(*values[3:]) < 1e-6:
+            element.refuse("a quaternion has norm 1, this one 0", "no rotation is 0 0 0 1")
+        return SE3.from_xyz_quat(values[:3], wxyz_from_xyzw(values[3:]))
+    values = numbers_of(element, 6)
+    rpy = [math.radians(value) for value in values[3:]] if is_in_degrees else values[3:]
+    return SE3.from_xyz_rpy(values[:3], rpy)

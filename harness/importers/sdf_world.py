@@ -1,0 +1,99 @@
+"""SDF worlds as ours."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from harness.importers.imported import ImportedWorld
+from harness.importers.model_path import ModelPath
+from harness.importers.notes import Notes
+from harness.importers.plain import rounded
+from harness.importers.sdf_bodies import bodies_of
+from harness.importers.sdf_object import object_of
+from harness.importers.sdf_shapes import ShapeReader
+from harness.importers.sdf_tree import Light, SdfTree
+from harness.importers.sdf_values import is_flag, is_true, numbers_of
+from harness.importers.sdf_words import note_what_is_left
+from harness.spec.world import LightSpec, PhysicsSpec, WorldSpec
+from harness.spec.xml_file import XmlElement
+
+SHORTEST_STEP, LONGEST_STEP = 1e-4, 0.02  # [s], as of a world file
+
+
+def load_sdf(path: Path, folders: Sequence[Path] = ()) -> ImportedWorld:
+    """The world of an SDF file.
+
+    Args:
+        path: The file.
+        folders: Searched for models and meshes before those of the environment.
+
+    Raises:
+        SpecError: It is no SDF that can be read; at its place in the file that has it.
+    """
+    model_path = ModelPath(path.parent, folders)
+    tree = SdfTree(path, model_path)
+    notes = tree.notes
+    reader = ShapeReader(model_path, notes)
+    objects = [object_of(body, reader) for body in bodies_of(tree.world, notes)]
+    lights = [_light(light, tree, notes) for light in tree.lights]
+    title = tree.root.get("name").strip()[:100] or path.stem[:100]
+    world = WorldSpec(
+        world=title,
+        objects=tuple(item for item in objects if item is not None),
+        lights=tuple(item for item in lights if item is not None),
+        physics=_physics(tree.root, notes),
+    )
+    return ImportedWorld(world, path, notes.all())
+
+
+def _physics(root: XmlElement, notes: Notes) -> PhysicsSpec:
+    profiles = root.findall("physics")
+    chosen = [item for item in profiles if is_true(item, item.get("default", "false"))]
+    physics = next(iter(chosen or profiles), None)
+    words: dict[str, object] = {}
+    gravity = root.find("gravity")
+    if physics is not None:
+        note_what_is_left(physics, "physics", notes)
+        for other in profiles:
+            if other is not physics:
+                notes.add(other.place, "another <physics> is left out")
+        step = physics.find("max_step_size")
+        if step is not None:
+            (value,) = numbers_of(step, 1)
+            if not SHORTEST_STEP <= value <= LONGEST_STEP:
+                limits = f"{SHORTEST_STEP:g} to {LONGEST_STEP:g} s"
+                step.refuse(f"a physics step of {value:g} s is not simulated", f"steps: {limits}")
+            words["timestep"] = value
+        gravity = gravity or physics.find("gravity")
+    if gravity is not None:
+        words["gravity"] = numbers_of(gravity, 3)
+    return PhysicsSpec.model_validate(words)
+
+
+def _light(light: Light, tree: SdfTree, notes: Notes) -> LightSpec | None:
+    """A directional light; others, and those that are off, are left out."""
+    element = light.element
+    note_what_is_left(element, "light", notes)
+    kind = element.get("type", "point").strip()
+    if kind != "directional":
+        notes.add(element.place, f"a {kind} light is left out: pictures have directional ones")
+        return None
+    if not is_flag(element, "light_on", default=True):
+        return None
+    given = element.find("direction")
+    direction = np.array((0.0, 0.0, -1.0) if given is None else numbers_of(given, 3))
+    if given is not None and not direction.any():
+        given.refuse("a direction has some length; this one is 0 0 0")
+    x, y, z = (rounded(v) for v in tree.world.pose_in(light.pose).rotation @ direction)
+    diffuse = element.find("diffuse")
+    color = (1.0, 1.0, 1.0, 1.0)
+    if diffuse is not None:
+        count = 3 if len(diffuse.text.split()) == 3 else 4
+        values = (*(min(1.0, max(0.0, part)) for part in numbers_of(diffuse, count)), 1.0)
+        color = (values[0], values[1], values[2], values[3])
+    return LightSpec(
+        direction=(x, y, z), diffuse=color, casts_shadow=is_flag(element, "cast_shadows")
+    )
