@@ -465,6 +465,10 @@ class Simulator(Protocol):
         """Drive the gripper's joint under an effort limit until it arrives or stalls."""
         ...
 
+    def start_gripper(self, position: float, max_effort: float) -> None:
+        """Let the gripper set out while time is moved by other calls; `command_gripper` follows."""
+        ...
+
     def hold(self, duration: float) -> None:
         """Keep the last commands for some simulated time [s]."""
         ...

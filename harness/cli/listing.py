@@ -48,11 +48,11 @@ def _scenarios() -> Rows:
 
 def _steps() -> Rows:
     import harness.engine.executors
-    from harness.engine.registry import execute
+    from harness.engine.registry import is_available
     from harness.spec.steps import AnyStep
 
     del harness
-    return [_row(model, "do", model in execute) for model in get_args(AnyStep)]
+    return [_row(model, "do", is_available(model)) for model in get_args(AnyStep)]
 
 
 def _expectations() -> Rows:

@@ -256,6 +256,14 @@ class Cell:
         options = replace(parent.options, seed=step_seed(self.seed, path))
         return ProgramStep(f"{parent.id}.{name}", path, spec, summary, parent.line, options)
 
+    def run_children(self, children: Sequence[ProgramStep] | None = None) -> None:
+        """Run the steps that the current one is made of; its own notes go on after them."""
+        current, notes = self.current, self.notes
+        try:
+            self.run_steps(current.children if children is None else children)
+        finally:
+            self.step, self.notes = current, notes
+
     # -- motion -------------------------------------------------------------------------------
 
     def carry_out(self, plan: MotionPlan) -> None:

@@ -22,13 +22,15 @@ from harness.engine.summary import summarize, words
 from harness.ports import Kinematics, PlanningOptions
 from harness.robot.description import RobotDescription
 from harness.spec.checks import AnyExpectation
+from harness.spec.nesting import blocks
 from harness.spec.planning import Planning
 from harness.spec.scenario import Scenario
 from harness.spec.source import SourceMap
-from harness.spec.steps import AddObject, AllowCollisions, AnyStep, AttachObject
+from harness.spec.steps import AddObject, AnyStep, AttachObject
 from harness.spec.world import ObjectSpec, WorldSpec
 
 NOT_YET = "not yet available"
+MOST_STEPS = 10_000  # a file of more is a mistake, and would fill the memory
 MOST_OBJECTS = 1000  # of all kinds; 300 that move already take 2 s of wall time for each simulated
 
 
@@ -222,17 +224,20 @@ class _Compiler:
 
     # -- steps --------------------------------------------------------------------------------
 
-    def _steps(self, specs: Sequence[AnyStep], loc: Loc, path: str) -> tuple[ProgramStep, ...]:
+    def _steps(
+        self, specs: Sequence[AnyStep], loc: Loc, path: str, suffix: str = ""
+    ) -> tuple[ProgramStep, ...]:
         return tuple(
-            self._step(spec, (*loc, index), f"{path}[{index}]") for index, spec in enumerate(specs)
+            self._step(spec, (*loc, index), f"{path}[{index}]", suffix)
+            for index, spec in enumerate(specs)
         )
 
-    def _step(self, spec: AnyStep, loc: Loc, path: str) -> ProgramStep:
+    def _step(self, spec: AnyStep, loc: Loc, path: str, suffix: str) -> ProgramStep:
         sources = self.sources
         self.step_locs[path] = loc
         if type(spec) not in execute:
             self.problems.add(loc, f"the step `{spec.do}` is {NOT_YET}", _available_steps())
-        step_id = spec.id or path
+        step_id = f"{spec.id}{suffix}" if spec.id else path
         if not self.scope.claim_step_id(step_id):
             self.problems.add((*loc, "id"), f"another step has the id '{step_id}'")
         if isinstance(spec, AddObject):
@@ -241,9 +246,6 @@ class _Compiler:
         if isinstance(spec, AttachObject) and isinstance(spec.object, ObjectSpec):
             self._later_object(spec.object, (*loc, "object"))
         check_step(spec, loc, self.scope)
-        children: tuple[ProgramStep, ...] = ()
-        if isinstance(spec, AllowCollisions):
-            children = self._steps(spec.during, (*loc, "during"), f"{path}.during")
         line, _ = sources.lines.line_of(loc)
         step = ProgramStep(
             id=step_id,
@@ -252,11 +254,22 @@ class _Compiler:
             summary=summarize(spec),
             line=line,
             options=self._options(spec.planning, loc, step_seed(sources.scenario.seed, path)),
-            children=children,
+            children=self._children(spec, loc, path, suffix),
         )
         for index, expectation in enumerate(spec.expect):
             self._expectation(expectation, (*loc, "expect", index), step_id)
         return step
+
+    def _children(self, spec: AnyStep, loc: Loc, path: str, suffix: str) -> tuple[ProgramStep, ...]:
+        children: list[ProgramStep] = []
+        for block in blocks(spec, loc, path):
+            if len(self.step_locs) > MOST_STEPS:
+                self.problems.add(
+                    loc, f"the file comes to more than {MOST_STEPS} steps, repeated ones counted"
+                )
+                break
+            children += self._steps(block.steps, block.loc, block.path, suffix + block.suffix)
+        return tuple(children)
 
     def _options(self, planning: Planning | None, loc: Loc, seed: int) -> PlanningOptions:
         sources = self.sources

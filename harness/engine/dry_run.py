@@ -117,6 +117,9 @@ class DrySimulator:
             contacts=dict.fromkeys(gripper.sides, touched),
         )
 
+    def start_gripper(self, position: float, max_effort: float) -> None:
+        del position, max_effort
+
     def hold(self, duration: float) -> None:
         del duration
 

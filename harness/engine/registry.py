@@ -4,5 +4,11 @@ from __future__ import annotations
 
 from harness.core.registry import Registry
 from harness.engine.cell import Cell
+from harness.spec.steps import Include
 
 execute: Registry[Cell, None] = Registry()
+
+
+def is_available(verb: type) -> bool:
+    """Whether a step does what it says; the loader puts an included file's steps in its place."""
+    return verb in execute or verb is Include

@@ -25,6 +25,7 @@ from harness.spec.steps import (
     MoveObject,
     MoveRelative,
     MoveTo,
+    Parallel,
     Pick,
     Place,
     Ptp,
@@ -34,6 +35,9 @@ from harness.spec.steps import (
     Wait,
 )
 
+ARM_MOTIONS = frozenset(
+    {"move_to", "ptp", "lin", "circ", "move_relative", "cartesian_path", "sequence"}
+)
 SPECIAL_BODIES = ("robot",)
 
 
@@ -347,3 +351,21 @@ def _check_stall(name: str | None, at: At) -> None:
             f"'{name}' follows '{joint.mimic.joint}'",
             f"stall '{joint.mimic.joint}'",
         )
+
+
+@check.handles(Parallel)
+def _parallel(step: Parallel, at: At) -> None:
+    verbs = [child.do for child in step.steps]
+    if len(verbs) != 2 or verbs.count("gripper") != 1 or not set(verbs) & ARM_MOTIONS:
+        at.scope.problems.add(
+            at.key("steps"),
+            "`parallel` is one motion of the arm and one `gripper` step",
+            "arm motions: " + ", ".join(sorted(ARM_MOTIONS)),
+        )
+    for index, child in enumerate(step.steps):
+        if child.expect_error is not None:
+            at.scope.problems.add(
+                at.key("steps", index, "expect_error"),
+                "a step of `parallel` cannot be expected to fail",
+                "say `expect_error` of the `parallel` step",
+            )

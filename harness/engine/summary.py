@@ -17,7 +17,9 @@ from harness.spec.steps import (
     Gripper,
     Inject,
     MoveRelative,
+    Parallel,
     RemoveObject,
+    Repeat,
     Sequence,
     Wait,
 )
@@ -70,6 +72,10 @@ def _content(step: AnyStep) -> str:
             return "with the world's" if step.world else ""
         case AllowCollisions():
             return ", ".join(f"{a}-{b}" for a, b in step.pairs)
+        case Repeat():
+            return f"{step.times} times" if step.times > 1 else ""
+        case Parallel():
+            return " and ".join(child.do for child in step.steps)
         case Inject():
             return ", ".join(_faults(step))
         case Wait():

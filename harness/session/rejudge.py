@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from harness.assertions.judge import judge
@@ -10,6 +11,7 @@ from harness.assertions.wording import describe
 from harness.recording.run import Verdict
 from harness.recording.store import read_run
 from harness.spec.load import LoadedScenario, load_scenario
+from harness.spec.nesting import Block, blocks
 
 
 def judge_run(run_dir: Path, with_file: Path | None = None) -> tuple[Verdict, ...]:
@@ -32,16 +34,17 @@ def expectations_of(loaded: LoadedScenario) -> list[PlacedExpectation]:
     """Every expectation of a file, those of steps first."""
     found: list[PlacedExpectation] = []
 
-    def visit(steps: tuple[object, ...], loc: tuple[str | int, ...], path: str) -> None:
-        for index, step in enumerate(steps):
-            here, name = (*loc, index), f"{path}[{index}]"
-            step_id = getattr(step, "id", None) or name
-            for number, spec in enumerate(getattr(step, "expect", ())):
-                line, _ = loaded.lines.line_of((*here, "expect", number))
+    def visit(block: Block) -> None:
+        for index, step in enumerate(block.steps):
+            loc, path = (*block.loc, index), f"{block.path}[{index}]"
+            for inner in blocks(step, loc, path):
+                visit(replace(inner, suffix=block.suffix + inner.suffix))
+            step_id = f"{step.id}{block.suffix}" if step.id else path
+            for number, spec in enumerate(step.expect):
+                line, _ = loaded.lines.line_of((*loc, "expect", number))
                 found.append(PlacedExpectation(spec, step_id, line, describe(spec)))
-            visit(getattr(step, "during", ()), (*here, "during"), f"{name}.during")
 
-    visit(loaded.scenario.steps, ("steps",), "steps")
+    visit(Block(loaded.scenario.steps, ("steps",), "steps"))
     for number, spec in enumerate(loaded.scenario.expect):
         line, _ = loaded.lines.line_of(("expect", number))
         found.append(PlacedExpectation(spec, "", line, describe(spec)))

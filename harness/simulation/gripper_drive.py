@@ -58,12 +58,35 @@ class GripperDrive:
         self._range = abs(gripper.closed_position - gripper.open_position)
         self._speed = joint_speed(simulator.description, gripper)
         simulator.limit_grip(self._actuator, gripper.grip_effort)
+        self._set_out: SetPoints | None = None
+
+    def start(self, position: float, max_effort: float) -> None:
+        """Set out for a position; the next motion of the arm takes the gripper along."""
+        self._simulator.limit_grip(self._actuator, max_effort)
+        self._set_out = self._ramp(position)
+
+    def join(self, whole: SetPoints) -> SetPoints:
+        """A motion that begins now, with a gripper that set out; the longer of both long."""
+        points, self._set_out = self._set_out, None
+        if points is None:
+            return whole
+        missing = max(0, len(points) - len(whole))
+        held = np.repeat(whole.positions[-1:], missing, axis=0)
+        still = np.zeros_like(held)
+        joined = SetPoints(
+            np.concatenate([whole.positions, held]),
+            np.concatenate([whole.velocities, still]),
+            np.concatenate([whole.accelerations, still]),
+        )
+        for rows, own in zip(vars(joined).values(), vars(points).values(), strict=True):
+            rows[: len(points), self._actuator] = own[:, 0]
+        joined.positions[len(points) :, self._actuator] = points.positions[-1, 0]
+        return joined
 
     def drive(self, position: float, max_effort: float, timeout: float) -> GripperResult:
         """Move to a position under an effort limit until it arrives, stalls or runs out of time."""
         simulator, timestep = self._simulator, self._recording.timestep
-        acceleration = simulator.description.movable_joints[self._joint].acceleration
-        points = ramp(self._start(position), position, self._speed, acceleration, timestep)
+        points = self._ramp(position)
         whole = simulator.whole(points, np.array([self._actuator]))
         first = self._recording.count
         stall_samples = round(STALL_TIME / timestep)
@@ -91,6 +114,11 @@ class GripperDrive:
             reached_goal=reached,
             contacts=self._contacts(),
         )
+
+    def _ramp(self, position: float) -> SetPoints:
+        joint = self._simulator.description.movable_joints[self._joint]
+        start, timestep = self._start(position), self._recording.timestep
+        return ramp(start, position, self._speed, joint.acceleration, timestep)
 
     def _miss(self, position: float) -> float:
         return abs(float(self._simulator.joint_positions()[self._joint]) - position)

@@ -117,9 +117,11 @@ class MujocoSimulator:
         self._recording.refuse_beyond(int(trajectory.duration / self._timestep))
         points = sample_trajectory(trajectory, self._timestep)
         whole = self.whole(points, columns)
+        if self._gripper is not None:
+            whole = self._gripper.join(whole)
         controls = self._controls(whole)
-        for begin in range(0, len(points) - 1, CHECK_EVERY):
-            end = min(begin + CHECK_EVERY, len(points) - 1)
+        for begin in range(0, len(whole) - 1, CHECK_EVERY):
+            end = min(begin + CHECK_EVERY, len(whole) - 1)
             first = self._recording.count
             self._advance(
                 controls[begin : end + 1],
@@ -127,9 +129,9 @@ class MujocoSimulator:
                 whole.velocities[begin + 1 : end + 1],
             )
             self._command = whole.positions[end]
-            self._refuse_lag(first, points.positions[begin + 1 : end + 1], columns)
+            self._refuse_lag(first, whole.positions[begin + 1 : end + 1, columns], columns)
         self.command(whole.positions[-1])
-        self._wait_for_goal(points.positions[-1], columns)
+        self._wait_for_goal(whole.positions[-1, columns], columns)
 
     def command_gripper(
         self, position: float, max_effort: float, *, timeout: float
@@ -138,6 +140,12 @@ class MujocoSimulator:
         if self._gripper is None:
             raise StepFailed("INVALID_GROUP_NAME", f"{self.description.name} has no gripper")
         return self._gripper.drive(position, max_effort, timeout)
+
+    def start_gripper(self, position: float, max_effort: float) -> None:
+        """Let the gripper set out; its set points go along with those of the arm from now on."""
+        if self._gripper is None:
+            raise StepFailed("INVALID_GROUP_NAME", f"{self.description.name} has no gripper")
+        self._gripper.start(position, max_effort)
 
     def hold(self, duration: float) -> None:
         """Keep the last commands for some simulated time [s]."""

@@ -14,6 +14,7 @@ from harness.core.errors import Problem, SpecError
 from harness.core.resources import data_folder
 from harness.spec.annotations import keys_of
 from harness.spec.base import SpecModel
+from harness.spec.includes import with_includes
 from harness.spec.mending import mended
 from harness.spec.mistakes import did_you_mean
 from harness.spec.params import override, substitute
@@ -104,7 +105,7 @@ def read_scenario(
     problems: list[Problem] = []
     written = parse_yaml(text, Source.of_text(str(path), text))
     written = override(written, given, keys_of(Scenario))
-    written = substitute(written, problems)
+    written = substitute(with_includes(written, path, problems), problems)
     try:
         model, lines = _model(written, Scenario, problems)
     except _BrokenError as error:
@@ -141,7 +142,7 @@ def parse_scenario(
     problems: list[Problem] = []
     written = parse_yaml(text, Source.of_text(str(path), text))
     written = override(written, overrides or {}, keys_of(Scenario))
-    written = substitute(written, problems)
+    written = substitute(with_includes(written, path, problems), problems)
     model, lines = _model(written, Scenario, problems)
     return LoadedScenario(model, path, text, lines, written)
 

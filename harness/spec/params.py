@@ -51,11 +51,11 @@ def substitute(root: Located, problems: list[Problem]) -> Located:
         params: dict[str, Entry] = {}
     else:
         params = entry.value.mapping()
-    filled = {
-        key: item if key == PARAMS else Entry(item.key, _filled(item.value, params, problems))
+    entries = {
+        key: item if key == PARAMS else Entry(item.key, filled(item.value, params, problems))
         for key, item in root.mapping().items()
     }
-    return Located(filled, root.place)
+    return Located(entries, root.place)
 
 
 def escaped(item: Located) -> Located:
@@ -65,10 +65,11 @@ def escaped(item: Located) -> Located:
     return _mapped(item, escaped)
 
 
-def _filled(item: Located, params: Mapping[str, Entry], problems: list[Problem]) -> Located:
+def filled(item: Located, params: Mapping[str, Entry], problems: list[Problem]) -> Located:
+    """A value with every `${name}` in it replaced by the parameter of that name."""
     text = item.value
     if not isinstance(text, str):
-        return _mapped(item, lambda child: _filled(child, params, problems))
+        return _mapped(item, lambda child: filled(child, params, problems))
     whole = REFERENCE.fullmatch(text)
     if whole and not whole["escape"]:
         value = _value(whole["name"], params, item.place, problems)

@@ -196,8 +196,16 @@ class SourceMap:
         return Found(item, key, tuple(path), is_whole)
 
     def line_of(self, loc: Loc) -> tuple[int, int]:
-        """Line and column, from 1, of a field of the model; of a step: of its verb."""
-        place = self.find(loc).item.place
+        """Line and column, from 1, of a field of the model; of a step: of its verb.
+
+        Of what another file says: of the step that includes it.
+        """
+        main = self.root.place.source
+        place = next(
+            place
+            for length in range(len(loc), -1, -1)
+            if (place := self.find(loc[:length]).item.place).source is main or not length
+        )
         return place.line, place.column
 
     def problem(self, loc: Loc, message: str, hint: str = "") -> Problem:

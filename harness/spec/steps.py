@@ -500,7 +500,7 @@ class Inject(StepFields):
 
 
 class Repeat(StepFields):
-    """The same steps several times."""
+    """The same steps several times; an `id` inside gets `#1`, `#2` ... behind it."""
 
     do: Literal["repeat"] = "repeat"
     times: Annotated[Count, Field(ge=1, le=1000)] = Field(description="How often.")
@@ -508,19 +508,22 @@ class Repeat(StepFields):
 
 
 class Parallel(StepFields):
-    """Arm and gripper at once."""
+    """One motion of the arm and one `gripper` step at once; it ends when both have."""
 
     short = "steps"
     short_is_list = True
 
     do: Literal["parallel"] = "parallel"
     steps: Annotated[tuple[Step, ...], Field(min_length=2)] = Field(
-        description="What is done at once."
+        description="A motion of the arm, and a `gripper` step."
     )
 
 
 class Include(StepFields):
-    """Steps from another file, with parameters."""
+    """The steps of another file; with an `id`, theirs get it and a dot in front.
+
+    The file has `steps`, and `params` with their defaults; it knows no others.
+    """
 
     short = "file"
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import harness.engine.executors
 from harness.assertions.judge import EXECUTED
-from harness.engine.registry import execute
+from harness.engine.registry import is_available
 from harness.importers.reference import formats_page
 from harness.spec.language import VERBS
 from harness.spec.reference import expectations_reference, scenario_reference, steps_reference
@@ -18,7 +18,7 @@ RENEW = "python tests/docs/generated.py"
 
 def generated():
     """Path in the repository -> what its file must hold."""
-    executed = {model for model in VERBS.values() if model in execute}
+    executed = {model for model in VERBS.values() if is_available(model)}
     return {
         "scenarios/scenario.schema.json": schema_text(),
         "scenarios/world.schema.json": world_schema_text(),

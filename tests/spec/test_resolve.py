@@ -100,8 +100,11 @@ scenario: x
 robot: {urdf: arm/arm.urdf, srdf: /abs/arm.srdf}
 world: worlds/my.yaml
 objects: [{name: a, mesh: {file: a.stl}}]
-steps: [{include: parts/one.yaml}, {include: {file: two.yaml}}]
+steps: [{include: parts/one.yaml}]
 """
+    part = tmp_path / "in" / "parts" / "one.yaml"
+    part.parent.mkdir(parents=True)
+    part.write_text("steps: [{add_object: {name: b, mesh: {file: b.stl}}}]")
     loaded = parse_scenario(text, tmp_path / "in" / "f.yaml")
     resolved = resolved_text(loaded, folder=tmp_path / "out" / "case")
     again = parse_scenario(resolved, tmp_path / "out" / "case" / "f.yaml").scenario
@@ -109,7 +112,8 @@ steps: [{include: parts/one.yaml}, {include: {file: two.yaml}}]
     assert again.robot.srdf == "/abs/arm.srdf"
     assert again.world.name == "../../in/worlds/my.yaml"
     assert again.objects[0].mesh.file == "../../in/a.stl"
-    assert [step.file for step in again.steps] == ["../../in/parts/one.yaml", "../../in/two.yaml"]
+    added = again.steps[0].steps[0].objects[0]
+    assert added.mesh.file == "../../in/parts/b.stl"
 
 
 def test_the_folders_of_a_worlds_models_are_written_as_from_the_new_folder(tmp_path):

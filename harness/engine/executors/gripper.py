@@ -22,17 +22,9 @@ def gripper(step: Gripper, cell: Cell) -> None:
         StepFailed: TIMED_OUT, when it does neither in time.
     """
     hand = cell.gripper
-    if step.named_target is not None:
-        states = cell.description.states_of(hand.group)
-        target = states[step.named_target].positions[hand.joint]
-    elif step.position is not None:
-        target = step.position
-    else:
-        target = position_for_width(hand, step.width or 0.0)
+    target, effort = command_of(step, cell)
     timeout = step.timeout or DEFAULT_TIMEOUT
-    result = cell.simulator.command_gripper(
-        target, step.max_effort or hand.grip_effort, timeout=timeout
-    )
+    result = cell.simulator.command_gripper(target, effort, timeout=timeout)
     note_result(cell, target, result)
     if not (result.reached_goal or result.stalled):
         raise StepFailed(
@@ -40,6 +32,18 @@ def gripper(step: Gripper, cell: Cell) -> None:
             f"'{hand.joint}' is at {result.position:.4g} and still moves towards {target:.4g}"
             f" after {timeout:g} s",
         )
+
+
+def command_of(step: Gripper, cell: Cell) -> tuple[float, float]:
+    """GripperCommand's position and max_effort that a step asks for."""
+    hand = cell.gripper
+    effort = step.max_effort or hand.grip_effort
+    if step.named_target is not None:
+        states = cell.description.states_of(hand.group)
+        return states[step.named_target].positions[hand.joint], effort
+    if step.position is not None:
+        return step.position, effort
+    return position_for_width(hand, step.width or 0.0), effort
 
 
 def position_for_width(hand: GripperDescription, width: float) -> float:
