@@ -69,8 +69,8 @@ def recorded_distances(run: Run, first: str, second: str) -> dict[Key, FloatArra
     if second == "any":
         names = _names_of(run, first)
         rows = {
-            key: np.where(in_hand(run, key[1]), np.nan, values)
-            for key, values in sorted(clearances.items())
+            key: np.where(in_hand(run, key[1]), np.nan, clearances[key])
+            for key in sorted(clearances)
             if key[0] in names and key[1] not in ("robot", key[0])
         }
         if not rows and first == "robot" and run.objects:

@@ -53,6 +53,12 @@ def collision(check: Collision, window: Window) -> MarginSignal:
     run = window.run
     pairs = _pairs(run, check)
     guilty = {pair: window.cut(colliding(run, pair)) for pair in pairs}
+    unknown = np.zeros(len(window.times), dtype=bool)
+    for pair in pairs:
+        unknown |= np.isnan(window.cut(run.signals.contact_forces[pair]))
+    if unknown.any():
+        values = np.where(unknown, np.nan, -1.0)
+        return MarginSignal(values, "1", lambda _: Evidence("contacts are not known"))
     forces = {
         pair: np.where(guilty[pair], window.cut(run.signals.contact_forces[pair]), 0.0)
         for pair in pairs
@@ -131,12 +137,15 @@ def _distance(window: Window, check: Collision, pairs: list[Pair]) -> tuple[Floa
     excused = {frozenset("robot" if name in links else name for name in pair) for pair in pairs}
     best: FloatArray | None = None
     lowest, name = np.inf, ""
-    for (a, b), values in sorted(run.signals.clearances.items()):
+    if "clearances" in run.unrecorded:
+        return None, ""
+    distances = run.signals.clearances
+    for a, b in sorted(distances):
         sets = [links if word == "robot" else frozenset({word}) for word in (a, b)]
         meant = any(x <= first and y <= second for x, y in (sets, sets[::-1]))
-        cut = window.cut(values)
         if not meant or not {a, b} <= real or frozenset((a, b)) in excused:
             continue
+        cut = window.cut(distances[a, b])
         if np.isnan(cut).all():
             continue
         if float(np.nanmin(cut)) < lowest:

@@ -40,9 +40,10 @@ def finger_links(gripper: GripperRecord) -> frozenset[str]:
 def force_between(run: Run, firsts: Collection[str], seconds: Collection[str]) -> FloatArray:
     """Sum of the normal forces between two sets of bodies at each sample [N], shape (N,)."""
     total = np.zeros(len(run.signals.times))
-    for (a, b), force in sorted(run.signals.contact_forces.items()):
+    forces = run.signals.contact_forces
+    for a, b in sorted(forces):
         if (a in firsts and b in seconds) or (b in firsts and a in seconds):
-            total = total + force
+            total = total + forces[a, b]
     return total
 
 
@@ -51,10 +52,24 @@ def debounced(run: Run, force: FloatArray) -> FloatArray:
     return trailing_max(force, run.signals.times, DEBOUNCE)
 
 
-def bodies_touching(run: Run, name: str) -> dict[str, FloatArray]:
-    """Debounced force of every body that ever touched an object, sorted by name [N]."""
+def bodies_touching(
+    run: Run,
+    name: str,
+    *,
+    among: Collection[str] | None = None,
+    but: Collection[str] = (),
+) -> dict[str, FloatArray]:
+    """Debounced force of every body that ever touched an object, sorted by name [N].
+
+    Args:
+        run: What happened.
+        name: The object.
+        among: Only these bodies; default any.
+        but: Not these bodies.
+    """
+    touching = {b if a == name else a for a, b in run.signals.contact_forces if name in (a, b)}
     others = sorted(
-        {b if a == name else a for a, b in run.signals.contact_forces if name in (a, b)}
+        body for body in touching if (among is None or body in among) and body not in but
     )
     return {other: debounced(run, force_between(run, {name}, {other})) for other in others}
 

@@ -109,9 +109,8 @@ def robot_contact(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
     """Debounced force of all links on an object [N], and 1 where it is attached, (N,) each."""
     links = set(run.robot.link_names)
     force = np.zeros(len(run.signals.times))
-    for body, touching in bodies_touching(run, name).items():
-        if body in links:
-            force = force + touching
+    for touching in bodies_touching(run, name, among=links).values():
+        force = force + touching
     return force, attached(run, name).astype(float)
 
 

@@ -24,6 +24,7 @@ from harness.assertions import (
 )
 from harness.assertions.formula import formula_verdict
 from harness.assertions.placed import PlacedExpectation
+from harness.assertions.recorded import guarded
 from harness.assertions.registry import signal
 from harness.assertions.until import until_verdict
 from harness.assertions.window import NotObservable, NotReached, window_of
@@ -43,7 +44,8 @@ EXECUTED: frozenset[type] = frozenset(signal) | frozenset((*TEMPORAL, Formula))
 
 def judge(run: Run, expectations: Sequence[PlacedExpectation]) -> tuple[Verdict, ...]:
     """A verdict for each expectation, in their order."""
-    return tuple(_judge(run, expectation) for expectation in expectations)
+    readable = guarded(run)
+    return tuple(_judge(readable, expectation) for expectation in expectations)
 
 
 def _judge(run: Run, placed: PlacedExpectation) -> Verdict:

@@ -32,15 +32,15 @@ def lifted(check: Lifted, window: Window) -> MarginSignal:
     fingers = finger_links(gripper_of(run))
     rise = object_poses(run, name)[:, 2] - start_poses(run, name)[:, 2]
     sides = side_forces(run, name)
-    others = {
-        body: force for body, force in bodies_touching(run, name).items() if body not in fingers
-    }
+    others = bodies_touching(run, name, but=fingers)
     touched = np.zeros(len(rise), dtype=bool)
+    unknown = ~present(run, name)
     for force in others.values():
         touched |= force > TOUCH_FORCE
+        unknown |= np.isnan(force)
     alone_in_hand = held_by_fingers(run, name) & ~touched
     counted = np.where(alone_in_hand, rise, np.minimum(rise, 0.0))
-    values = np.where(present(run, name), counted - check.above, np.nan)
+    values = np.where(unknown, np.nan, counted - check.above)
 
     def evidence(index: int) -> Evidence:
         sample, time = window.start + index, window.time(index)

@@ -40,7 +40,7 @@ def within_limits(check: WithinLimits, window: Window) -> MarginSignal:
             parts += _rate_part(window, column, joint, "velocity")
         if check.effort:
             parts += _rate_part(window, column, joint, "effort")
-        if check.acceleration and joint.name not in hand:
+        if check.acceleration and joint.name not in hand and not joint.is_mimic:
             parts += _rate_part(window, column, joint, "acceleration")
     if not parts:
         raise NotObservable("no limits of these kinds are known")
@@ -84,8 +84,6 @@ def _rate_part(window: Window, column: int, joint: JointRecord, kind: str) -> li
     if not math.isfinite(limit):
         return []
     size = np.abs(window.cut(values)[:, column])
-    if kind == "acceleration" and np.isnan(size).any():
-        size = np.nan_to_num(size, nan=0.0)  # no command, no commanded acceleration
     return [Part(kind, size, limit * (1 + ROUNDING), "<=", unit, limit, detail=joint.name)]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.assertions.temporal import TIME_RESOLUTION
 from harness.assertions.window import NotObservable, object_record
 from harness.core.geometry import Capsule, Cylinder, Sphere
 from harness.core.pose_arrays import IDENTITY
@@ -55,13 +56,15 @@ def frame_poses(run: Run, frame: str) -> FloatArray:
 
 
 def present(run: Run, name: str) -> BoolArray:
-    """Samples at which an object is in the scene, shape (N,)."""
-    if name in run.signals.object_poses:
-        return ~np.isnan(run.signals.object_poses[name][:, 0])
+    """Samples at which an object is in the scene, shape (N,).
+
+    The record of its coming and going says so, not whether its pose is known: an object that is
+    there and whose pose is missing is not absent.
+    """
     times = run.signals.times
     mask = np.zeros(len(times), dtype=bool)
     for begin, end in object_record(run, name).present:
-        mask |= (times >= begin) & (times <= end)
+        mask |= (times >= begin - TIME_RESOLUTION) & (times <= end + TIME_RESOLUTION)
     return mask
 
 

@@ -61,6 +61,5 @@ def supports(run: Run, name: str) -> dict[str, FloatArray]:
     links = set(run.robot.link_names)
     return {
         body: np.where(is_below(run, body, name), force, 0.0)
-        for body, force in bodies_touching(run, name).items()
-        if body not in links
+        for body, force in bodies_touching(run, name, but=links).items()
     }

@@ -49,9 +49,15 @@ def path_length(check: PathLength, window: Window) -> MarginSignal:
     """Distance travelled by the TCP since the window's start [m]."""
     moves = np.diff(window.cut(window.run.signals.tcp_pose)[:, :3], axis=0)
     travelled = np.concatenate([[0.0], np.cumsum(np.linalg.norm(moves, axis=1))])
-    part = Part("path length", travelled, check.at_most, "<=", "m")
+    parts: list[Part] = []
+    if check.at_most is not None:
+        parts.append(Part("path length", travelled, check.at_most, "<=", "m"))
+    if check.at_least is not None:
+        parts.append(Part("path length", travelled, check.at_least, ">=", "m"))
 
     def text(_: int, measure: Measure) -> str:
-        return f"the TCP travelled {amount(measure.value, 'm')} of {amount(check.at_most, 'm')}"
+        bound = "at most" if measure.comparison == "<=" else "at least"
+        limit = amount(measure.limit, "m")
+        return f"the TCP travelled {amount(measure.value, 'm')}, {bound} {limit} asked for"
 
-    return all_of(window, [part], text)
+    return all_of(window, parts, text)

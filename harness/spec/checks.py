@@ -364,12 +364,19 @@ class DurationCheck(CheckFields):
 
 
 class PathLength(CheckFields):
-    """The TCP travels at most so far."""
+    """The TCP travels at most (at least) so far."""
 
     short = "at_most"
 
     check: Literal["path_length"] = "path_length"
-    at_most: PositiveLength = Field(description="[m]")
+    at_most: PositiveLength | None = Field(default=None, description="Largest length [m].")
+    at_least: PositiveLength | None = Field(default=None, description="Smallest length [m].")
+
+    @model_validator(mode="after")
+    def _one(self) -> PathLength:
+        if self.at_most is None and self.at_least is None:
+            raise ValueError("`at_most`, `at_least`, or both")
+        return self
 
 
 class FractionCheck(CheckFields):

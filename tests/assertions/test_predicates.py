@@ -59,7 +59,8 @@ ABSENT = np.full((200, 7), np.nan)
 
 
 def absent_box(n=200):
-    return make_run(n, object_poses={"box": ABSENT[:n]})
+    never_there = replace(BOX, present=())
+    return make_run(n, objects=(TABLE, never_there), object_poses={"box": ABSENT[:n]})
 
 
 # lifted

@@ -1,0 +1,38 @@
+"""A run whose signals refuse to be read where nobody recorded them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, cast
+
+from harness.assertions.window import NotObservable
+from harness.recording.run import Run, Signals
+
+WORDS = {
+    "joint_velocities": "the velocities of the joints",
+    "joint_efforts": "the efforts of the joints",
+    "joint_commands": "the commanded positions of the joints",
+    "joint_command_velocities": "the commanded velocities of the joints",
+    "contact_forces": "contacts",
+    "clearances": "distances",
+}
+
+
+class _Guarded:
+    """Signals; reading one that is missing raises NotObservable."""
+
+    def __init__(self, signals: Signals, missing: tuple[str, ...]) -> None:
+        self._signals = signals
+        self._missing = missing
+
+    def __getattr__(self, name: str) -> Any:
+        if name in self._missing:
+            raise NotObservable(f"{WORDS.get(name, name)} were not recorded")
+        return getattr(self._signals, name)
+
+
+def guarded(run: Run) -> Run:
+    """The same run; a signal that it does not have cannot be read as if nothing had happened."""
+    if not run.unrecorded:
+        return run
+    return replace(run, signals=cast("Signals", _Guarded(run.signals, run.unrecorded)))
