@@ -40,13 +40,13 @@ def touching_pairs(urdf: Urdf, positions: Mapping[str, float]) -> tuple[tuple[st
     ]
     found: dict[tuple[str, str], None] = {}
     for later, (second, shape, solid) in enumerate(solids):
-        T_second = _transform(poses[second] @ shape.pose)
+        T_second = coal_transform(poses[second] @ shape.pose)
         for first, other_shape, other in solids[:later]:
             pair = link_pair(first, second)
             pieces = carrier[first], carrier[second]
             if pieces[0] == pieces[1] or set(pieces) in joined or pair in found:
                 continue
-            T_first = _transform(poses[first] @ other_shape.pose)
+            T_first = coal_transform(poses[first] @ other_shape.pose)
             result = coal.CollisionResult()
             coal.collide(other, T_first, solid, T_second, request, result)
             if result.isCollision():
@@ -78,7 +78,8 @@ def _turn(axis: np.ndarray, angle: float) -> np.ndarray:
     return np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * (K @ K)
 
 
-def _transform(pose: SE3) -> Any:
+def coal_transform(pose: SE3) -> Any:
+    """A pose as Coal's."""
     import coal
 
     return coal.Transform3s(np.asarray(pose.rotation), np.asarray(pose.translation))

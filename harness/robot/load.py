@@ -16,6 +16,7 @@ from harness.robot.acceleration import with_possible_accelerations
 from harness.robot.compose import Part, compose
 from harness.robot.description import Joint, RobotDescription
 from harness.robot.import_robot import read_robot
+from harness.robot.imported_part import names_own_gripper
 from harness.robot.options import with_options
 from harness.robot.packages import PackagePath
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml
@@ -69,7 +70,9 @@ def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
     if spec.base.frame != "world":
         raise RobotError(f"robot.base stands in the frame 'world', not in '{spec.base.frame}'")
     main = _main(spec, base_dir)
-    tool = None if spec.gripper is None else _part(spec.gripper, "gripper", {}, base_dir)
+    tool = None
+    if spec.gripper is not None and not (main and _is_own(main, spec.gripper)):
+        tool = _part(spec.gripper, "gripper", {}, base_dir)
     if tool is not None and tool.facts.kind != "gripper":
         raise RobotError(f"robot.gripper: '{spec.gripper}' is an arm; {_known(gripper_names())}")
     if main is not None and main.facts.kind == "gripper":
@@ -90,6 +93,11 @@ def _main(spec: RobotSpec, base_dir: Path) -> Part | None:
         if getattr(spec, key):
             raise RobotError(f"robot.{key} goes with a robot's file: `urdf`, `xacro` or `mjcf`")
     return None if spec.model is None else _part(spec.model, "model", spec.args, base_dir)
+
+
+def _is_own(main: Part, gripper: str) -> bool:
+    """Whether a name is that of an imported arm's own gripper."""
+    return main.facts.gripper is not None and names_own_gripper(gripper, main.srdf)
 
 
 def _part(name: str, key: str, args: Mapping[str, Any], base_dir: Path) -> Part:

@@ -82,7 +82,8 @@ class RobotSpec(SpecModel):
         default=None, description="Where `gripper` is mounted; default: the arm group's tip."
     )
     gripper: str | None = Field(
-        default=None, description="A gripper's name, mounted on the arm's flange."
+        default=None,
+        description="A gripper mounted on the arm's flange; or the SRDF group of the arm's own.",
     )
     base: Pose = Field(default=Pose(), description="Where the base stands in the world.")
     kinematics: str | None = Field(

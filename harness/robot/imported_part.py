@@ -1,0 +1,196 @@
+"""What the robot.yaml of an imported robot would say, from its URDF and SRDF."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from harness.core.errors import RobotError
+from harness.robot.compose import Part
+from harness.robot.default_pairs import touching_pairs
+from harness.robot.description import Joint, Link, PlanningGroup
+from harness.robot.groups import planning_groups
+from harness.robot.own_gripper import NoGripperError, recognise
+from harness.robot.own_tcp import with_own_gripper
+from harness.robot.robot_yaml import RobotYaml
+from harness.robot.srdf import Srdf
+from harness.robot.urdf import Urdf
+from harness.spec.scenario import RobotSpec, StartState
+
+ACCELERATION = {"prismatic": 1.0}
+"""Acceleration limits that no URDF says [m/s^2]."""
+
+TURNING_ACCELERATION = 5.0
+"""The same for turning joints [rad/s^2]: what MoveIt's Setup Assistant leads people to write."""
+
+VELOCITY = {"prismatic": 0.2}
+"""Velocity limits where the file gives none [m/s]."""
+
+TURNING_VELOCITY = 1.5
+"""The same for turning joints [rad/s]."""
+
+START_STATES = ("home", "ready", "start", "default", "init", "rest")
+"""Names of group states that an imported arm stands in at the start, the first that is there."""
+
+
+def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: str) -> Part:
+    """The robot as a folder with a robot.yaml would describe it.
+
+    Args:
+        spec: The scenario's `robot:`.
+        urdf: The robot.
+        srdf: Checked against it.
+        path: Of the robot's file.
+        source: What messages call the SRDF.
+
+    Raises:
+        RobotError: There is no arm, or an option names what the robot has not.
+    """
+    notes = [*urdf.notes, *srdf.notes]
+    urdf = replace(urdf, joints=tuple(_limited(joint, notes) for joint in urdf.joints))
+    groups = planning_groups(srdf, urdf.joints, source)
+    arm = _arm_group(spec, srdf, groups, source)
+    for key in ("tcp_link", "flange_link"):
+        _refuse_unknown_link(getattr(spec, key), key, urdf.links)
+    last = next(j.child for j in urdf.joints[::-1] if j.name == arm.joint_names[-1])
+    tip = arm.tip_link or last
+    start = _start(urdf.joints, srdf, arm)
+    if not srdf.disabled:
+        pairs = touching_pairs(urdf, start)
+        srdf = replace(srdf, disabled=dict.fromkeys(pairs, "Default"))
+        if pairs:
+            notes.append(
+                f"no allowed pairs are given; those that touch at the start are: {_listed(pairs)}"
+            )
+    tcp_link, gripper = spec.tcp_link or tip, None
+    hand = _hand(spec, srdf, groups, arm)
+    if hand is not None:
+        try:
+            own = recognise(urdf, srdf, hand)
+            urdf, srdf, tcp_link = with_own_gripper(own, urdf, srdf, arm, tip, spec.tcp_link)
+            gripper = own.facts
+            notes += own.notes
+        except NoGripperError as error:
+            if spec.gripper is not None:
+                raise RobotError(
+                    f"robot.gripper: '{spec.gripper}' is no gripper: {error}"
+                ) from error
+            notes.append(f"'{hand.name}' is not used as a gripper: {error}")
+    facts = RobotYaml(
+        robot=path.stem[:100],
+        kind="arm",
+        urdf=path.name,
+        srdf=source,
+        arm_group=arm.name,
+        tcp_link=tcp_link,
+        flange_link=spec.flange_link or tip,
+        ik_solver="auto",
+        max_acceleration=TURNING_ACCELERATION,
+        effort_source="",
+        start_state=StartState(joints=start),
+        gripper=gripper,
+    )
+    return Part(path.stem, facts, urdf, srdf, source, tuple(notes))
+
+
+def names_own_gripper(name: str | None, srdf: Srdf) -> bool:
+    """Whether a scenario's `gripper` is a group or an end effector of the robot's own."""
+    return name in {group.name for group in srdf.groups} | {t.name for t in srdf.end_effectors}
+
+
+def _hand(
+    spec: RobotSpec, srdf: Srdf, groups: Mapping[str, PlanningGroup], arm: PlanningGroup
+) -> PlanningGroup | None:
+    """The group of the hand: named, or that of the arm's end effector."""
+    if spec.gripper is not None:
+        if not names_own_gripper(spec.gripper, srdf):
+            return None
+        tools = {tool.name: tool.group for tool in srdf.end_effectors}
+        hand = groups[tools.get(spec.gripper, spec.gripper)]
+        own = tuple(name for name in hand.joint_names if name not in arm.joint_names)
+        return replace(hand, joint_names=own)
+    for tool in srdf.end_effectors:
+        hand = groups.get(tool.group)
+        is_arms = tool.parent_group in ("", arm.name)
+        if hand is not None and is_arms and not set(hand.joint_names) & set(arm.joint_names):
+            return hand if hand.joint_names else None
+    return None
+
+
+def _listed(pairs: Sequence[tuple[str, str]]) -> str:
+    return ", ".join(f"{first} - {second}" for first, second in pairs)
+
+
+def _limited(joint: Joint, notes: list[str]) -> Joint:
+    """A joint with the limits that its file does not give."""
+    if not joint.is_movable:
+        return joint
+    joint = replace(
+        joint,
+        acceleration=ACCELERATION.get(joint.kind, TURNING_ACCELERATION),
+        effort_source="the URDF" if np.isfinite(joint.effort) else "",
+    )
+    if not np.isfinite(joint.velocity) and joint.mimic is None:
+        velocity = VELOCITY.get(joint.kind, TURNING_VELOCITY)
+        unit = "m/s" if joint.kind == "prismatic" else "rad/s"
+        notes.append(f"joint '{joint.name}' has no velocity limit: {velocity} {unit} is assumed")
+        joint = replace(joint, velocity=velocity)
+    return joint
+
+
+def _arm_group(
+    spec: RobotSpec, srdf: Srdf, groups: Mapping[str, PlanningGroup], source: str
+) -> PlanningGroup:
+    """The group that motion steps speak of by default."""
+    movable = {name: group for name, group in groups.items() if group.joint_names}
+    if spec.group is not None:
+        if spec.group not in movable:
+            near = difflib.get_close_matches(spec.group, list(movable), 1)
+            hint = f"did you mean '{near[0]}'? " if near else ""
+            raise RobotError(
+                f"robot.group: there is no group '{spec.group}' with joints that move; {hint}"
+                f"known are {', '.join(movable) or 'none'}"
+            )
+        return movable[spec.group]
+    parents = [tool.parent_group for tool in srdf.end_effectors if tool.parent_group in movable]
+    if parents:
+        return movable[parents[0]]
+    written = {group.name: group for group in srdf.groups}
+    chains = [group for group in movable.values() if group.tip_link]
+    single = [group for group in chains if not written[group.name].subgroups]
+    candidates = single or chains or list(movable.values())
+    if not candidates:
+        raise RobotError(f"{source}: no group has a joint that moves: there is no arm to plan for")
+    return max(candidates, key=lambda group: len(group.joint_names))
+
+
+def _refuse_unknown_link(name: str | None, key: str, links: Sequence[Link]) -> None:
+    names = [link.name for link in links]
+    if name is not None and name not in names:
+        near = difflib.get_close_matches(name, names, 1)
+        hint = f"did you mean '{near[0]}'? " if near else ""
+        raise RobotError(
+            f"robot.{key}: the robot has no link '{name}'; {hint}links: {', '.join(names)}"
+        )
+
+
+def _start(joints: Sequence[Joint], srdf: Srdf, arm: PlanningGroup) -> dict[str, float]:
+    """Positions of all driven joints: a state of the arm's, else zero, inside the limits."""
+    movable = [joint for joint in joints if joint.is_movable and joint.mimic is None]
+    positions = {joint.name: float(np.clip(0.0, joint.lower, joint.upper)) for joint in movable}
+    states = {
+        state.name.lower(): state
+        for state in srdf.states
+        if state.group == arm.name or set(arm.joint_names) <= set(state.positions)
+    }
+    name = next((name for name in START_STATES if name in states), None)
+    chosen = states[name] if name else next(iter(states.values()), None)
+    for joint in movable:
+        if chosen is not None and joint.name in chosen.positions:
+            value = chosen.positions[joint.name]
+            positions[joint.name] = float(np.clip(value, joint.lower, joint.upper))
+    return positions

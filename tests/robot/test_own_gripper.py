@@ -1,0 +1,121 @@
+"""The gripper that an imported arm brings: recognised from its SRDF, or named."""
+
+import numpy as np
+import pytest
+
+from harness.core.errors import RobotError
+from tests.engine.front_door import run
+from tests.robot.arm_files import INERTIAL, SRDF, URDF, load_arm, write_arm
+
+PALM = f"""  <link name="palm">{INERTIAL}</link>
+  <joint name="palm_joint" type="fixed"><parent link="tool"/><child link="palm"/></joint>
+"""
+FINGER = """  <link name="{name}"><inertial><mass value="0.05"/>
+    <inertia ixx="1e-5" iyy="1e-5" izz="1e-5"/></inertial>
+    <collision><origin xyz="0 {y} 0.05"/><geometry><box size="0.02 0.01 0.06"/></geometry>
+    </collision></link>
+  <joint name="{name}_joint" type="prismatic"><parent link="palm"/><child link="{name}"/>
+    <axis xyz="0 {side} 0"/><limit lower="0" upper="0.03" velocity="0.1" effort="40"/>{mimic}
+  </joint>
+"""
+LEFT = FINGER.format(name="left", y=0.01, side=1, mimic="")
+RIGHT = FINGER.format(name="right", y=-0.01, side=-1, mimic='<mimic joint="left_joint"/>')
+HAND = PALM + LEFT + RIGHT
+GROUP = """  <group name="hand"><joint name="left_joint"/></group>
+  <end_effector name="grip" parent_link="tool" group="hand" parent_group="manipulator"/>
+"""
+
+
+def write(folder, hand=HAND, group=GROUP):
+    end = "</robot>"
+    write_arm(folder, URDF.replace(end, hand + end), SRDF.replace(end, group + end))
+
+
+def test_the_end_effector_of_the_srdf_is_the_gripper(tmp_path):
+    write(tmp_path)
+    arm = load_arm(tmp_path)
+    gripper = arm.gripper
+    assert (gripper.group, gripper.joint, gripper.palm_link) == ("hand", "left_joint", "palm")
+    assert list(gripper.pads.values()) == ["left", "right"]
+    assert (gripper.open_position, gripper.closed_position) == (0.03, 0.0)
+    # Inner faces stand 5 mm off the middle, and each finger moves with the joint.
+    assert gripper.widths[:, 1] == pytest.approx(0.01 + 2 * gripper.widths[:, 0], abs=1e-6)
+    assert gripper.grip_effort == pytest.approx(40, rel=1e-3), "20 N on each of two pads"
+    assert arm.allowed_collisions["left", "right"] == "Gripper"
+
+
+def test_the_tcp_is_halfway_between_the_pads(tmp_path):
+    write(tmp_path)
+    arm = load_arm(tmp_path)
+    assert arm.tcp_link == "hand_tcp"
+    assert arm.groups["manipulator"].tip_link == "hand_tcp"
+    assert arm.joint_by_name["hand_tcp_joint"].pose.translation == pytest.approx([0, 0, 0.05])
+
+
+def test_a_frame_between_the_fingers_is_the_tcp_where_there_is_one(tmp_path):
+    frame = """<link name="grasp_point"/><joint name="g" type="fixed"><parent link="palm"/>
+    <child link="grasp_point"/><origin xyz="0 0 0.06"/></joint>"""
+    write(tmp_path, HAND + frame)
+    assert load_arm(tmp_path).tcp_link == "grasp_point"
+    assert load_arm(tmp_path, tcp_link="tool").tcp_link == "tool"
+
+
+def test_two_alike_fingers_without_a_mimic_are_coupled(tmp_path):
+    both = '<group name="hand"><joint name="left_joint"/><joint name="right_joint"/></group>'
+    group = GROUP.replace('<group name="hand"><joint name="left_joint"/></group>', both)
+    write(tmp_path, HAND.replace('<mimic joint="left_joint"/>', ""), group)
+    arm = load_arm(tmp_path)
+    assert arm.joint_by_name["right_joint"].mimic.joint == "left_joint"
+    assert "gripper 'hand': right_joint is made to follow left_joint" in arm.notes
+
+
+def test_a_named_group_is_the_gripper_without_an_end_effector(tmp_path):
+    group = GROUP.splitlines()[0]
+    write(tmp_path, group=group)
+    assert load_arm(tmp_path).gripper is None
+    assert load_arm(tmp_path, gripper="hand").gripper.joint == "left_joint"
+
+
+@pytest.mark.parametrize(
+    ("hand", "words"),
+    [
+        (PALM + LEFT, "do not move towards each other"),
+        (HAND.replace('axis xyz="0 -1 0"', 'axis xyz="0 1 0"'), "do not move towards each other"),
+        (HAND.replace("<collision>", "<visual>").replace("</collision>", "</visual>"), "no coll"),
+    ],
+)
+def test_a_hand_that_does_not_grasp_is_told(tmp_path, hand, words):
+    write(tmp_path, hand)
+    assert any(words in note for note in load_arm(tmp_path).notes)
+    with pytest.raises(RobotError, match="'hand' is no gripper"):
+        load_arm(tmp_path, gripper="hand")
+
+
+def test_an_imported_arm_with_its_own_gripper_holds_what_it_grasps(tmp_path):
+    write(tmp_path)
+    robot = "{urdf: arm.urdf, srdf: arm.srdf, base: {xyz: [0, 0, 1], rpy: [180 deg, 0, 0]}}"
+    rest = """
+        objects:
+          - name: block
+            pose: {xyz: [0, 0, 0.13]}
+            box: {size: [0.03, 0.03, 0.06]}
+            mass: 0.05
+          - {name: stand, static: true, pose: {xyz: [0, 0, 0.05]}, box: {size: [0.1, 0.1, 0.1]}}
+        expect:
+          - grasped: {object: block, during: lift}
+          - always: within_limits
+    """
+    steps = """
+        - gripper: open
+        - move_to: {joints: {turn: 0, bend: 0, reach: 0.11}}
+        - grasp: {object: block}
+        - {move_to: {joints: {reach: 0.02}}, id: lift}
+    """
+    group = GROUP + (
+        '<group_state name="open" group="hand"><joint name="left_joint" value="0.03"/>'
+        "</group_state>"
+    )
+    write(tmp_path, group=group)
+    result, saved = run(tmp_path, steps, robot=robot, rest=rest)
+    assert result.outcome == "passed", [step.message for step in result.steps]
+    assert np.ptp(saved.signals.joint_positions[-1][-2:]) < 1e-3, "the fingers stay coupled"
