@@ -14,6 +14,7 @@ from harness import __version__
 
 EPILOG = """exit codes: 0 passed, 1 failed, 2 invalid file or wrong usage, 3 error, 130 Ctrl-C"""
 BROKEN_PIPE_EXIT_CODE = 141  # as a shell shows SIGPIPE
+IMPORTS = ("sdf", "scene")
 LISTS = ("robots", "worlds", "scenarios", "steps", "expectations", "planners")
 
 
@@ -75,6 +76,7 @@ def _parser() -> argparse.ArgumentParser:
     _judge_options(command("judge", "judge a saved run again"))
     _compare_options(command("compare", "tell what changed from one saved run to another"))
     _new_options(command("new", "write a commented scenario that passes"))
+    _import_options(command("import", "write files of other programs as ours", module="importing"))
     _schema_options(command("schema", "print the JSON Schema of scenario files"))
     return parser
 
@@ -143,6 +145,16 @@ def _compare_options(compare: argparse.ArgumentParser) -> None:
 
 def _new_options(new: argparse.ArgumentParser) -> None:
     new.add_argument("file", metavar="FILE", help="for example first.scenario.yaml")
+
+
+def _import_options(importing: argparse.ArgumentParser) -> None:
+    importing.add_argument("kind", choices=IMPORTS, help="what FILE is")
+    importing.add_argument("file", metavar="FILE", help="an SDF world or a MoveIt scene")
+    importing.add_argument("-o", "--output", metavar="FILE",
+                           help="what to write (default: FILE's name with .yaml)")  # fmt: skip
+    importing.add_argument("--model-path", metavar="DIR", action="append", default=[],
+                           help="look models up here before GZ_SIM_RESOURCE_PATH")  # fmt: skip
+    importing.add_argument("--force", action="store_true", help="overwrite what is there")
 
 
 def _schema_options(schema: argparse.ArgumentParser) -> None:

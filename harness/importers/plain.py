@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from harness.core.spatial import SE3
+from harness.core.spatial import SE3, rotation_from_quat_wxyz, rotation_from_rpy
+from harness.core.types import FloatArray
 from harness.spec.poses import Pose
 
 DECIMALS = 12
@@ -28,3 +31,11 @@ def pose_spec(pose: SE3) -> Pose:
         return Pose(xyz=(x, y, z))
     a, b, c, d = (rounded(value) for value in pose.quat_wxyz)
     return Pose(xyz=(x, y, z), quat_wxyz=(a, b, c, d))
+
+
+def facing(normal: FloatArray) -> FloatArray:
+    """The shortest turn from z to a unit vector, shape (3, 3)."""
+    x, y, z = normal
+    if z < -1 + 1e-12:
+        return rotation_from_rpy((math.pi, 0.0, 0.0))
+    return rotation_from_quat_wxyz((1 + z, -y, x, 0.0))

@@ -46,10 +46,44 @@ anyway (`static` false, gravity on); *refused* ones are errors. Any other elemen
 not known."""
 
 
+COMMAND = """## As files of ours
+
+`harness import sdf FILE` and `harness import scene FILE` write what they read as a
+[world file](../scenarios/SCENARIO.md#world-file) with the same meaning, to be changed by hand:
+`-o` says where, `--model-path` where models are looked up, and nothing is overwritten without
+`--force`. What is not taken over stands at the top as a comment."""
+
+SCENES = """## MoveIt scenes
+
+`.scene` files have no masses and nothing that moves, so they are imported and not run as they
+are. Both forms are read: since MoveIt 1.1 objects have poses, before only their shapes had.
+
+| in | here | |
+| --- | --- | --- |
+| name of the scene | read | the world's title |
+| `*` and a name | read | a static object, known to planner and physics |
+| pose: position, quaternion xyzw | read | in MoveIt's planning frame, taken as the world |
+| `box`, `sphere`, `cylinder` | read | full size; radius; radius and length |
+| `mesh` | read | its triangles, written as an STL file beside the world |
+| `plane` | read | solid behind its normal, where MoveIt's is thin; told |
+| colour | read | four zeros say none |
+| subframes | ignored | told |
+| object without shapes | ignored | told |
+| `cone`, octrees | refused | |"""
+
+
 def formats_page() -> str:
     """The page as Markdown."""
     variables = ", ".join(f"`{name}`" for name in VARIABLES)
-    parts = [HEAD, MODELS.format(variables=variables), BECOMES, WORDS_HEAD, sdf_table()]
+    parts = [
+        HEAD,
+        MODELS.format(variables=variables),
+        BECOMES,
+        WORDS_HEAD,
+        sdf_table(),
+        SCENES,
+        COMMAND,
+    ]
     return "\n\n".join(parts) + "\n"
 
 

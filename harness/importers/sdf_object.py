@@ -114,12 +114,18 @@ def _looks(shapes: list[ShapeSpec], visuals: list[ShapeSpec]) -> dict[str, Any]:
         (words["color"],) = colors
         shapes = [shape.model_copy(update={"color": None}) for shape in shapes]
         visuals = [shape.model_copy(update={"color": None}) for shape in visuals]
+    shapes, visuals = _unnamed(shapes), _unnamed(visuals)
     words["visuals"] = tuple(visuals)
     if len(shapes) == 1 and shapes[0].pose == Pose() and shapes[0].color is None:
         words |= {kind: getattr(shapes[0], kind) for kind in GEOMETRIES}
     else:
         words["shapes"] = tuple(shapes)
     return words
+
+
+def _unnamed(shapes: list[ShapeSpec]) -> list[ShapeSpec]:
+    """The shapes; one alone needs no name."""
+    return [shapes[0].model_copy(update={"name": None})] if len(shapes) == 1 else shapes
 
 
 def _colored(shapes: list[ShapeSpec], visuals: list[ShapeSpec]) -> list[ShapeSpec] | None:

@@ -10,13 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from harness.core.geometry import Rgba
+from harness.core.errors import RobotError
+from harness.core.geometry import Mesh, Rgba
 from harness.core.spatial import SE3
 from harness.importers.model_path import ModelPath
 from harness.importers.notes import Notes
-from harness.importers.plain import pose_spec, rounded
+from harness.importers.plain import facing, pose_spec, rounded
 from harness.importers.sdf_values import number, numbers_of, positive, text_of
 from harness.importers.sdf_words import WORDS, note_what_is_left
+from harness.robot.mesh_file import convex_hull
 from harness.spec.world import FrictionSpec, MeshSpec, ShapeSpec
 from harness.spec.xml_file import XmlElement
 
@@ -64,7 +66,10 @@ class ShapeReader:
         if WORDS["geometry"][geometry.tag].treatment == "refused":
             hint = "give the collision a box, cylinder, sphere, capsule, plane or mesh"
             geometry.refuse(f"a collision cannot be a <{geometry.tag}> here", hint)
-        return self._shape(element, geometry, folder, pose, friction=self._friction(element))
+        shape = self._shape(element, geometry, folder, pose, friction=self._friction(element))
+        if shape.mesh is not None:
+            _refuse_untouchable(shape.mesh, geometry)
+        return shape
 
     def visual(self, element: XmlElement, folder: Path, pose: SE3) -> ShapeSpec | None:
         """A shape that is seen; None where it is empty or cannot be drawn."""
@@ -128,7 +133,8 @@ class ShapeReader:
         values = (1.0, 1.0, 1.0) if scale is None else numbers_of(scale, 3)
         if 0 in values:
             element.refuse("a mesh with the scale 0 has no size")
-        return MeshSpec(file=str(path.absolute()), scale=(values[0], values[1], values[2]))
+        x, y, z = values
+        return MeshSpec(file=str(path.absolute()), scale=x if x == y == z else (x, y, z))
 
     def _friction(self, collision: XmlElement) -> FrictionSpec | None:
         """The friction of a collision; None where nothing is said."""
@@ -190,6 +196,14 @@ class ShapeReader:
         return color
 
 
+def _refuse_untouchable(spec: MeshSpec, element: XmlElement) -> None:
+    x, y, z = spec.scale if isinstance(spec.scale, tuple) else (spec.scale,) * 3
+    try:
+        convex_hull(Mesh(Path(spec.file), (x, y, z)))
+    except RobotError as error:
+        (element.find("uri") or element).refuse(str(error))
+
+
 def _not_negative(parent: XmlElement, tag: str, default: float) -> float:
     value = number(parent, tag, default)
     if value < 0:
@@ -204,9 +218,4 @@ def _facing(plane: XmlElement) -> SE3:
     length = float(np.linalg.norm(values))
     if normal is not None and length < 1e-9:
         normal.refuse("a normal has some length; this one is 0 0 0")
-    x, y, z = values / length
-    if z < -1 + 1e-12:
-        return SE3.from_xyz_rpy(rpy=(math.pi, 0.0, 0.0))
-    # the shortest turn from z to the normal
-    quat = np.array([1 + z, -y, x, 0.0])
-    return SE3.from_xyz_quat((0.0, 0.0, 0.0), quat / np.linalg.norm(quat))
+    return SE3(facing(values / length), np.zeros(3))

@@ -26,8 +26,16 @@ DEEPEST = 50
 LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
-def read_text(path: Path, shown: str | None = None) -> str:
+def read_text(
+    path: Path, shown: str | None = None, *, kind: str = "YAML file", largest: int = LARGEST_FILE
+) -> str:
     """The text of a file.
+
+    Args:
+        path: The file.
+        shown: What messages call it; its path by default.
+        kind: What it should be, for messages.
+        largest: Bytes that it may have.
 
     Raises:
         SpecError: Not there, not a regular file, too large, or not UTF-8.
@@ -36,10 +44,10 @@ def read_text(path: Path, shown: str | None = None) -> str:
     try:
         mode = path.stat()
         if not stat.S_ISREG(mode.st_mode):
-            kind = "a folder" if stat.S_ISDIR(mode.st_mode) else "not a regular file"
-            raise SpecError([Problem(name, 0, 0, f"this is {kind}; a YAML file is wanted")])
-        if mode.st_size > LARGEST_FILE:
-            size = f"{mode.st_size / 1e6:.1f} MB; at most {LARGEST_FILE / 1e6:.0f} MB are read"
+            found = "a folder" if stat.S_ISDIR(mode.st_mode) else "not a regular file"
+            raise SpecError([Problem(name, 0, 0, f"this is {found}; a {kind} is wanted")])
+        if mode.st_size > largest:
+            size = f"{mode.st_size / 1e6:.1f} MB; at most {largest / 1e6:.0f} MB are read"
             raise SpecError([Problem(name, 0, 0, f"the file has {size}")])
         data = path.read_bytes()
     except (OSError, ValueError) as error:

@@ -72,6 +72,57 @@ f 2 3 4
 """
 
 
+ASCII_STL = """solid part
+facet normal 0 0 -1
+outer loop
+vertex 0 0 0
+vertex 0 0.1 0
+vertex 0.1 0 0
+endloop
+endfacet
+facet normal 0 -1 0
+outer loop
+vertex 0 0 0
+vertex 0.1 0 0
+vertex 0 0 0.1
+endloop
+endfacet
+facet normal -1 0 0
+outer loop
+vertex 0 0 0
+vertex 0 0 0.1
+vertex 0 0.1 0
+endloop
+endfacet
+facet normal 1 1 1
+outer loop
+vertex 0.1 0 0
+vertex 0 0.1 0
+vertex 0 0 0.1
+endloop
+endfacet
+endsolid part
+"""
+
+COLLADA = """<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+ <asset><unit meter="0.1"/><up_axis>Z_UP</up_axis></asset>
+ <library_geometries><geometry id="g"><mesh>
+  <source id="p"><float_array id="pa" count="12">0 0 0 1 0 0 0 1 0 0 0 1</float_array>
+   <technique_common><accessor source="#pa" count="4" stride="3"><param name="X" type="float"/>
+    <param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common>
+  </source>
+  <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+  <triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/>
+   <p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles>
+ </mesh></geometry></library_geometries>
+ <library_visual_scenes><visual_scene id="s"><node><instance_geometry url="#g"/></node>
+  </visual_scene></library_visual_scenes>
+ <scene><instance_visual_scene url="#s"/></scene>
+</COLLADA>
+"""
+
+
 def write(folder, text, name="world.sdf"):
     """A world file with a model and a mesh beside it."""
     (folder / "crate").mkdir(exist_ok=True)

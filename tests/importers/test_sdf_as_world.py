@@ -7,10 +7,12 @@ import pytest
 
 from harness import session
 from harness.cli.main import main
+from harness.core.errors import SpecError
 from harness.recording.store import read_run
+from harness.robot.mesh_file import hull_points
 from harness.session.prepare import prepare
 from harness.spec.load import parse_scenario
-from tests.importers.sdf_files import CRATE, text_with, write
+from tests.importers.sdf_files import ASCII_STL, COLLADA, CRATE, load, text_with, write
 
 TABLE_AND_CYLINDER = """<?xml version="1.0"?>
 <sdf version="1.8">
@@ -119,3 +121,22 @@ def test_the_world_is_said_by_its_name_or_its_keys():
     text = "scenario: x\nrobot: ur3e\nworld: {name: a.sdf, model_path: [b]}\nsteps: [settle]\n"
     world = parse_scenario(text, folder / "x.scenario.yaml").scenario.world
     assert (world.name, world.model_path) == ("a.sdf", ("b",))
+
+
+@pytest.mark.parametrize(("name", "content"), [("part.stl", ASCII_STL), ("part.dae", COLLADA)])
+def test_meshes_of_every_kind_touch_as_the_same_solid(tmp_path, name, content):
+    (tmp_path / name).write_text(content)
+    write(tmp_path, text_with("mesh", f"<uri>{name}</uri>"))
+    path = tmp_path / "a.scenario.yaml"
+    path.write_text("scenario: x\nrobot: ur3e\nworld: world.sdf\nsteps: [wait: 0.1 s]\n")
+    mesh = prepare(path).program.world.objects[0].shapes[1].geometry
+    points = sorted(hull_points(mesh).round(6).tolist())
+    assert points == [[0, 0, 0], [0, 0, 0.1], [0, 0.1, 0], [0.1, 0, 0]]
+
+
+def test_a_mesh_that_cannot_be_touched_is_told_at_its_line_in_the_sdf_file(tmp_path):
+    text = text_with("mesh", "\n<uri>flat.obj</uri>")
+    (tmp_path / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    with pytest.raises(SpecError, match="is flat: it encloses nothing") as caught:
+        load(tmp_path, text)
+    assert text.splitlines()[caught.value.problems[0].line - 1].startswith("<uri>flat.obj")
