@@ -73,6 +73,7 @@ def _parser() -> argparse.ArgumentParser:
     _check_options(command("check", "validate scenarios and the reach of their goals"))
     _file_options(command("explain", "print the program that a scenario becomes"))
     _list_options(command("list", "list what a scenario may name", module="listing"))
+    _view_options(command("view", "open the page of a run"))
     _judge_options(command("judge", "judge a saved run again"))
     _compare_options(command("compare", "tell what changed from one saved run to another"))
     _new_options(command("new", "write a commented scenario that passes"))
@@ -109,6 +110,7 @@ def _run_options(run: argparse.ArgumentParser) -> None:
         "--report-dir", metavar="DIR", default="reports", help="where reports go (default: reports)"
     )
     run.add_argument("--no-report", action="store_true", help="write no report")
+    run.add_argument("--no-page", action="store_true", help="write the report without its page")
     run.add_argument("--json", action="store_true", help="one JSON document on stdout")
     run.add_argument(
         "--hard-cap",
@@ -128,6 +130,13 @@ def _check_options(check: argparse.ArgumentParser) -> None:
 
 def _list_options(listing: argparse.ArgumentParser) -> None:
     listing.add_argument("kind", choices=LISTS)
+
+
+def _view_options(view: argparse.ArgumentParser) -> None:
+    view.add_argument("run", metavar="RUN", help="the run's report folder, or a file in it;"
+                      " '#t=10.1' behind it opens that moment")  # fmt: skip
+    view.add_argument("--rebuild", action="store_true", help="write the page anew")
+    view.add_argument("--no-open", action="store_true", help="only say where the page is")
 
 
 def _judge_options(judge: argparse.ArgumentParser) -> None:

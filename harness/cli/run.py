@@ -66,7 +66,8 @@ def _jobs(arguments: argparse.Namespace, files: Sequence[Path]) -> list[CaseJob]
     jobs: list[CaseJob] = []
     for file, folder in zip(files, report_folders(files, Path(arguments.report_dir)), strict=True):
         reported = None if arguments.no_report else folder
-        jobs.append(CaseJob(file, overrides, arguments.seed, reported, stills=reported is not None))
+        is_reported, page = reported is not None, not arguments.no_page
+        jobs.append(CaseJob(file, overrides, arguments.seed, reported, is_reported, page))
         again = CaseJob(file, overrides, arguments.seed, None, stills=False)
         jobs.extend([again] * (arguments.repeat - 1))
     return jobs
@@ -148,7 +149,7 @@ def _tell(
     results: Mapping[int, CaseResult],
     seconds: float,
 ) -> None:
-    from harness.reporting.terminal import Style, failure, repeats, summary
+    from harness.reporting.terminal import Style, failure, repeats, report_link, summary
     from harness.suite.header import source_lines
 
     style = Style.of(sys.stdout)
@@ -165,9 +166,10 @@ def _tell(
         for runs in _repeats(arguments, results):
             say(f"{runs[0].file}: {repeats(runs, style)}")
     say(summary(list(results.values()), seconds, style))
-    written = [result.report_dir for result in results.values() if result.report_dir]
+    written = [result for result in results.values() if result.report_dir]
     if written:
-        say(f"report: {written[0]}" if len(written) == 1 else f"reports: {arguments.report_dir}")
+        one = report_link(written[0], style)
+        say(f"report: {one}" if len(written) == 1 else f"reports: {arguments.report_dir}")
 
 
 def _command(arguments: argparse.Namespace, job: CaseJob) -> str:

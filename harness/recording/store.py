@@ -22,7 +22,7 @@ from harness.recording.run import MeshRecord, Outcome, Run, StepRecord, Verdict
 
 FORMAT = "armharness-run/1"
 RUN, SIGNALS, RESOLVED = "run.json", "signals.npz", "scenario.resolved.yaml"
-VISUALS = "visuals.npz"
+VISUALS, PAGE = "visuals.npz", "report.html"
 APART = ("seed", "steps", "findings", "versions", "signals", "resolved", "meshes", "files")
 """Fields of a run that have a place of their own in its folder."""
 

@@ -61,6 +61,7 @@ class CaseResult:
         case: Empty when the file has one case.
         sim_time: Length of the run [s].
         report_dir: Folder of its report; empty when none was written.
+        page: The page in it; empty when none was written.
         problems: Of the file, when it is invalid; else what was predicted without physics.
         message: Why, when the harness or a native library broke.
         notes: Fallbacks worth a line: no renderer, no meshes.
@@ -75,6 +76,7 @@ class CaseResult:
     seed: int = 0
     sim_time: float = 0.0
     report_dir: str = ""
+    page: str = ""
     steps: tuple[StepLine, ...] = ()
     verdicts: tuple[Verdict, ...] = ()
     problems: tuple[Problem, ...] = ()

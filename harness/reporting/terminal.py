@@ -7,6 +7,7 @@ import os
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TextIO
 
 from harness.recording.run import Measure, Verdict
@@ -52,6 +53,10 @@ class Style:
     def outcome(self, outcome: str, text: str | None = None) -> str:
         """The outcome's colour; its own name where no text is given."""
         return (self.good if outcome == "passed" else self.bad)(text or outcome)
+
+    def link(self, text: str, address: str) -> str:
+        """Text that a terminal opens an address from, where it can (OSC 8)."""
+        return f"\x1b]8;;{address}\x1b\\{text}\x1b]8;;\x1b\\" if self.has_color else text
 
     def mark(self, is_good: bool) -> str:
         """A tick or a cross."""
@@ -120,10 +125,29 @@ def failure(
     lines = [f"{style.outcome(result.outcome, result.outcome.upper())} {name}{title}"]
     lines += [_indent(cause) for cause in causes(result, source)]
     if result.report_dir:
-        lines.append(f"  report: {result.report_dir}")
+        lines.append(f"  report: {report_link(result, style)}")
     if again:
         lines.append(f"  again:  {again}")
     return "\n".join(lines)
+
+
+def report_link(result: CaseResult, style: Style = PLAIN) -> str:
+    """Where a case's report is: its page at the moment of the first failure, else its folder."""
+    if not result.page:
+        return result.report_dir
+    place = failure_place(result)
+    return style.link(f"{result.page}{place}", f"{Path(result.page).resolve().as_uri()}{place}")
+
+
+def failure_place(result: CaseResult) -> str:
+    """The deep link of the first failure: `#t=10.10&expect=4`; empty when there is none."""
+    if any(step.status == "failed" for step in result.steps):
+        return f"#t={result.sim_time:.2f}"
+    for number, verdict in enumerate(result.verdicts, start=1):
+        if verdict.status != "passed":
+            time = "" if math.isnan(verdict.time) else f"t={verdict.time:.2f}&"
+            return f"#{time}expect={number}"
+    return ""
 
 
 def causes(result: CaseResult, source: Sequence[str] = ()) -> list[str]:

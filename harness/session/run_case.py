@@ -17,7 +17,7 @@ from harness.engine.execute import Execution, execute_program
 from harness.engine.program import Program, ProgramStep
 from harness.recording.digest import digest
 from harness.recording.run import Outcome, Run, Signals, StepRecord, Verdict
-from harness.recording.store import write_run
+from harness.recording.store import PAGE, StoredRun, write_run
 from harness.reporting.explanation import explanation_lines
 from harness.reporting.result import CaseResult, ProgressEvent, StepLine
 from harness.session.agreement import plan_against_physics
@@ -41,6 +41,7 @@ def run_case(
     seed: int | None = None,
     report_dir: Path | None = None,
     stills: bool = True,
+    page: bool = True,
     on_progress: Notify = lambda _: None,
 ) -> CaseResult:
     """Compile, execute, judge and report one scenario.
@@ -51,6 +52,7 @@ def run_case(
         seed: Instead of the file's.
         report_dir: Folder to write; None writes nothing.
         stills: Whether to render a picture of every step.
+        page: Whether the report gets its page.
         on_progress: Told of every step.
     """
     clock = Clock()
@@ -77,7 +79,7 @@ def run_case(
         if report_dir is not None:
             with clock.part("write"):
                 notes = _write(
-                    report_dir, prepared, run, verdicts, outcome, fingerprint, clock, stills
+                    report_dir, prepared, run, verdicts, outcome, fingerprint, clock, stills, page
                 )
             on_progress(ProgressEvent("written", 0, 0, "", outcome, run_time(run), str(report_dir)))
     except HarnessError as error:
@@ -94,6 +96,7 @@ def run_case(
         seed=program.seed,
         sim_time=run_time(run),
         report_dir="" if report_dir is None else str(report_dir),
+        page=str(report_dir / PAGE) if report_dir is not None and page else "",
         steps=tuple(step_line(step) for step in run.steps),
         verdicts=verdicts,
         notes=notes,
@@ -240,20 +243,30 @@ def _write(
     fingerprint: str,
     clock: Clock,
     stills: bool,
+    page: bool,
 ) -> tuple[str, ...]:
     """Write the report folder; what a person should know of it comes back as notes."""
     from harness.session.visuals import mesh_records
 
-    def draw(target: Path) -> tuple[str, ...]:
-        from harness.cameras.stills import save_stills
-
-        program = prepared.program
-        report = save_stills(program.description, program.all_objects(), run, target / "images")
-        draw_pictures(program.description, program.all_objects(), run, target)
-        return (report.note,) if report.note else ()
-
     run = replace(run, meshes=mesh_records(run))
+    stored = StoredRun(run, verdicts, outcome, fingerprint, dict(clock.seconds))
+
+    def add(target: Path) -> tuple[str, ...]:
+        notes = _draw_stills(prepared.program, run, target) if stills else ()
+        if page:
+            from harness.reporting.html.write import write_page
+
+            write_page(target, stored)
+        return notes
+
     return write_run(
-        folder, run, verdicts, outcome, fingerprint, dict(clock.seconds),
-        extra=draw if stills else None,
-    ) or ()  # fmt: skip
+        folder, run, verdicts, outcome, fingerprint, stored.wall_times, extra=add
+    )  # fmt: skip
+
+
+def _draw_stills(program: Program, run: Run, target: Path) -> tuple[str, ...]:
+    from harness.cameras.stills import save_stills
+
+    report = save_stills(program.description, program.all_objects(), run, target / "images")
+    draw_pictures(program.description, program.all_objects(), run, target)
+    return (report.note,) if report.note else ()

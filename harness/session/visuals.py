@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+import numpy as np
+
 from harness.cameras.meshes import load_obj
 from harness.core.geometry import Mesh, Shape
 from harness.recording.run import MeshRecord, Run
@@ -19,8 +21,10 @@ def mesh_records(run: Run) -> tuple[MeshRecord, ...]:
         if geometry.path.suffix.lower() != ".obj":
             continue
         for part in load_obj(geometry):
+            # in the precision in which they are saved
+            vertices = part.vertices.astype(np.float32).astype(np.float64)
             records.append(
-                MeshRecord(geometry.path, geometry.scale, part.vertices, part.faces, part.rgba)
+                MeshRecord(geometry.path, geometry.scale, vertices, part.faces, part.rgba)
             )
     return tuple(records)
 

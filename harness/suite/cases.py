@@ -32,6 +32,7 @@ class CaseJob:
         seed: Instead of the file's.
         report_dir: Where its report goes; None writes none.
         stills: Whether the report gets a picture of every step.
+        page: Whether it gets its page.
     """
 
     file: Path
@@ -39,6 +40,7 @@ class CaseJob:
     seed: int | None = None
     report_dir: Path | None = None
     stills: bool = True
+    page: bool = True
 
 
 Function = Callable[[CaseJob, Callable[[ProgressEvent], None]], CaseResult]
@@ -60,6 +62,7 @@ def run_case(job: CaseJob, notify: Callable[[ProgressEvent], None]) -> CaseResul
         seed=job.seed,
         report_dir=job.report_dir,
         stills=job.stills,
+        page=job.page,
         on_progress=notify,
     )
 

@@ -64,7 +64,7 @@ def test_the_version_is_the_packages(capsys):
         (["run", "x", "-j", "0"], "'0' is not a number from 1"),
         (["run", "x", "--hard-cap", "-1"], "'-1' is not a number of seconds above 0"),
         (["list", "robot"], "robots"),
-        (["view", "x"], "invalid choice"),
+        (["sweep", "x"], "invalid choice"),
     ],
 )
 def test_wrong_usage_is_exit_code_2_and_says_what_is_right(arguments, said, capsys):

@@ -1,0 +1,72 @@
+"""The whole page as text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+from string import Template
+
+from harness.recording.store import StoredRun
+from harness.reporting.html import bundle
+from harness.reporting.html.groups import pack_groups
+from harness.reporting.html.packing import Packer
+from harness.reporting.html.paths import pack_plan, pack_tcp_path
+from harness.reporting.html.pictures import pack_cameras
+from harness.reporting.html.scene import pack_scene
+from harness.reporting.html.story import (
+    environment,
+    findings_facts,
+    joint_facts,
+    ordered_steps,
+    step_facts,
+    verdict_facts,
+)
+from harness.reporting.html.summary import Picture, header_facts, outcome_pill, summary_html
+
+
+def page_html(stored: StoredRun, pictures: Sequence[Picture] = ()) -> str:
+    """One self-contained page; equal text for equal runs but for their wall times.
+
+    Args:
+        stored: The run, judged.
+        pictures: For the summary.
+    """
+    return Template(bundle.skeleton()).substitute(
+        title=escape(f"{stored.outcome}: {stored.run.scenario}"),
+        style=bundle.style(),
+        script=bundle.script(),
+        summary=summary_html(stored, pictures),
+        pill=outcome_pill(stored),
+        name=escape(stored.run.scenario),
+        facts="".join(
+            f"<span>{escape(name)} <b>{escape(value)}</b></span>"
+            for name, value in header_facts(stored)
+            if value
+        ),
+        data=_data(stored),
+    )
+
+
+def _data(stored: StoredRun) -> str:
+    run, packer = stored.run, Packer()
+    pack_tcp_path(run, packer)
+    steps = [
+        step_facts(run, step, stored.verdicts) | pack_plan(run, step, index, packer)
+        for index, step in enumerate(ordered_steps(run))
+    ]
+    return packer.text(
+        {
+            "title": run.scenario,
+            "outcome": stored.outcome,
+            "duration": float(run.signals.times[-1]),
+            "steps": steps,
+            "verdicts": [verdict_facts(verdict) for verdict in stored.verdicts],
+            "findings": findings_facts(run),
+            "joints": joint_facts(run),
+            "environment": environment(stored),
+            "source": run.source,
+            "groups": pack_groups(run, stored.verdicts, packer),
+            "cameras": pack_cameras(run, packer),
+            **pack_scene(run, packer),
+        }
+    )

@@ -1,0 +1,38 @@
+// Making elements; text is always text, never markup.
+
+/**
+ * @param {string} tag with classes: `div.step.failed`
+ * @param {Record<string, any>} [properties] attributes; `on...` are listeners
+ * @param {...(Node | string | number | null | undefined | false)} children
+ * @returns {any}
+ */
+export function element(tag, properties = {}, ...children) {
+  const [name, ...classes] = tag.split(".");
+  const made = document.createElement(name);
+  if (classes.length) made.className = classes.join(" ");
+  for (const [key, value] of Object.entries(properties)) {
+    if (key.startsWith("on")) made.addEventListener(key.slice(2), value);
+    else if (value !== null && value !== undefined && value !== false) made.setAttribute(key, String(value));
+  }
+  made.append(...children.filter((child) => child !== null && child !== undefined && child !== false).map(asNode));
+  return made;
+}
+
+function asNode(child) {
+  return child instanceof Node ? child : String(child);
+}
+
+/** @param {string} id @returns {any} */
+export function byId(id) {
+  return document.getElementById(id);
+}
+
+/** The value of a colour of the style sheet, as it is in the present theme. @param {string} name `--accent` */
+export function themeColor(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+}
+
+/** `#rrggbb` as numbers from 0 to 1, and an opacity. @param {string} hex @param {number} [alpha] */
+export function rgba(hex, alpha = 1) {
+  return [...[1, 3, 5].map((start) => parseInt(hex.slice(start, start + 2), 16) / 255), alpha];
+}

@@ -1,0 +1,252 @@
+// Puts the page together: one clock, and everything that follows it.
+
+import { readAddress, writeAddress } from "./address.js";
+import { Clock } from "./clock.js";
+import { byId, element, rgba, themeColor } from "./dom.js";
+import { makeFilm } from "./film.js";
+import { listenToKeys } from "./keys.js";
+import { Marks } from "./marks.js";
+import { Orbit } from "./orbit.js";
+import { indexAt, unpack, valueAt } from "./payload.js";
+import { makePictures } from "./pictures.js";
+import { plannerView } from "./planner.js";
+import { Plots } from "./plots.js";
+import { Replay } from "./replay.js";
+import { makeSteps } from "./steps.js";
+import { findingList, jointTable, markLines, pairTable, sourceView } from "./tables.js";
+import { makeTabs } from "./tabs.js";
+import { makeTimeline, stepAt } from "./timeline.js";
+import { number } from "./units.js";
+import { verdictList } from "./verdicts.js";
+import { Viewer } from "./viewer.js";
+
+const GRIP = 20; // a force [N] at which a body in contact glows fully
+
+async function start() {
+  const payload = await unpack(byId("data"));
+  const { run } = payload;
+  const clock = new Clock(run.duration);
+  const bands = run.steps
+    .filter((step) => step.status !== "not_reached" && !step.hasChildren)
+    .map((step) => ({ start: step.start, end: step.end, tone: step.tone }));
+
+  const scene = makeScene(payload);
+  const plots = new Plots(payload, clock, bands);
+  const showCurrentStep = makeSteps(payload, selectStep);
+  const source = sourceView(payload, selectLine);
+  const verdicts = verdictList(payload, selectVerdict);
+  const passed = run.verdicts.filter(({ status }) => status === "passed").length;
+  const showTab = makeTabs([
+    { id: "expect", title: "Expectations", badge: `${passed}/${run.verdicts.length}`, content: verdicts },
+    { id: "planner", title: "Planner", content: plannerView(payload, selectStep) },
+    { id: "findings", title: "Findings", badge: String(run.findings.length || ""), content: findingList(payload, (time) => clock.seek(time)) },
+    { id: "source", title: "Source", content: source },
+    { id: "joints", title: "Joints", content: jointTable(payload) },
+    { id: "environment", title: "Environment", content: pairTable(run.environment) },
+  ]);
+  makeTimeline(payload, clock, { step: selectStep, verdict: selectVerdict });
+  const hasPictures = makePictures(payload, clock);
+  const drawFilm = scene ? makeFilm(clock, drawAt) : () => {};
+  const contacts = plots.panelData("contact");
+
+  let currentStep = -2;
+  clock.onTime((time) => {
+    const step = stepAt(run.steps, time);
+    scene?.pose(time, step, contacts);
+    showReadout(time, step);
+    if (step === currentStep) return;
+    currentStep = step;
+    showCurrentStep(step);
+    const { line, lastLine } = run.steps[step] ?? { line: 0, lastLine: 0 };
+    markLines(source, line, line ? lastLine + 1 : 0);
+  });
+
+  function showReadout(time, step) {
+    const tool = scene?.toolPosition(time) ?? null;
+    const place = tool ? `TCP ${tool.map((value) => (1000 * value).toFixed(1).padStart(7)).join(" ")} mm` : "";
+    const loads = ["velocity", "effort"].flatMap((id) => {
+      const data = plots.panelData(id);
+      if (!data) return [];
+      const worst = Math.max(...data.series.map((series) => Math.abs(valueAt(series, time)) || 0));
+      return [`${id} ${number(worst)} %`];
+    });
+    const name = run.steps[step]?.summary ?? "";
+    byId("readout").textContent = [`t ${time.toFixed(3)} s  ${name}`, place, loads.join("   ")].filter(Boolean).join("\n");
+  }
+
+  function drawAt(time, canvas) {
+    const step = stepAt(run.steps, time);
+    scene.pose(time, step, null);
+    scene.viewer.copyTo(scene.orbit, canvas);
+    scene.pose(clock.time, stepAt(run.steps, clock.time), contacts);
+  }
+
+  function selectStep(index) {
+    const step = run.steps[index];
+    if (step.status === "not_reached") return;
+    const isFailure = step.status === "failed";
+    clock.seek(isFailure ? step.end : Math.min(step.start + 1e-3, step.end));
+    writeAddress({ t: clock.time.toFixed(2), step: index + 1 });
+  }
+
+  function selectVerdict(index) {
+    const verdict = run.verdicts[index];
+    for (const button of verdicts.querySelectorAll("[data-verdict]")) {
+      button.toggleAttribute("aria-current", Number(button.dataset.verdict) === index);
+    }
+    if (verdict.time !== null) clock.seek(verdict.time);
+    scene?.marks.compare(verdict.points && { ...verdict.points, good: verdict.status === "passed" });
+    if (verdict.plot) plots.reveal(verdict.plot);
+    showTab("expect");
+    verdicts.querySelector(`[data-verdict="${index}"]`)?.scrollIntoView({ block: "nearest" });
+    writeAddress({ t: clock.time.toFixed(2), expect: index + 1 });
+  }
+
+  function selectLine(line) {
+    const verdict = run.verdicts.findIndex((each) => each.line === line);
+    const step = run.steps.findIndex((each) => each.line === line);
+    if (verdict >= 0) selectVerdict(verdict);
+    else if (step >= 0) selectStep(step);
+  }
+
+  function nextStep(direction) {
+    const starts = run.steps.filter(({ status }) => status !== "not_reached").map((step) => step.start);
+    const others = direction > 0 ? starts.filter((time) => time > clock.time + 2e-3) : starts.filter((time) => time < clock.time - 2e-3);
+    if (others.length) clock.seek((direction > 0 ? Math.min(...others) : Math.max(...others)) + 1e-3);
+  }
+
+  function nextFailure() {
+    const failures = run.verdicts.flatMap(({ status, time }, index) => (status !== "passed" && time !== null ? [index] : []));
+    if (!failures.length) return;
+    const shown = Number(verdicts.querySelector("[aria-current]")?.dataset.verdict ?? -1);
+    selectVerdict(failures.find((index) => index > shown) ?? failures[0]);
+  }
+
+  function goTo(hash) {
+    const place = readAddress(hash);
+    if (place.tab && document.getElementById(`tab-${place.tab}`)) showTab(place.tab);
+    if (place.expect !== null && run.verdicts[place.expect]) selectVerdict(place.expect);
+    else if (place.step !== null && run.steps[place.step]) selectStep(place.step);
+    if (place.time !== null) clock.seek(place.time);
+  }
+
+  makeControls({ clock, scene, plots, drawFilm, hasPictures });
+  listenToKeys(clock, { nextStep, nextFailure });
+  addEventListener("hashchange", () => goTo(location.hash));
+  goTo(location.hash);
+  const loop = (now) => {
+    clock.tick(now);
+    scene?.viewer.draw(scene.orbit, clock.isPlaying || scene.orbit.isHeld);
+    requestAnimationFrame(loop);
+  };
+  requestAnimationFrame(loop);
+  document.documentElement.dataset.ready = "yes";
+}
+
+/** The 3D view; null where the browser has no WebGL2. */
+function makeScene(payload) {
+  const { run } = payload;
+  let viewer;
+  try {
+    viewer = new Viewer(byId("view"), run.bounds);
+  } catch {
+    byId("view").append(element("p.no-view", {}, "This browser has no WebGL2: the 3D replay is off, everything else works."));
+    return null;
+  }
+  const orbit = new Orbit(run.focus, () => viewer.redraw());
+  orbit.control(viewer.canvas);
+  viewer.canvas.tabIndex = 0;
+  viewer.canvas.setAttribute("role", "img");
+  viewer.canvas.setAttribute("aria-label", "3D replay of the run; arrow keys turn it, plus and minus zoom");
+  const replay = new Replay(payload, viewer);
+  const marks = new Marks(payload, viewer);
+  return {
+    viewer, orbit, replay, marks,
+    toolPosition(time) {
+      const { times, path } = marks.tcp;
+      const index = 3 * indexAt(times, time);
+      return [path[index], path[index + 1], path[index + 2]];
+    },
+    pose(time, step, contacts) {
+      replay.pose(time);
+      const pressed = new Map();
+      for (const series of contacts?.series ?? []) {
+        const force = valueAt(series, time);
+        if (!(force > 0.01)) continue;
+        for (const name of series.name.split(" and ")) {
+          pressed.set(name, Math.max(pressed.get(name) ?? 0, Math.min(1, 0.25 + force / GRIP)));
+        }
+      }
+      replay.glow(this.showsContacts ? pressed : new Map());
+      const tool = replay.byName.get(run.toolBody);
+      marks.show(time, step, tool ? [...this.toolPosition(time), ...replay.poseOf(tool, time).slice(3)] : null);
+      if (this.follows) {
+        orbit.target = this.toolPosition(time);
+        viewer.redraw();
+      }
+    },
+    showsContacts: true,
+    follows: false,
+  };
+}
+
+function makeControls({ clock, scene, plots, drawFilm, hasPictures }) {
+  const play = byId("play");
+  play.addEventListener("click", () => clock.toggle());
+  clock.onPlay((isPlaying) => {
+    play.textContent = isPlaying ? "❚❚" : "▶";
+    play.setAttribute("aria-label", isPlaying ? "Pause" : "Play");
+  });
+  byId("speed").addEventListener("change", (event) => clock.setSpeed(Number(event.target.value)));
+  byId("unzoom").addEventListener("click", () => plots.zoom(0, clock.duration));
+  byId("print").addEventListener("click", () => print());
+  byId("help-button").addEventListener("click", () => byId("help").showModal());
+
+  const again = () => clock.timeListeners.forEach((listener) => listener(clock.time));
+  const tools = !scene ? [] : [
+    ["path", "TCP path", true, (is) => (scene.marks.wanted.path = is)],
+    ["plan", "plan", true, (is) => (scene.marks.wanted.plan = is)],
+    ["raw", "unshortened", false, (is) => (scene.marks.wanted.raw = is)],
+    ["frame", "tool frame", true, (is) => (scene.marks.wanted.frame = is)],
+    ["goal", "goal", true, (is) => (scene.marks.wanted.goal = is)],
+    ["contacts", "contacts", true, (is) => (scene.showsContacts = is)],
+    ["ghosts", "planner's objects", true, (is) => (scene.replay.hidesGhosts = !is)],
+    ["follow", "follow", false, (is) => (scene.follows = is)],
+  ];
+  if (hasPictures) tools.push(["cameras", "cameras", true, (is) => (byId("cameras").hidden = !is)]);
+  for (const [id, title, isOn, set] of tools) {
+    const button = element("button", { type: "button", "aria-pressed": isOn, id: `tool-${id}` }, title);
+    button.addEventListener("click", () => {
+      const is = button.getAttribute("aria-pressed") !== "true";
+      button.setAttribute("aria-pressed", String(is));
+      set(is);
+      again();
+    });
+    byId("tools").append(button);
+  }
+
+  const paint = () => {
+    if (scene) {
+      scene.viewer.background = rgba(themeColor("--sky")).slice(0, 3);
+      scene.viewer.ambient = Number(themeColor("--ambient"));
+      scene.replay.paintFloor(rgba(themeColor("--floor")));
+      scene.viewer.redraw();
+    }
+    plots.redraw();
+  };
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const root = document.documentElement;
+  byId("theme").addEventListener("click", () => {
+    const isDark = root.dataset.theme ? root.dataset.theme === "dark" : dark.matches;
+    root.dataset.theme = isDark ? "light" : "dark";
+    paint();
+    drawFilm();
+  });
+  dark.addEventListener("change", paint);
+  paint();
+}
+
+start().catch((error) => {
+  document.documentElement.classList.remove("scripted");
+  throw error;
+});

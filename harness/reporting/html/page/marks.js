@@ -1,0 +1,94 @@
+// What is drawn into the 3D view beside bodies: TCP paths, frames of goals, points of a verdict.
+
+import { rgba, themeColor } from "./dom.js";
+import { indexAt } from "./payload.js";
+import { poseMatrix } from "./vectors.js";
+
+const AXIS = 0.09; // [m]
+const AXES = [[1, 0, 0, "#dc2626"], [0, 1, 0, "#16a34a"], [0, 0, 1, "#2563eb"]];
+const CROSS = 0.02; // half the size of a cross [m]
+
+export class Marks {
+  /**
+   * @param {import("./payload.js").Payload} payload
+   * @param {import("./viewer.js").Viewer} viewer
+   */
+  constructor(payload, viewer) {
+    this.run = payload.run;
+    this.viewer = viewer;
+    const path = new Float32Array(payload.buffer("tcp"));
+    this.tcp = { times: new Float32Array(payload.buffer("tcp.times")), path };
+    this.walked = viewer.addLine(path, { color: rgba(themeColor("--accent")), width: 3.5 });
+    this.ahead = viewer.addLine(path, { color: rgba(themeColor("--accent"), 0.22), width: 2 });
+    this.planned = this.run.steps.map((step) =>
+      step.plan === null
+        ? null
+        : viewer.addLine(new Float32Array(payload.buffer(step.plan)), {
+            color: rgba(themeColor("--plan")), width: 2.5, dash: 0.022,
+          }),
+    );
+    this.raw = this.run.steps.map((step) =>
+      step.rawPlan === null
+        ? null
+        : viewer.addLine(new Float32Array(payload.buffer(step.rawPlan)), {
+            color: rgba(themeColor("--raw")), width: 2, dash: 0.012, visible: false,
+          }),
+    );
+    this.tool = this.#frame(AXIS, 3);
+    this.goal = this.#frame(AXIS * 1.35, 2);
+    this.nearest = this.#cross("--warn");
+    this.expected = this.#cross("--good");
+    this.actual = this.#cross("--bad");
+    this.between = viewer.addLine([], { color: rgba(themeColor("--bad")), width: 3, onTop: true });
+    /** @type {Record<string, boolean>} what a person wants to see */
+    this.wanted = { path: true, plan: true, frame: true, goal: true };
+    this.verdict = null;
+  }
+
+  /** Draw what belongs to a time. @param {number} time @param {number} step index, -1 if none @param {number[]} toolPose */
+  show(time, step, toolPose) {
+    const { wanted } = this;
+    const seen = indexAt(this.tcp.times, time);
+    this.walked.segments = Math.max(1, seen);
+    this.walked.visible = this.ahead.visible = wanted.path && this.tcp.times.length > 1;
+    for (const [index, line] of this.planned.entries()) if (line) line.visible = wanted.plan && index === step;
+    for (const [index, line] of this.raw.entries()) if (line) line.visible = wanted.raw && index === step;
+    this.#place(this.tool, wanted.frame ? toolPose : null);
+    const { goal, nearest } = this.run.steps[step] ?? {};
+    this.#place(this.goal, wanted.goal ? goal : null);
+    this.#place(this.nearest, wanted.goal && nearest ? [...nearest, 1, 0, 0, 0] : null);
+    this.viewer.redraw();
+  }
+
+  /** Draw expected against actual of a verdict. @param {{expected?: number[], actual?: number[], good?: boolean} | null} points */
+  compare(points) {
+    const { expected, actual } = points ?? {};
+    this.#place(this.expected, expected ? [...expected.slice(0, 3), 1, 0, 0, 0] : null);
+    this.#place(this.actual, actual ? [...actual.slice(0, 3), 1, 0, 0, 0] : null);
+    this.viewer.setPoints(this.between, expected && actual ? [...expected.slice(0, 3), ...actual.slice(0, 3)] : []);
+  }
+
+  #frame(size, width) {
+    return AXES.map(([x, y, z, color]) =>
+      this.viewer.addLine([0, 0, 0, size * x, size * y, size * z], { color: rgba(color), width, onTop: width < 3 }),
+    );
+  }
+
+  #cross(color) {
+    return [0, 1, 2].map((axis) => {
+      const end = [0, 0, 0];
+      end[axis] = CROSS;
+      return this.viewer.addLine([...end.map((value) => -value), ...end], {
+        color: rgba(themeColor(color)), width: 3, onTop: true, visible: false,
+      });
+    });
+  }
+
+  /** @param {any[]} lines @param {number[] | null | undefined} pose */
+  #place(lines, pose) {
+    for (const line of lines) {
+      line.visible = Boolean(pose);
+      if (pose) line.model = poseMatrix(pose);
+    }
+  }
+}

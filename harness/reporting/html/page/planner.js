@@ -1,0 +1,98 @@
+// What the planner was asked and what it found, step by step.
+
+import { element } from "./dom.js";
+import { amount, degrees, number, seconds, tone } from "./units.js";
+
+const SOLUTIONS_SHOWN = 8;
+const LABELS = {
+  planner_id: "planner", state_checks: "state checks", search_checks: "of these, by the search",
+  path_length: "path length", raw_path_length: "before shortening", attempts: "attempts",
+  waypoints: "waypoints", vertices: "tree vertices", resolution: "resolution", duration: "duration",
+};
+const UNITS = { path_length: "rad", raw_path_length: "rad", resolution: "rad", duration: "s" };
+const DRAWN = new Set(["path", "raw_path", "raw_waypoints", "waypoint_positions"]);
+
+/**
+ * @param {import("./payload.js").Payload} payload
+ * @param {(index: number) => void} select
+ * @returns {HTMLElement}
+ */
+export function plannerView({ run }, select) {
+  const asked = run.steps
+    .map((step, index) => ({ step, index }))
+    .filter(({ step }) => Object.keys(step.planner).length || Object.keys(step.explanation).length);
+  if (!asked.length) return element("p.empty", {}, "No step asked the planner for anything.");
+  return element("div.planner", {}, ...asked.map(({ step, index }) => planned(step, index, select)));
+}
+
+function planned(step, index, select) {
+  const { ik_solutions: solutions, ik_method: method, ...rest } = step.explanation;
+  return element(
+    `section.${tone(step.status)}`, {},
+    element("h3", {}, element("button.link", { type: "button", onclick: () => select(index) }, `${index + 1}. ${step.summary}`)),
+    step.message && element("p.why", {}, step.message),
+    shortening(step.planner),
+    facts(step.planner),
+    solutions && solutionTable(method, solutions),
+    ...Object.entries(rest).map(([key, value]) => remark(key, value)),
+  );
+}
+
+/** Bars of the path's length before and after it was shortened. */
+function shortening({ path_length: after, raw_path_length: before }) {
+  if (!(before > 0) || !(after > 0)) return null;
+  const row = (label, length) => {
+    const bar = element("i");
+    bar.style.width = `${(100 * length) / Math.max(before, after)}%`;
+    return element("div.length", {}, element("span", {}, label), element("span.bar", {}, bar), element("code", {}, `${number(length)} rad`));
+  };
+  return element("div.lengths", {}, row("as found", before), row("shortened", after));
+}
+
+function facts(planner) {
+  const shown = Object.entries(planner).filter(([key]) => !DRAWN.has(key));
+  if (!shown.length) return null;
+  return element(
+    "dl", {},
+    ...shown.flatMap(([key, value]) => [element("dt", {}, LABELS[key] ?? words(key)), element("dd", {}, plain(value, UNITS[key]))]),
+  );
+}
+
+function solutionTable(method, solutions) {
+  const head = `Inverse kinematics${method ? ` (${method})` : ""}: ${solutions.length || "no"} solution${solutions.length === 1 ? "" : "s"}`;
+  const rows = solutions.slice(0, SOLUTIONS_SHOWN).map((solution) => {
+    const isGood = /^(chosen|free|reachable|valid)/.test(solution.status ?? "");
+    const touches = (solution.touches ?? []).map(({ pair, distance }) => `${pair.join(" and ")} ${amount(distance, "m")}`);
+    return element(
+      "tr", {},
+      element("td", {}, element(`span.tag.${isGood ? "good" : "bad"}`, {}, solution.status ?? "")),
+      element("td", {}, element("code", {}, degrees(solution.joint_positions ?? [])), touches.length ? element("div.touches", {}, touches.slice(0, 3).join("; ")) : null),
+    );
+  });
+  return element("details", { open: solutions.length <= SOLUTIONS_SHOWN }, element("summary", {}, head), element("table.solutions", {}, element("tbody", {}, ...rows)));
+}
+
+function remark(key, value) {
+  const isEmpty = value === null || (typeof value === "object" && !Object.keys(value).length);
+  if (isEmpty) return null;
+  const isLong = JSON.stringify(value).length > 300;
+  const content = element("div.remark", {}, isLong ? "" : element("b", {}, `${words(key)}: `), plain(value));
+  return isLong ? element("details", {}, element("summary", {}, words(key)), content) : content;
+}
+
+/** Plain data as text: numbers short, lists in a line. */
+export function plain(value, unit = "") {
+  if (typeof value === "number") {
+    if (unit === "s") return seconds(value);
+    return unit ? `${number(value)} ${unit}` : Number.isInteger(value) ? String(value) : number(value);
+  }
+  if (Array.isArray(value)) return value.map((item) => plain(item)).join(", ");
+  if (value && typeof value === "object") {
+    return Object.entries(value).map(([key, item]) => `${words(key)} ${plain(item)}`).join(", ");
+  }
+  return String(value);
+}
+
+function words(key) {
+  return LABELS[key] ?? key.replaceAll("_", " ");
+}

@@ -1,0 +1,306 @@
+// One time plot on a canvas: step bands, limits, a cursor shared with everything else, zoom.
+
+import { element, themeColor } from "./dom.js";
+import { indexAt, valueAt } from "./payload.js";
+import { number } from "./units.js";
+
+const MARGIN = { left: 46, right: 8, top: 6, bottom: 18 };
+const TICK_GAP = { x: 64, y: 30 }; // [pixels]
+const DRAG = 6; // pixels that make a click a zoom
+const ROOM = 0.07; // of the values' range, above and below
+
+/**
+ * @typedef {object} PlotData
+ * @property {string} title
+ * @property {string} unit
+ * @property {import("./payload.js").Series[]} series
+ * @property {{value: number, series: number | null, stretches: boolean}[]} limits
+ */
+
+export class Plot {
+  /**
+   * @param {{start: number, end: number, tone: string}[]} bands of the steps
+   * @param {{onSeek: (time: number) => void, onZoom: (from: number, to: number) => void, onReset: () => void}} actions
+   */
+  constructor(bands, actions) {
+    this.bands = bands;
+    this.canvas = element("canvas", { role: "img", tabindex: 0 });
+    /** @type {Set<number>} */
+    this.hidden = new Set();
+    /** @type {PlotData | null} */
+    this.data = null;
+    this.cursor = 0;
+    this.from = 0;
+    this.to = 1;
+    this.#control(actions);
+    new ResizeObserver(() => this.#layOut()).observe(this.canvas);
+  }
+
+  /** @param {PlotData} data @param {Set<number>} [hidden] series that are not drawn */
+  show(data, hidden = new Set()) {
+    this.data = data;
+    this.hidden = hidden;
+    this.canvas.setAttribute("aria-label", `Plot of ${data.title} over time`);
+    this.draw();
+  }
+
+  /** @param {number} from @param {number} to times shown [s] */
+  zoom(from, to) {
+    this.from = from;
+    this.to = to;
+    this.draw();
+  }
+
+  /** Move the cursor; the lines below it are kept. @param {number} time */
+  point(time) {
+    this.cursor = time;
+    if (this.picture) {
+      const pen = this.canvas.getContext("2d");
+      pen.setTransform(1, 0, 0, 1, 0, 0);
+      pen.drawImage(this.picture, 0, 0);
+      this.#drawCursor(pen);
+    }
+  }
+
+  /** Colour of a series. @param {number} index */
+  static color(index) {
+    return themeColor(`--s${index % 10}`);
+  }
+
+  /** Draw everything anew. */
+  draw() {
+    const { width, height } = this.canvas;
+    if (!this.data || width < 80 || height < 50) return;
+    this.picture ??= document.createElement("canvas");
+    this.picture.width = width;
+    this.picture.height = height;
+    const pen = this.picture.getContext("2d");
+    pen.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    pen.fillStyle = themeColor("--panel");
+    pen.fillRect(0, 0, width, height);
+    this.#setRange();
+    this.#drawBands(pen);
+    this.#drawAxes(pen);
+    pen.save();
+    pen.beginPath();
+    pen.rect(MARGIN.left, MARGIN.top, this.width, this.height);
+    pen.clip();
+    this.#drawLimits(pen);
+    this.data.series.forEach((series, index) => this.hidden.has(index) || this.#drawSeries(pen, series, index));
+    pen.restore();
+    this.point(this.cursor);
+  }
+
+  get width() {
+    return this.canvas.width / this.ratio - MARGIN.left - MARGIN.right;
+  }
+
+  get height() {
+    return this.canvas.height / this.ratio - MARGIN.top - MARGIN.bottom;
+  }
+
+  #layOut() {
+    this.ratio = Math.min(devicePixelRatio, 2);
+    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
+    this.canvas.width = Math.round(width * this.ratio);
+    this.canvas.height = Math.round(height * this.ratio);
+    this.draw();
+  }
+
+  #x(time) {
+    return MARGIN.left + ((time - this.from) / (this.to - this.from || 1)) * this.width;
+  }
+
+  #y(value) {
+    return MARGIN.top + ((this.high - value) / (this.high - this.low)) * this.height;
+  }
+
+  #timeAt(pixel) {
+    return this.from + ((pixel - MARGIN.left) / this.width) * (this.to - this.from);
+  }
+
+  /** Heights shown: all values in sight, and the limits that ask for it. */
+  #setRange() {
+    let [low, high] = [Infinity, -Infinity];
+    const take = (value) => {
+      if (value < low) low = value;
+      if (value > high) high = value;
+    };
+    this.data.series.forEach((series, index) => {
+      if (this.hidden.has(index)) return;
+      const last = indexAt(series.times, this.to);
+      for (let i = Math.max(0, indexAt(series.times, this.from) - 1); i <= last; i++) take(series.values[i]);
+    });
+    for (const limit of this.data.limits) if (limit.stretches && this.#isShown(limit)) take(limit.value);
+    if (low > high) [low, high] = [0, 1];
+    const least = Math.max(1e-9, 1e-3 * Math.max(Math.abs(low), Math.abs(high)), this.data.least ?? 0);
+    if (high - low < least) [low, high] = [(low + high - least) / 2, (low + high + least) / 2];
+    const room = ROOM * (high - low);
+    this.low = low - room;
+    this.high = high + room;
+  }
+
+  #isShown(limit) {
+    return limit.series === null || !this.hidden.has(limit.series);
+  }
+
+  #drawBands(pen) {
+    let isShaded = false;
+    for (const { start, end, tone } of this.bands) {
+      if (end <= start) continue;
+      isShaded = !isShaded;
+      if (tone !== "bad" && !isShaded) continue;
+      const [from, to] = [Math.max(MARGIN.left, this.#x(start)), Math.min(MARGIN.left + this.width, this.#x(end))];
+      pen.fillStyle = themeColor(tone === "bad" ? "--bad-band" : "--step-band");
+      if (to > from) pen.fillRect(from, MARGIN.top, to - from, this.height);
+    }
+  }
+
+  #drawAxes(pen) {
+    pen.font = "11px system-ui, sans-serif";
+    pen.fillStyle = themeColor("--muted");
+    pen.strokeStyle = themeColor("--grid");
+    pen.lineWidth = 1;
+    pen.textAlign = "right";
+    pen.textBaseline = "middle";
+    for (const value of ticks(this.low, this.high, this.height / TICK_GAP.y)) {
+      line(pen, MARGIN.left, this.#y(value), MARGIN.left + this.width, this.#y(value));
+      pen.fillText(String(value), MARGIN.left - 6, this.#y(value));
+    }
+    pen.textAlign = "center";
+    pen.textBaseline = "top";
+    for (const time of ticks(this.from, this.to, this.width / TICK_GAP.x)) {
+      line(pen, this.#x(time), MARGIN.top, this.#x(time), MARGIN.top + this.height);
+      pen.fillText(String(time), this.#x(time), MARGIN.top + this.height + 4);
+    }
+  }
+
+  #drawLimits(pen) {
+    pen.setLineDash([6, 4]);
+    pen.lineWidth = 1.2;
+    for (const limit of this.data.limits) {
+      if (!this.#isShown(limit)) continue;
+      pen.strokeStyle = limit.series === null ? themeColor("--bad") : Plot.color(limit.series);
+      line(pen, MARGIN.left, this.#y(limit.value), MARGIN.left + this.width, this.#y(limit.value));
+    }
+    pen.setLineDash([]);
+  }
+
+  /** A line through the samples in sight; of many in one column of pixels, the lowest and highest. */
+  #drawSeries(pen, { times, values }, index) {
+    const first = Math.max(0, indexAt(times, this.from) - 1);
+    const last = indexAt(times, this.to);
+    const perPixel = (last - first) / this.width;
+    pen.strokeStyle = Plot.color(index);
+    pen.lineWidth = 1.5;
+    pen.lineJoin = "round";
+    pen.beginPath();
+    let isDown = false;
+    const go = (x, value) => {
+      if (Number.isNaN(value)) isDown = false;
+      else if (isDown) pen.lineTo(x, this.#y(value));
+      else {
+        pen.moveTo(x, this.#y(value));
+        isDown = true;
+      }
+    };
+    if (perPixel <= 2) {
+      for (let i = first; i <= last; i++) go(this.#x(times[i]), values[i]);
+    } else {
+      for (let pixel = 0; pixel < this.width; pixel++) {
+        const from = first + Math.floor(pixel * perPixel);
+        const to = Math.min(last, first + Math.floor((pixel + 1) * perPixel));
+        let [low, high] = [NaN, NaN];
+        for (let i = from; i <= to; i++) {
+          if (!(values[i] >= low)) low = Number.isNaN(values[i]) ? low : values[i];
+          if (!(values[i] <= high)) high = Number.isNaN(values[i]) ? high : values[i];
+        }
+        go(MARGIN.left + pixel, low);
+        if (high !== low) go(MARGIN.left + pixel, high);
+      }
+    }
+    pen.stroke();
+  }
+
+  #drawCursor(pen) {
+    const x = this.#x(this.cursor);
+    if (x < MARGIN.left - 1 || x > MARGIN.left + this.width + 1) return;
+    pen.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    pen.strokeStyle = themeColor("--accent");
+    pen.lineWidth = 1.5;
+    line(pen, x, MARGIN.top, x, MARGIN.top + this.height);
+    this.data.series.forEach((series, index) => {
+      const value = valueAt(series, this.cursor);
+      if (this.hidden.has(index) || Number.isNaN(value)) return;
+      pen.fillStyle = Plot.color(index);
+      pen.beginPath();
+      pen.arc(x, this.#y(value), 2.7, 0, 7);
+      pen.fill();
+    });
+  }
+
+  #control({ onSeek, onZoom, onReset }) {
+    const { canvas } = this;
+    let start = null;
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      start = event.offsetX;
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      if (event.pointerType === "mouse" || start !== null) this.#select(start, event.offsetX);
+    });
+    canvas.addEventListener("pointerleave", () => this.point(this.cursor));
+    canvas.addEventListener("pointerup", (event) => {
+      if (start === null) return;
+      const [from, to] = [Math.min(start, event.offsetX), Math.max(start, event.offsetX)];
+      if (to - from > DRAG) onZoom(this.#timeAt(from), this.#timeAt(to));
+      else onSeek(this.#timeAt(event.offsetX));
+      start = null;
+    });
+    canvas.addEventListener("dblclick", onReset);
+  }
+
+  /** The stretch that is being dragged, or the values under the pointer. */
+  #select(start, pixel) {
+    this.point(this.cursor);
+    const pen = this.canvas.getContext("2d");
+    pen.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    if (start !== null && Math.abs(pixel - start) > DRAG) {
+      pen.fillStyle = themeColor("--step-band");
+      pen.fillRect(Math.min(start, pixel), MARGIN.top, Math.abs(pixel - start), this.height);
+      return;
+    }
+    const time = this.#timeAt(pixel);
+    if (time < this.from || time > this.to) return;
+    pen.strokeStyle = themeColor("--muted");
+    pen.lineWidth = 1;
+    line(pen, pixel, MARGIN.top, pixel, MARGIN.top + this.height);
+    pen.font = "11px system-ui, sans-serif";
+    pen.fillStyle = themeColor("--text");
+    pen.textBaseline = "top";
+    pen.textAlign = pixel > MARGIN.left + this.width / 2 ? "right" : "left";
+    pen.fillText(` ${time.toFixed(3)} s `, pixel, MARGIN.top + 2);
+  }
+}
+
+/** Round numbers between two values, about as many as asked for. */
+export function ticks(low, high, count) {
+  const rough = (high - low) / Math.max(1, count);
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 5, 10].find((factor) => factor * power >= rough) * power;
+  const found = [];
+  for (let i = Math.ceil(low / step); i * step <= high + 1e-9 * step; i++) found.push(Number((i * step).toPrecision(9)));
+  return found;
+}
+
+function line(pen, x0, y0, x1, y1) {
+  pen.beginPath();
+  pen.moveTo(x0, y0);
+  pen.lineTo(x1, y1);
+  pen.stroke();
+}
+
+/** Values of all series at a time, as text. @param {PlotData} data @param {number} time */
+export function readings(data, time) {
+  return data.series.map((series) => number(valueAt(series, time)));
+}

@@ -1,0 +1,99 @@
+// Source, findings, joints and environment: the plainer tabs.
+
+import { element } from "./dom.js";
+import { number, seconds, tone } from "./units.js";
+
+/**
+ * The scenario file, with the lines of failures in red.
+ * @param {import("./payload.js").Payload} payload
+ * @param {(line: number) => void} select
+ */
+export function sourceView({ run }, select) {
+  const bad = new Set();
+  const known = new Set();
+  for (const item of [...run.steps, ...run.verdicts]) {
+    if (item.line) known.add(item.line);
+    if (item.line && tone(item.status) === "bad") bad.add(item.line);
+  }
+  const lines = run.source.replace(/\n$/, "").split("\n").map((text, index) => {
+    const line = index + 1;
+    const made = element(`span.line${bad.has(line) ? ".failing" : ""}${known.has(line) ? ".known" : ""}`, { "data-line": line });
+    made.append(...highlighted(text));
+    if (known.has(line)) made.addEventListener("click", () => select(line));
+    return made;
+  });
+  return element("pre.source", { tabindex: 0, "aria-label": "Scenario file" }, ...lines);
+}
+
+/** Mark the lines of the step that runs. @param {HTMLElement} view @param {number} from @param {number} to not included */
+export function markLines(view, from, to) {
+  for (const line of view.querySelectorAll(".line")) {
+    const number = Number(line.getAttribute("data-line"));
+    line.classList.toggle("current", number >= from && number < to);
+  }
+}
+
+/** YAML with its comments and keys told apart. */
+function highlighted(text) {
+  const [, code, comment] = /^((?:[^#"']|"[^"]*"|'[^']*'|\S#)*)(#.*)?$/.exec(text) ?? [null, text, ""];
+  const pieces = [];
+  let rest = code;
+  while (rest) {
+    const match = /[\w.]+(?=:(\s|$))/.exec(rest);
+    if (!match) break;
+    pieces.push(rest.slice(0, match.index), element("span.key", {}, match[0]));
+    rest = rest.slice(match.index + match[0].length);
+  }
+  return [...pieces, rest, comment ? element("span.comment", {}, comment) : "", "\n"];
+}
+
+/** @param {import("./payload.js").Payload} payload @param {(time: number) => void} seek */
+export function findingList({ run }, seek) {
+  if (!run.findings.length) {
+    return element("p.empty", {}, "Nothing: plan and physics agreed wherever they were compared.");
+  }
+  return element(
+    "ul.findings", {},
+    ...run.findings.map(({ kind, message, time, step }) =>
+      element(
+        "li", {},
+        element("b", {}, kind.replaceAll("_", " ")), element("p", {}, message),
+        time === null ? null : element("button.link", { type: "button", onclick: () => seek(time) }, `t = ${seconds(time)}`),
+        step ? element("span.what", {}, ` ${step}`) : null,
+      ),
+    ),
+  );
+}
+
+/** @param {import("./payload.js").Payload} payload */
+export function jointTable({ run }) {
+  const head = ["joint", "reached", "limits", "peak speed", "peak effort"];
+  return element(
+    "table", {},
+    element("thead", {}, element("tr", {}, ...head.map((name) => element("th", { scope: "col" }, name)))),
+    element(
+      "tbody", {},
+      ...run.joints.map((joint) =>
+        element(
+          "tr", {},
+          element("th", { scope: "row" }, joint.name),
+          element("td", {}, `${number(joint.low)} … ${number(joint.high)} ${joint.unit}`),
+          element("td", {}, joint.lower === null ? "none" : `${number(joint.lower)} … ${number(joint.upper)}`),
+          element("td", {}, share(joint.speed, joint.speedLimit)),
+          element("td", {}, share(joint.effort, joint.effortLimit)),
+        ),
+      ),
+    ),
+  );
+}
+
+function share(value, limit) {
+  if (limit === null || limit <= 0) return number(value);
+  return element("span.share", { title: `${number(value)} of ${number(limit)}` }, `${number((100 * value) / limit)} %`);
+}
+
+/** @param {[string, string][]} rows */
+export function pairTable(rows) {
+  return element("table", {}, element("tbody", {}, ...rows.map(([name, value]) =>
+    element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, value)))));
+}

@@ -1,0 +1,54 @@
+// Numbers as a person reads them.
+
+const SHOWN = {
+  m: [1000, "mm"],
+  rad: [180 / Math.PI, "°"],
+  "rad/s": [180 / Math.PI, "°/s"],
+  "m/s": [1000, "mm/s"],
+  "rad/s^2": [180 / Math.PI, "°/s²"],
+  "m/s^2": [1, "m/s²"],
+  "1": [1, ""],
+};
+
+/** @param {number} value three or four digits that matter */
+export function number(value) {
+  if (!Number.isFinite(value)) return "–";
+  const size = Math.abs(value);
+  if (size === 0) return "0";
+  if (size < 1e-3) return value.toExponential(1);
+  const digits = size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3;
+  return value.toFixed(digits);
+}
+
+/** A value with its unit; metres as millimetres, radians as degrees. @param {number} value @param {string} unit */
+export function amount(value, unit) {
+  const [factor, name] = SHOWN[unit] ?? [1, unit];
+  const gap = name === "" || name.startsWith("°") ? "" : " ";
+  return `${number(value * factor)}${gap}${name}`;
+}
+
+/** @param {number} time [s] */
+export function seconds(time) {
+  return `${time.toFixed(2)} s`;
+}
+
+/** Angles of an arm [rad] as degrees in one line. @param {number[]} positions */
+export function degrees(positions) {
+  return positions.map((position) => ((position * 180) / Math.PI).toFixed(1)).join("  ");
+}
+
+/** How steps and verdicts stand, as words and classes. */
+export const STATUS = {
+  passed: { good: true, word: "passed" },
+  expected_error: { good: true, word: "failed as expected" },
+  failed: { good: false, word: "failed" },
+  not_reached: { good: null, word: "not reached" },
+  "not reached": { good: false, word: "not reached" },
+  "not observable": { good: false, word: "not observable" },
+};
+
+/** Class of a status: `good`, `bad` or `open`. @param {string} status */
+export function tone(status) {
+  const { good } = STATUS[status] ?? { good: null };
+  return good === null ? "open" : good ? "good" : "bad";
+}

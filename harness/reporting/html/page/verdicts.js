@@ -1,0 +1,57 @@
+// The expectations: what was measured against what was asked, and how much room was left.
+
+import { element } from "./dom.js";
+import { amount, seconds, tone } from "./units.js";
+
+const WORST_SHOWN = 3;
+
+/**
+ * @param {import("./payload.js").Payload} payload
+ * @param {(index: number) => void} select
+ * @returns {HTMLElement}
+ */
+export function verdictList({ run }, select) {
+  const order = run.verdicts.map((_, index) => index);
+  order.sort((a, b) => Number(run.verdicts[a].status === "passed") - Number(run.verdicts[b].status === "passed"));
+  return element(
+    "ul.verdicts", {},
+    ...order.map((index) => element("li", {}, verdict(run, run.verdicts[index], index, select))),
+  );
+}
+
+function verdict(run, each, index, select) {
+  const place = [each.time === null ? "" : `t = ${seconds(each.time)}`, each.line ? `line ${each.line}` : ""];
+  return element(
+    `button.verdict.${tone(each.status)}`,
+    { type: "button", onclick: () => select(index), "data-verdict": index },
+    element("i.sign", { role: "img", "aria-label": each.status }),
+    element("b", {}, each.text),
+    each.status !== "passed" && each.status !== "failed" && element("span.what", {}, each.status),
+    each.reason && element("span.reason", {}, each.reason),
+    marginBar(each),
+    ...each.measures.slice(0, WORST_SHOWN).map((measure) => measured(measure)),
+    element("span.what", {}, place.filter(Boolean).join(" · ")),
+  );
+}
+
+/** A bar of the allowance: how much of it was used. */
+function marginBar({ margin, unit, used, status }) {
+  if (margin === null) return null;
+  const told = `${margin >= 0 ? "margin" : "missed by"} ${amount(Math.abs(margin), unit)}`;
+  if (used === null) return element("span.margin-text", {}, told);
+  const percent = Math.round(100 * used);
+  const bar = element("span.margin", { role: "img", "aria-label": `${percent} % of the allowance used` }, element("i"));
+  bar.firstChild.style.width = `${Math.max(1, Math.min(100, percent))}%`;
+  const text = used > 10 ? told : `${percent} % of the allowance used · ${told}`;
+  return element("span.room", {}, bar, element("span.margin-text", {}, status === "passed" || margin < 0 ? text : told));
+}
+
+function measured({ name, value, limit, comparison, unit, detail }) {
+  const sign = { "<=": "≤", ">=": "≥", "==": "=" }[comparison];
+  return element(
+    "span.measure", {},
+    `${name} `, element("code", {}, amount(value, unit)),
+    limit === null ? "" : ` ${sign} ${amount(limit, unit)}`,
+    detail && element("em", {}, ` ${detail}`),
+  );
+}

@@ -1,0 +1,319 @@
+// Draws posed bodies and lines with WebGL2: a sun with a soft shadow, translucent bodies last.
+
+import { lineAttributes, lineVertices, VERTICES_PER_SEGMENT } from "./lines.js";
+import { LINE, SHADOW, SURFACE } from "./shaders.js";
+import { addScaled, lookAt, multiply, normalize, orthographic, transformPoint } from "./vectors.js";
+
+const SHADOW_SIZE = 2048; // [pixels], as the shader divides by
+const SLOW = 25; // [ms]
+const COARSE = 0.55; // of the pixels along each side
+const SUN = normalize([0.35, -0.45, 0.9]);
+const IDENTITY = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+
+/**
+ * @typedef {object} Surface
+ * @property {Float32Array} model T_world_shape, set by whoever moves it
+ * @property {number[]} color rgba
+ * @property {boolean} visible
+ * @property {boolean} castsShadow
+ * @property {number} grid 1 for a floor with lines, else 0
+ * @property {number} glow 0 to 1: lit from inside
+ */
+/**
+ * @typedef {object} Line
+ * @property {number[]} color rgba
+ * @property {number} width [pixels]
+ * @property {number} dash length of a dash and its gap [m]; 0 draws it whole
+ * @property {boolean} visible
+ * @property {boolean} onTop drawn over everything
+ * @property {number} segments how many are drawn
+ * @property {Float32Array} model T_world_line
+ */
+
+export class Viewer {
+  /**
+   * @param {HTMLElement} host is filled by the picture
+   * @param {{center: number[], radius: number}} bounds what the shadow covers [m]
+   */
+  constructor(host, bounds) {
+    this.host = host;
+    this.canvas = document.createElement("canvas");
+    const gl = this.canvas.getContext("webgl2", { antialias: true, alpha: false, preserveDrawingBuffer: true });
+    if (!gl) throw new Error("WebGL2 is not available");
+    this.gl = gl;
+    host.prepend(this.canvas);
+    /** @type {(Surface & {vertexArray: WebGLVertexArrayObject, count: number})[]} */
+    this.surfaces = [];
+    /** @type {(Line & {vertexArray: WebGLVertexArrayObject, buffer: WebGLBuffer})[]} */
+    this.lines = [];
+    this.background = [1, 1, 1];
+    this.ambient = 1;
+    this.isDirty = this.hasMoved = true;
+    this.isCoarse = false;
+    this.drawn = 0;
+    this.cost = 0; // of a picture, once measured [ms]
+    this.bounds = bounds;
+    this.surfaceProgram = program(gl, SURFACE);
+    this.shadowProgram = program(gl, SHADOW);
+    this.lineProgram = program(gl, LINE);
+    this.#makeShadowMap();
+    const distance = 3 * bounds.radius;
+    this.sun = multiply(
+      orthographic(bounds.radius, distance - bounds.radius * 1.5, distance + bounds.radius * 1.5),
+      lookAt(addScaled(bounds.center, SUN, distance), /** @type {any} */ (bounds.center), [0, 1, 0]),
+    );
+    new ResizeObserver(() => this.redraw()).observe(host);
+  }
+
+  /** Have the picture drawn at the next chance. */
+  redraw() {
+    this.isDirty = true;
+  }
+
+  /** Have the shadows drawn anew too: something has moved. */
+  moved() {
+    this.isDirty = this.hasMoved = true;
+  }
+
+  /**
+   * @param {{positions: Float32Array, normals: Float32Array, indices: Uint32Array}} mesh
+   * @param {number[]} color rgba @param {Partial<Surface>} [options] @returns {Surface}
+   */
+  addSurface({ positions, normals, indices }, color, options = {}) {
+    const { gl } = this;
+    const vertexArray = gl.createVertexArray();
+    gl.bindVertexArray(vertexArray);
+    for (const [location, data] of [[0, positions], [1, normals]]) {
+      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ARRAY_BUFFER, /** @type {Float32Array} */ (data), gl.STATIC_DRAW);
+      gl.enableVertexAttribArray(/** @type {number} */ (location));
+      gl.vertexAttribPointer(/** @type {number} */ (location), 3, gl.FLOAT, false, 0, 0);
+    }
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
+    gl.bindVertexArray(null);
+    const surface = {
+      vertexArray, count: indices.length, color, model: IDENTITY,
+      visible: true, castsShadow: color[3] > 0.99, grid: 0, glow: 0, ...options,
+    };
+    this.surfaces.push(surface);
+    return surface;
+  }
+
+  /** @param {ArrayLike<number>} points x, y, z of each @param {Partial<Line>} options @returns {Line} */
+  addLine(points, options) {
+    const { gl } = this;
+    const vertexArray = gl.createVertexArray();
+    const buffer = gl.createBuffer();
+    gl.bindVertexArray(vertexArray);
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    lineAttributes(gl);
+    const line = {
+      vertexArray, buffer, color: [0, 0, 0, 1], width: 2, dash: 0, visible: true, onTop: false,
+      segments: 0, model: IDENTITY, ...options,
+    };
+    this.lines.push(line);
+    this.setPoints(line, points);
+    return line;
+  }
+
+  /** Give a line other points. @param {Line} line @param {ArrayLike<number>} points */
+  setPoints(line, points) {
+    const { gl } = this;
+    gl.bindBuffer(gl.ARRAY_BUFFER, /** @type {any} */ (line).buffer);
+    gl.bufferData(gl.ARRAY_BUFFER, lineVertices(points), gl.DYNAMIC_DRAW);
+    line.segments = Math.max(0, points.length / 3 - 1);
+    this.redraw();
+  }
+
+  /**
+   * Draw, if anything changed; while it moves in fewer pixels, where graphics are slow.
+   * @param {import("./orbit.js").Orbit} orbit @param {boolean} isMoving
+   */
+  draw(orbit, isMoving) {
+    const wasCoarse = this.isCoarse;
+    this.isCoarse = isMoving && this.cost > SLOW;
+    if (!this.isDirty && !(wasCoarse && !this.isCoarse)) return;
+    const ratio = Math.min(devicePixelRatio, 2) * (this.isCoarse ? COARSE : 1);
+    const [width, height] = [Math.round(this.host.clientWidth * ratio), Math.round(this.host.clientHeight * ratio)];
+    if (!width || !height) return;
+    this.isDirty = false;
+    if (this.canvas.width !== width || this.canvas.height !== height) {
+      this.canvas.width = width;
+      this.canvas.height = height;
+    }
+    const begin = performance.now();
+    this.#drawAt(orbit, null, width, height, ratio);
+    if (this.cost === 0 && this.drawn++ > 0) {
+      this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits
+      this.cost = performance.now() - begin;
+    }
+  }
+
+  /** Draw the scene as it is posed now on a small canvas. @param {import("./orbit.js").Orbit} orbit @param {HTMLCanvasElement} target */
+  copyTo(orbit, target) {
+    const { gl } = this;
+    const { width, height } = target;
+    const buffer = this.#smallBuffer(width, height);
+    this.#drawAt(orbit, buffer, width, height, 1);
+    const pixels = new Uint8ClampedArray(4 * width * height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, buffer);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    const upright = new ImageData(width, height);
+    for (let row = 0; row < height; row++) {
+      upright.data.set(pixels.subarray(4 * width * row, 4 * width * (row + 1)), 4 * width * (height - 1 - row));
+    }
+    target.getContext("2d").putImageData(upright, 0, 0);
+  }
+
+  /** Where a point of the world is on the canvas, in CSS pixels; null behind the eye. @param {import("./orbit.js").Orbit} orbit @param {ArrayLike<number>} point */
+  project(orbit, point) {
+    const [width, height] = [this.host.clientWidth, this.host.clientHeight];
+    const view = orbit.matrix(width / height);
+    const [x, y] = transformPoint(view, point);
+    const w = view[3] * point[0] + view[7] * point[1] + view[11] * point[2] + view[15];
+    return w > 0 ? [(0.5 + (0.5 * x) / w) * width, (0.5 - (0.5 * y) / w) * height] : null;
+  }
+
+  #drawAt(orbit, buffer, width, height, ratio) {
+    const { gl } = this;
+    const shown = this.surfaces.filter((surface) => surface.visible);
+    if (this.hasMoved) this.#drawShadows(shown);
+    this.hasMoved = false;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, buffer);
+    gl.enable(gl.DEPTH_TEST);
+    gl.disable(gl.BLEND);
+    gl.viewport(0, 0, width, height);
+    gl.clearColor(this.background[0], this.background[1], this.background[2], 1);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    const view = orbit.matrix(width / height);
+    this.#drawSurfaces(shown, view, orbit.eye);
+    this.#drawLines(view, width, height, ratio);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  }
+
+  #smallBuffer(width, height) {
+    const { gl } = this;
+    if (this.small?.width === width && this.small.height === height) return this.small.buffer;
+    const buffer = gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, buffer);
+    for (const [format, attachment] of [[gl.RGBA8, gl.COLOR_ATTACHMENT0], [gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT]]) {
+      const store = gl.createRenderbuffer();
+      gl.bindRenderbuffer(gl.RENDERBUFFER, store);
+      gl.renderbufferStorage(gl.RENDERBUFFER, format, width, height);
+      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, attachment, gl.RENDERBUFFER, store);
+    }
+    this.small = { width, height, buffer };
+    return buffer;
+  }
+
+  #drawShadows(shown) {
+    const { gl, shadowProgram } = this;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.shadowBuffer);
+    gl.viewport(0, 0, SHADOW_SIZE, SHADOW_SIZE);
+    gl.enable(gl.DEPTH_TEST);
+    gl.disable(gl.BLEND);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    gl.useProgram(shadowProgram.program);
+    gl.uniformMatrix4fv(shadowProgram.at.sun, false, this.sun);
+    for (const surface of shown) {
+      if (!surface.castsShadow) continue;
+      gl.uniformMatrix4fv(shadowProgram.at.model, false, surface.model);
+      gl.bindVertexArray(surface.vertexArray);
+      gl.drawElements(gl.TRIANGLES, surface.count, gl.UNSIGNED_INT, 0);
+    }
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  }
+
+  #drawSurfaces(shown, view, eye) {
+    const { gl } = this;
+    const { at } = this.surfaceProgram;
+    gl.useProgram(this.surfaceProgram.program);
+    gl.uniformMatrix4fv(at.view, false, view);
+    gl.uniformMatrix4fv(at.sun, false, this.sun);
+    gl.uniform3fv(at.eye, eye);
+    gl.uniform3fv(at.sunDirection, SUN);
+    gl.uniform3fv(at.gridCenter, this.bounds.center);
+    gl.uniform4fv(at.fog, [...this.background, 1]);
+    gl.uniform1f(at.ambient, this.ambient);
+    gl.bindTexture(gl.TEXTURE_2D, this.shadowMap);
+    const distance = ({ model }) => Math.hypot(model[12] - eye[0], model[13] - eye[1], model[14] - eye[2]);
+    const solid = shown.filter((surface) => surface.color[3] > 0.99);
+    const translucent = shown.filter((surface) => surface.color[3] <= 0.99);
+    translucent.sort((a, b) => distance(b) - distance(a));
+    for (const surface of [...solid, ...translucent]) {
+      if (surface === translucent[0]) {
+        gl.enable(gl.BLEND);
+        gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+        gl.depthMask(false);
+      }
+      gl.uniformMatrix4fv(at.model, false, surface.model);
+      gl.uniform4fv(at.color, surface.color);
+      gl.uniform1f(at.grid, surface.grid);
+      gl.uniform1f(at.glow, surface.glow);
+      gl.bindVertexArray(surface.vertexArray);
+      gl.drawElements(gl.TRIANGLES, surface.count, gl.UNSIGNED_INT, 0);
+    }
+    gl.depthMask(true);
+  }
+
+  #drawLines(view, width, height, ratio) {
+    const { gl } = this;
+    const { at } = this.lineProgram;
+    gl.useProgram(this.lineProgram.program);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    gl.uniformMatrix4fv(at.view, false, view);
+    gl.uniform2f(at.resolution, width / 2, height / 2);
+    for (const line of this.lines) {
+      if (!line.visible || line.segments < 1) continue;
+      (line.onTop ? gl.disable : gl.enable).call(gl, gl.DEPTH_TEST);
+      gl.uniformMatrix4fv(at.model, false, line.model);
+      gl.uniform4fv(at.color, line.color);
+      gl.uniform1f(at.width, (line.width * ratio) / 2);
+      gl.uniform1f(at.dash, line.dash);
+      gl.bindVertexArray(/** @type {any} */ (line).vertexArray);
+      gl.drawArrays(gl.TRIANGLES, 0, line.segments * VERTICES_PER_SEGMENT);
+    }
+  }
+
+  #makeShadowMap() {
+    const { gl } = this;
+    this.shadowMap = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, this.shadowMap);
+    gl.texStorage2D(gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT24, SHADOW_SIZE, SHADOW_SIZE);
+    const settings = [
+      [gl.TEXTURE_COMPARE_MODE, gl.COMPARE_REF_TO_TEXTURE],
+      [gl.TEXTURE_MIN_FILTER, gl.LINEAR],
+      [gl.TEXTURE_MAG_FILTER, gl.LINEAR],
+      [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE],
+      [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE],
+    ];
+    for (const [name, value] of settings) gl.texParameteri(gl.TEXTURE_2D, name, value);
+    this.shadowBuffer = gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.shadowBuffer);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, this.shadowMap, 0);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  }
+}
+
+/** Compile a program. @returns {{program: WebGLProgram, at: Record<string, WebGLUniformLocation>}} */
+function program(gl, source) {
+  const made = gl.createProgram();
+  for (const [kind, text] of [[gl.VERTEX_SHADER, source.vertex], [gl.FRAGMENT_SHADER, source.fragment]]) {
+    const shader = gl.createShader(kind);
+    gl.shaderSource(shader, text);
+    gl.compileShader(shader);
+    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
+    gl.attachShader(made, shader);
+  }
+  gl.linkProgram(made);
+  if (!gl.getProgramParameter(made, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(made));
+  const at = {};
+  for (let i = 0; i < gl.getProgramParameter(made, gl.ACTIVE_UNIFORMS); i++) {
+    const { name } = gl.getActiveUniform(made, i);
+    at[name] = gl.getUniformLocation(made, name);
+  }
+  return { program: made, at };
+}

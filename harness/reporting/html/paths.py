@@ -1,0 +1,106 @@
+"""TCP paths of the replay: as recorded, as planned, and goals."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, cast
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.recording.link_poses import link_poses
+from harness.recording.run import Run, StepRecord
+from harness.reporting.html.packing import Packer
+
+TCP_POINTS = 1500
+PLAN_POINTS = 150
+
+
+def pack_tcp_path(run: Run, packer: Packer) -> None:
+    """Put the recorded path in, with its times."""
+    rows = _spread(len(run.signals.times), TCP_POINTS)
+    packer.add("tcp", run.signals.tcp_pose[rows, :3].astype(np.float32))
+    packer.add("tcp.times", run.signals.times[rows].astype(np.float32))
+
+
+def pack_plan(run: Run, step: StepRecord, index: int, packer: Packer) -> dict[str, Any]:
+    """A step's planned TCP path, the path before shortening, and its goal, each if known."""
+    poses = _planned_poses(run, step)
+    found = _raw_poses(run, step)
+    goal = _goal(step)
+    if goal is None and poses is not None:
+        goal = [round(float(value), 6) for value in poses[-1]]
+    return {
+        "plan": None if poses is None else packer.add(f"plan.{index}", _points(poses)),
+        "rawPlan": None if found is None else packer.add(f"raw.{index}", _points(found)),
+        "goal": goal,
+        "nearest": _nearest(step),
+    }
+
+
+def _planned_poses(run: Run, step: StepRecord) -> FloatArray | None:
+    if step.trajectory is None:
+        return None
+    names = cast("Sequence[str]", step.trajectory["joint_names"])
+    positions = np.asarray(step.trajectory["positions"], dtype=float)
+    return _tool_poses(run, step, names, positions[_spread(len(positions), PLAN_POINTS)])
+
+
+def _raw_poses(run: Run, step: StepRecord) -> FloatArray | None:
+    """Along the path as the search found it, in straight lines between its waypoints."""
+    raw = step.planner.get("raw_path")
+    if not isinstance(raw, list | tuple) or len(cast("Sequence[Any]", raw)) < 2:
+        return None
+    names = run.robot.groups.get(run.robot.arm_group, ())
+    waypoints = np.asarray(raw, dtype=float)
+    if waypoints.ndim != 2 or waypoints.shape[1] != len(names):
+        return None
+    places = np.linspace(0, len(waypoints) - 1, PLAN_POINTS)
+    before = np.minimum(places.astype(int), len(waypoints) - 2)
+    share = (places - before)[:, None]
+    between = (1 - share) * waypoints[before] + share * waypoints[before + 1]
+    return _tool_poses(run, step, names, between)
+
+
+def _tool_poses(
+    run: Run, step: StepRecord, names: Sequence[str], positions: FloatArray
+) -> FloatArray | None:
+    """T_world_tcp where some joints move and the others stand as when the step began."""
+    columns = {joint.name: column for column, joint in enumerate(run.robot.joints)}
+    if not len(positions) or any(name not in columns for name in names):
+        return None
+    start = min(step.start_index, len(run.signals.times) - 1)
+    rows = np.tile(run.signals.joint_positions[start], (len(positions), 1))
+    rows[:, [columns[name] for name in names]] = positions
+    poses = link_poses(run.robot, rows, [run.robot.tcp_link]).get(run.robot.tcp_link)
+    return None if poses is None else np.broadcast_to(poses, (len(rows), 7))
+
+
+def _goal(step: StepRecord) -> list[float] | None:
+    """Where the tool was to be, as the step's explanation tells."""
+    return _numbers(step.explanation.get("goal_pose"), 7)
+
+
+def _nearest(step: StepRecord) -> list[float] | None:
+    """The reachable point nearest to a goal that cannot be reached."""
+    nearest = step.explanation.get("nearest_position")
+    if nearest is None and isinstance(step.explanation.get("nearest"), Mapping):
+        nearest = cast("Mapping[str, Any]", step.explanation["nearest"]).get("xyz")
+    return _numbers(nearest, 3)
+
+
+def _numbers(values: Any, count: int) -> list[float] | None:
+    if not isinstance(values, list | tuple | np.ndarray):
+        return None
+    array = np.asarray(values, dtype=float)
+    if array.shape != (count,):
+        return None
+    return [round(float(value), 6) for value in array] if np.isfinite(array).all() else None
+
+
+def _spread(count: int, most: int) -> np.ndarray[Any, Any]:
+    return np.unique(np.linspace(0, count - 1, min(count, most)).astype(int))
+
+
+def _points(poses: FloatArray) -> np.ndarray[Any, Any]:
+    return poses[:, :3].astype(np.float32)

@@ -1,0 +1,85 @@
+"""What cameras saw, small enough for the page."""
+
+from __future__ import annotations
+
+from pathlib import PurePosixPath
+from typing import Any
+
+import cv2
+import numpy as np
+
+from harness.recording.run import Run
+from harness.reporting.html.packing import Packer
+
+KINDS = {"color": "", "depth_preview": "depth", "segmentation_preview": "segmentation"}
+"""Kinds of files that can be looked at, and how the page calls them."""
+LARGEST_VIDEO = 1_500_000
+"""A larger one stays in the run's folder [bytes]."""
+MOST_IMAGES = 40
+WIDEST = 480  # [pixels]
+QUALITY = 75
+
+
+def pack_cameras(run: Run, packer: Packer) -> list[dict[str, Any]]:
+    """Put videos and pictures in; a view for each camera and kind of picture."""
+    return [*_videos(run, packer), *_images(run, packer)]
+
+
+def _videos(run: Run, packer: Packer) -> list[dict[str, Any]]:
+    views: list[dict[str, Any]] = []
+    for number, video in enumerate(run.videos):
+        data = run.files.get(video.file, b"")
+        if not 0 < len(data) <= LARGEST_VIDEO or not video.times:
+            continue
+        name = packer.add(f"video.{number}", data)
+        source = {"buffer": name, "type": "video/webm", "start": video.times[0]}
+        views.append(
+            {"name": video.camera, "note": _note(video.backend), "video": source, "images": []}
+        )
+    return views
+
+
+def _images(run: Run, packer: Packer) -> list[dict[str, Any]]:
+    views: dict[tuple[str, str], dict[str, Any]] = {}
+    for number, capture in enumerate(run.captures):
+        for kind, called in KINDS.items():
+            data = run.files.get(capture.files.get(kind, ""), b"")
+            view = views.setdefault(
+                (capture.camera, kind),
+                {
+                    "name": f"{capture.camera} {called}".strip(),
+                    "note": _note(capture.backend),
+                    "video": None,
+                    "images": [],
+                },
+            )
+            if not data or len(view["images"]) >= MOST_IMAGES:
+                continue
+            small, suffix = _small(data, PurePosixPath(capture.files[kind]).suffix)
+            view["images"].append(
+                {
+                    "time": capture.time,
+                    "buffer": packer.add(f"image.{number}.{kind}", small),
+                    "type": f"image/{suffix.removeprefix('.').replace('jpg', 'jpeg')}",
+                    "label": capture.step,
+                }
+            )
+    return [view for view in views.values() if view["images"]]
+
+
+def _note(backend: str) -> str:
+    return f"drawn by {backend}" if backend else ""
+
+
+def _small(data: bytes, suffix: str) -> tuple[bytes, str]:
+    """The picture as WebP where that is smaller."""
+    picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
+    if picture is None:
+        return data, suffix.lower()
+    height, width = picture.shape[:2]
+    if width > WIDEST:
+        size = (WIDEST, round(height * WIDEST / width))
+        picture = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
+    is_coded, coded = cv2.imencode(".webp", picture, [cv2.IMWRITE_WEBP_QUALITY, QUALITY])
+    small = coded.tobytes() if is_coded else data
+    return (small, ".webp") if len(small) < len(data) else (data, suffix.lower())

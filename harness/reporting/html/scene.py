@@ -1,0 +1,190 @@
+"""The bodies of the 3D replay: what they look like and where they were, frame by frame."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from harness.core.geometry import (
+    Box,
+    Capsule,
+    Cylinder,
+    Mesh,
+    Plane,
+    Shape,
+    Sphere,
+    bounding_radius,
+)
+from harness.core.types import FloatArray, IntArray
+from harness.recording.link_poses import link_poses
+from harness.recording.run import ObjectRecord, Run
+from harness.reporting.html.meshes import pack_mesh
+from harness.reporting.html.packing import Packer, differences
+
+FASTEST_RATE, SLOWEST_RATE = 50.0, 10.0
+"""Poses a second [Hz]; the page goes from one to the next in straight lines."""
+MOST_FRAMES = 6000
+FARTHEST = 20.0  # [m]; what fell off the world is drawn there
+STILL = 1e-5
+FULL = 32700
+NEARBY = 1.3  # [m] from the base: what the first view holds
+LARGE = 0.6  # [m]: a table does not widen the first view
+
+MeshKey = tuple[Path, tuple[float, float, float]]
+
+
+def frame_samples(times: FloatArray) -> tuple[float, IntArray]:
+    """Time between frames [s], and the sample of each frame."""
+    duration = float(times[-1])
+    rate = min(FASTEST_RATE, max(SLOWEST_RATE, MOST_FRAMES / max(duration, 1e-9)))
+    count = max(2, int(np.ceil(duration * rate)) + 1)
+    step = max(duration / (count - 1), 1e-6)
+    samples = np.searchsorted(times, np.arange(count) * step - 1e-9)
+    return step, np.minimum(samples, len(times) - 1)
+
+
+def pack_scene(run: Run, packer: Packer) -> dict[str, Any]:
+    """Bodies, meshes, frames and what the first view holds."""
+    step, samples = frame_samples(run.signals.times)
+    poses = link_poses(run.robot, run.signals.joint_positions[samples])
+    meshes = _mesh_parts(run)
+    bodies: list[dict[str, Any]] = []
+    columns: list[FloatArray] = []
+
+    def add(name: str, shapes: Sequence[Shape], rows: FloatArray, **more: Any) -> None:
+        body = {"name": name, "shapes": [_shape(shape, meshes) for shape in shapes], **more}
+        moves = len(rows) > 1 and bool(np.ptp(rows, axis=0).max() > STILL)
+        body["fixed"] = None if moves else _rounded(rows[0])
+        if moves:
+            body["column"] = len(columns)
+            columns.append(rows)
+        bodies.append(body)
+
+    always = [[0.0, float(run.signals.times[-1])]]
+    for name in dict.fromkeys([*run.robot.link_visuals, run.robot.tcp_link]):
+        if name in poses:
+            looks = run.robot.link_visuals.get(name, ())
+            add(name, looks, poses[name], shown=always, ghost=False, isFloor=False)
+    for obj in run.objects:
+        recorded = run.signals.object_poses.get(obj.name)
+        known = _filled(recorded[samples]) if recorded is not None else None
+        rows = np.array([obj.pose]) if known is None and obj.pose else known
+        if rows is None:
+            continue
+        is_floor = any(isinstance(shape.geometry, Plane) for shape in obj.shapes)
+        shown = always if recorded is None else _shown(run.signals.times, recorded)
+        ghost = not obj.in_simulation
+        add(obj.name, obj.shapes, rows, shown=shown, ghost=ghost, isFloor=is_floor)
+    unit = _pack_poses(columns, len(samples), packer)
+    focus, bounds = _views(run, poses)
+    return {
+        "bodies": bodies,
+        "meshes": [pack_mesh(mesh, number, packer) for number, mesh in enumerate(run.meshes)],
+        "frames": {"count": len(samples), "step": step, "unit": unit},
+        "toolBody": run.robot.tcp_link,
+        "focus": focus,
+        "bounds": bounds,
+    }
+
+
+def _mesh_parts(run: Run) -> dict[MeshKey, list[list[Any]]]:
+    """Of each mesh file: the numbers of its parts, with their colours."""
+    parts: dict[MeshKey, list[list[Any]]] = {}
+    for number, mesh in enumerate(run.meshes):
+        colour = None if mesh.rgba is None else _rounded(mesh.rgba, 3)
+        parts.setdefault((mesh.path, mesh.scale), []).append([number, colour])
+    return parts
+
+
+def _shape(shape: Shape, meshes: Mapping[MeshKey, list[list[Any]]]) -> dict[str, Any]:
+    plain: dict[str, Any] = {
+        "pose": _rounded(shape.pose.as_vector()),
+        "color": _rounded(shape.rgba, 3),
+    }
+    match shape.geometry:
+        case Box(size=size):
+            return plain | {"kind": "box", "size": list(size)}
+        case Cylinder(radius=radius, length=length):
+            return plain | {"kind": "cylinder", "radius": radius, "length": length}
+        case Capsule(radius=radius, length=length):
+            return plain | {"kind": "capsule", "radius": radius, "length": length}
+        case Sphere(radius=radius):
+            return plain | {"kind": "sphere", "radius": radius}
+        case Plane():
+            return plain | {"kind": "plane"}
+        case Mesh(path=path, scale=scale):
+            return plain | {"kind": "mesh", "parts": meshes.get((path, scale), [])}
+
+
+def _pack_poses(columns: Sequence[FloatArray], count: int, packer: Packer) -> float:
+    """Put moving poses in, as 16-bit numbers; returns the unit of positions [m]."""
+    stacked = np.stack(columns, axis=1) if columns else np.zeros((count, 0, 7))
+    positions = np.clip(stacked[:, :, :3], -FARTHEST, FARTHEST)
+    unit = max(float(np.abs(positions).max(initial=0.0)) / FULL, 1e-6)
+    quats = stacked[:, :, 3:]
+    turns = np.sum(quats[1:] * quats[:-1], axis=2)
+    signs = np.cumprod(np.where(turns < 0, -1.0, 1.0), axis=0)
+    quats = np.concatenate([quats[:1], quats[1:] * signs[:, :, None]])
+    whole = np.concatenate([np.rint(positions / unit), np.rint(quats * FULL)], axis=2)
+    packer.add("poses", differences(whole.reshape(count, -1).T))
+    return unit
+
+
+def _filled(rows: FloatArray) -> FloatArray | None:
+    """Poses with those that are missing as the last one known, or the first."""
+    known = np.isfinite(rows).all(axis=1)
+    if not known.any():
+        return None
+    last = np.maximum.accumulate(np.where(known, np.arange(len(rows)), -1))
+    return rows[np.where(last < 0, int(known.argmax()), last)]
+
+
+def _shown(times: FloatArray, recorded: FloatArray) -> list[list[float]]:
+    """Intervals of time in which a body was there [s]."""
+    there = np.isfinite(recorded[:, 0]).astype(np.int8)
+    edges = np.flatnonzero(np.diff(there, prepend=0, append=0))
+    starts, ends = edges[::2], edges[1::2] - 1
+    return [[float(times[a]), float(times[b])] for a, b in zip(starts, ends, strict=True)]
+
+
+def _views(run: Run, poses: Mapping[str, FloatArray]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Spheres around what the first view holds, and around what the sun's shadow covers."""
+    near = [rows[:, :3] for rows in poses.values()]
+    near = [points for points in near if np.abs(points).max(initial=0.0) > 0]
+    near.append(run.signals.tcp_pose[:: max(1, len(run.signals.times) // 500), :3])
+    base = poses[run.robot.base_link][0, :3] if run.robot.base_link in poses else np.zeros(3)
+    wide: list[FloatArray] = []
+    for obj in run.objects:
+        if any(isinstance(shape.geometry, Plane) for shape in obj.shapes):
+            continue
+        centres, reach = _extent(run, obj)
+        corners = np.concatenate([centres - reach, centres + reach])
+        if reach < LARGE and np.linalg.norm(centres - base, axis=1).min(initial=np.inf) < NEARBY:
+            near.append(corners)
+        wide.append(np.clip(corners, base - 2.5, base + 2.5))
+    inner = _sphere(near)
+    return inner, _sphere([*near, *wide])
+
+
+def _extent(run: Run, obj: ObjectRecord) -> tuple[FloatArray, float]:
+    """Where an object's centre was, a few times, and how far it reaches from there [m]."""
+    reach = max((bounding_radius(shape) for shape in obj.shapes), default=0.0)
+    recorded = run.signals.object_poses.get(obj.name)
+    rows = np.array([obj.pose or (0.0,) * 7]) if recorded is None else recorded
+    rows = rows[:: max(1, len(rows) // 20)]
+    centres = rows[np.isfinite(rows).all(axis=1), :3]
+    return np.clip(centres, -FARTHEST, FARTHEST), reach if np.isfinite(reach) else 0.3
+
+
+def _sphere(clouds: Sequence[FloatArray]) -> dict[str, Any]:
+    points = np.concatenate([cloud for cloud in clouds if len(cloud)] or [np.zeros((1, 3))])
+    low, high = points.min(axis=0), points.max(axis=0)
+    radius = max(0.15, 0.5 * float(np.linalg.norm(high - low)))
+    return {"center": _rounded((low + high) / 2), "radius": round(radius, 4)}
+
+
+def _rounded(values: Any, digits: int = 6) -> list[float]:
+    return [round(float(value), digits) for value in values]

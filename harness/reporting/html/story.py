@@ -1,0 +1,204 @@
+"""Steps, verdicts, findings and surroundings of a run, as the page tells them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from harness.recording.plain import to_plain
+from harness.recording.run import JointRecord, Measure, Run, StepRecord, Verdict
+from harness.recording.store import StoredRun
+
+PLOTS = (
+    ("joint position", "position"), ("tracking", "tracking"), ("clearance", "clearance"),
+    ("force", "contact"), ("contact", "contact"), ("slip", "slip"), ("turn in the hand", "slip"),
+    ("height", "height"), ("TCP", "tcp"), ("path length", "tcp"), ("velocity", "velocity"),
+    ("effort", "effort"), ("position error", "displacement"), ("position", "position"),
+    ("speed", "displacement"),
+)  # fmt: skip
+"""What a measure's name contains -> the plot that shows it; the first that fits."""
+
+
+TONES = {"passed": "good", "expected_error": "good", "failed": "bad", "not_reached": "open"}
+
+
+def ordered_steps(run: Run) -> list[StepRecord]:
+    """Steps as a person reads them: a step before those nested in it."""
+    order = {step.path: number for number, step in enumerate(run.steps)}
+
+    def key(step: StepRecord) -> tuple[int, int]:
+        nested = [order[each.path] for each in run.steps if _is_inside(each, step)]
+        return min([order[step.path], *nested]), depth_of(step, run)
+
+    return sorted(run.steps, key=key)
+
+
+def depth_of(step: StepRecord, run: Run) -> int:
+    """In how many other steps it is nested."""
+    return sum(_is_inside(step, other) for other in run.steps)
+
+
+def _is_inside(inner: StepRecord, outer: StepRecord) -> bool:
+    return inner.path != outer.path and inner.path.startswith((f"{outer.path}.", f"{outer.path}["))
+
+
+def step_facts(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> dict[str, Any]:
+    """A step as plain data; one whose own expectations do not hold looks failed."""
+    broken = [each for each in verdicts if each.step == step.id and each.status != "passed"]
+    tone = TONES[step.status]
+    return {
+        "tone": "bad" if broken and tone == "good" else tone,
+        "broken": [f"{each.expectation}: {each.reason or each.status}" for each in broken],
+        "id": step.id,
+        "verb": step.verb,
+        "summary": step.summary,
+        "line": step.line,
+        "lastLine": last_line(run.source, step.line),
+        "status": step.status,
+        "errorCode": step.error_code,
+        "message": step.message.removeprefix(f"{step.error_code}: "),
+        "start": step.start_time,
+        "end": step.end_time,
+        "depth": depth_of(step, run),
+        "hasChildren": any(_is_inside(other, step) for other in run.steps),
+        "planner": finite(
+            {key: value for key, value in step.planner.items() if key not in {"raw_path", "path"}}
+        ),
+        "explanation": finite(step.explanation),
+    }
+
+
+def verdict_facts(verdict: Verdict) -> dict[str, Any]:
+    """A verdict as plain data."""
+    first = verdict.measures[0] if verdict.measures else None
+    name = first.name if first else ""
+    return {
+        "text": verdict.expectation,
+        "status": verdict.status,
+        "margin": _number(verdict.margin),
+        "unit": verdict.unit,
+        "used": None if first is None else allowance_used(first),
+        "time": _number(verdict.time),
+        "line": verdict.line,
+        "step": verdict.step,
+        "reason": verdict.reason,
+        "measures": [finite(to_plain(measure)) for measure in verdict.measures],
+        "plot": next((plot for part, plot in PLOTS if part in name), None),
+        "points": None,
+    }
+
+
+def allowance_used(measure: Measure) -> float | None:
+    """Share of what was allowed that was used, 1 at the limit; None where that has no meaning."""
+    value, limit = measure.value, measure.limit
+    if not (math.isfinite(value) and math.isfinite(limit)) or measure.comparison == "==":
+        return None
+    if measure.comparison == "<=":
+        return max(0.0, value) / limit if limit > 0 else None
+    if limit <= 0:
+        return None
+    return limit / value if value > limit / 100 else 100.0
+
+
+def findings_facts(run: Run) -> list[dict[str, Any]]:
+    """What a person should know that is no verdict."""
+    return [
+        {
+            "kind": finding.kind,
+            "message": finding.message,
+            "time": _number(finding.time),
+            "step": finding.step,
+        }
+        for finding in run.findings
+    ]
+
+
+def joint_facts(run: Run) -> list[dict[str, Any]]:
+    """What each joint did against its limits."""
+    return [_joint(run, joint, column) for column, joint in enumerate(run.robot.joints)]
+
+
+def _joint(run: Run, joint: JointRecord, column: int) -> dict[str, Any]:
+    slides = joint.kind == "prismatic"
+    factor = 1e3 if slides else 180 / math.pi
+    positions = run.signals.joint_positions[:, column]
+    return {
+        "name": joint.name,
+        "unit": "mm" if slides else "°",
+        "low": factor * float(positions.min()),
+        "high": factor * float(positions.max()),
+        "lower": _number(factor * joint.lower),
+        "upper": _number(factor * joint.upper),
+        "speed": factor * float(np.abs(run.signals.joint_velocities[:, column]).max()),
+        "speedLimit": _number(factor * joint.velocity),
+        "effort": float(np.nanmax(np.abs(run.signals.joint_efforts[:, column]), initial=0.0)),
+        "effortLimit": _number(joint.effort),
+    }
+
+
+def environment(stored: StoredRun) -> list[tuple[str, str]]:
+    """Everything one needs to run it again and get the same."""
+    run = stored.run
+    rows = [
+        ("scenario", run.scenario),
+        ("file", run.file),
+        ("case", run.case),
+        ("seed", str(run.seed)),
+        ("digest", stored.digest),
+        ("robot", run.robot.name),
+        ("gripper group", run.robot.gripper.group if run.robot.gripper else ""),
+        ("tool frame", run.robot.tcp_link),
+        ("physics step", f"{1e3 * run.timestep:g} ms"),
+        ("gravity", f"{', '.join(f'{value:g}' for value in run.gravity)} m/s²"),
+        ("samples", f"{len(run.signals.times)}"),
+        ("ended early", run.ended_early),
+        *((name, version) for name, version in run.versions.items()),
+        *((f"{name}, wall time", f"{value:.2f} s") for name, value in stored.wall_times.items()),
+    ]
+    return [(name, value) for name, value in rows if value]
+
+
+def last_line(source: str, line: int) -> int:
+    """The last line of the block of a YAML list that begins at a line."""
+    lines = source.splitlines()
+    if not 0 < line <= len(lines):
+        return line
+    indent = _indent(lines[line - 1])
+    last = line
+    for number in range(line, len(lines)):
+        text = lines[number]
+        if text.strip() and not text.lstrip().startswith("#"):
+            if _indent(text) <= indent:
+                break
+            last = number + 1
+    return last
+
+
+def _indent(text: str) -> int:
+    return len(text) - len(text.lstrip())
+
+
+def finite(value: Any) -> Any:
+    """Plain data as JSON in a browser takes it: numbers that are not finite as null."""
+    plain = to_plain(value)
+    return _without_words(plain)
+
+
+def _without_words(plain: Any) -> Any:
+    if isinstance(plain, dict):
+        return {str(key): _without_words(item) for key, item in plain.items()}  # pyright: ignore
+    if isinstance(plain, list):
+        return [_without_words(item) for item in plain]  # pyright: ignore
+    return None if plain in ("NaN", "Infinity", "-Infinity") else plain
+
+
+def _number(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def failures(verdicts: Sequence[Verdict]) -> int:
+    """How many expectations do not hold."""
+    return sum(verdict.status != "passed" for verdict in verdicts)

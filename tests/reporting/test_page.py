@@ -1,0 +1,258 @@
+"""A run's page in a real browser, opened from disk."""
+
+import re
+import shutil
+
+import numpy as np
+import pytest
+
+from harness.recording.store import read_run
+
+PICTURE = """() => {
+  const canvas = document.querySelector('#view canvas');
+  const copy = document.createElement('canvas');
+  [copy.width, copy.height] = [64, 48];
+  const pen = copy.getContext('2d', {willReadFrequently: true});
+  pen.drawImage(canvas, 0, 0, 64, 48);
+  return [...pen.getImageData(0, 0, 64, 48).data];
+}"""
+
+NO_WEBGL = """HTMLCanvasElement.prototype.getContext = ((get) => function (kind, ...rest) {
+  return kind === 'webgl2' ? null : get.call(this, kind, ...rest);
+})(HTMLCanvasElement.prototype.getContext);"""
+
+
+def picture(page):
+    page.wait_for_timeout(300)
+    return np.array(page.evaluate(PICTURE)).reshape(48, 64, 4)[:, :, :3].astype(int)
+
+
+@pytest.fixture(scope="module")
+def shared(visit, failed_run):
+    return visit(failed_run / "report.html")
+
+
+@pytest.fixture
+def opened(shared):
+    """The page that tests share, at its beginning and with nothing zoomed."""
+    shared.page.keyboard.press("Escape")
+    number = shared.page.evaluate("window.visits = (window.visits ?? 0) + 1")
+    shared.page.evaluate(f"location.hash = '#t=0&tab=expect&visit={number}'")
+    shared.page.evaluate("document.querySelector('#unzoom').click()")
+    shared.page.wait_for_function("document.querySelector('#track').ariaValueNow === '0.000'")
+    return shared
+
+
+def test_the_page_tells_outcome_steps_and_expectations(opened):
+    page = opened.page
+    assert opened.text("header .pill") == "FAILED"
+    assert page.locator("#steps .step").count() == 4
+    assert page.locator("#steps .step.good").count() == 3, "a step with an expectation that fails"
+    assert opened.text("#steps .step.bad b").startswith("swing")
+    assert "duration" in opened.text("#steps .step.bad .why")
+    assert opened.text("#tab-expect .badge") == "2/4"
+    first = page.locator(".verdict").first
+    assert "bad" in first.get_attribute("class"), "those that do not hold come first"
+    assert first.locator(".margin").count() == 1
+
+
+def test_text_of_the_user_is_text_and_never_markup(opened, failed_run):
+    page = opened.page
+    assert page.title().startswith("failed: <script>")
+    assert page.locator("header h1").inner_text().startswith("<script>document.title")
+    assert page.locator("#steps img").count() == 0
+    page.click("#tab-source")
+    assert "</script><script>" in opened.text(".source")
+    text = (failed_run / "report.html").read_text()
+    assert text.count("<script") == 3, "only the page's own"
+    assert "<b>bold" not in text
+
+
+def test_the_robot_is_drawn_and_moves_with_the_time(opened):
+    page = opened.page
+    start = picture(page)
+    assert start.std() > 10, "an empty picture"
+    page.click("#steps .step.bad")
+    assert opened.time() > 3
+    assert np.abs(picture(page) - start).max() > 40
+
+
+def test_playing_moves_the_time_and_stops_at_the_end(opened):
+    page = opened.page
+    page.select_option("#speed", "10")
+    page.keyboard.press("Escape")
+    page.click("#play")
+    page.wait_for_function("document.querySelector('#play').ariaLabel === 'Pause'")
+    page.wait_for_function("document.querySelector('#play').ariaLabel === 'Play'")
+    end = float(page.get_attribute("#track", "aria-valuemax"))
+    assert opened.time() == pytest.approx(end, abs=1e-3)
+
+
+def test_keys_seek_play_and_go_to_failures(opened):
+    page = opened.page
+    page.keyboard.press("Shift+ArrowRight")
+    assert opened.time() == pytest.approx(1.0, abs=1e-3)
+    page.keyboard.press("ArrowLeft")
+    assert opened.time() == pytest.approx(0.98, abs=1e-3)
+    page.keyboard.press("End")
+    assert opened.time() == pytest.approx(float(page.get_attribute("#track", "aria-valuemax")))
+    page.keyboard.press("Home")
+    page.keyboard.press("n")
+    assert "expect=" in page.url
+    page.keyboard.press(" ")
+    page.wait_for_function("document.querySelector('#play').ariaLabel === 'Pause'")
+    page.keyboard.press(" ")
+    page.wait_for_function("document.querySelector('#play').ariaLabel === 'Play'")
+
+
+def test_dragging_over_the_timeline_scrubs(opened):
+    page = opened.page
+    box = page.locator("#track").bounding_box()
+    middle = box["y"] + box["height"] / 2
+    page.mouse.move(box["x"] + 1, middle)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] / 2, middle, steps=4)
+    half = opened.time()
+    page.mouse.move(box["x"] + box["width"] * 0.75, middle, steps=4)
+    page.mouse.up()
+    end = float(page.get_attribute("#track", "aria-valuemax"))
+    assert half == pytest.approx(end / 2, rel=0.02)
+    assert opened.time() == pytest.approx(0.75 * end, rel=0.02)
+
+
+def test_a_verdict_seeks_to_the_sample_that_decided_it(opened, failed_run):
+    stored = read_run(failed_run)
+    number = next(i for i, v in enumerate(stored.verdicts) if v.expectation.startswith("clearance"))
+    opened.page.click(f"[data-verdict='{number}']")
+    assert opened.time() == pytest.approx(stored.verdicts[number].time, abs=2e-3)
+    assert opened.page.url.endswith(f"expect={number + 1}")
+    titles = opened.page.locator(".plot select").evaluate_all("all => all.map(s => s.value)")
+    assert "clearance" in titles, "the plot of what was measured is shown"
+
+
+def test_a_deep_link_opens_a_moment_and_an_expectation(visit, failed_run):
+    opened = visit(failed_run / "report.html", "#t=1.5&expect=2")
+    assert opened.time() == pytest.approx(1.5, abs=1e-3)
+    assert opened.page.locator("[data-verdict='1'][aria-current]").count() == 1
+    opened = visit(failed_run / "report.html", "#t=nonsense&expect=99&tab=source")
+    assert opened.time() == 0
+    assert opened.page.locator("#panel-source").is_visible()
+
+
+def test_dragging_in_a_plot_zooms_all_of_them_and_a_click_seeks(opened):
+    page = opened.page
+    canvas = page.locator(".plot canvas").first
+    box = canvas.bounding_box()
+    y = box["y"] + box["height"] / 2
+    before = canvas.screenshot(), page.locator(".plot canvas").nth(1).screenshot()
+    page.mouse.move(box["x"] + 90, y)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 190, y, steps=4)
+    page.mouse.up()
+    assert page.locator("#plots.zoomed").count() == 1
+    page.mouse.move(box["x"] + 90, y)
+    after = canvas.screenshot(), page.locator(".plot canvas").nth(1).screenshot()
+    assert all(old != new for old, new in zip(before, after, strict=True))
+    page.mouse.click(box["x"] + 120, y)
+    assert opened.time() > 0
+    page.click("#unzoom")
+    assert page.locator("#plots.zoomed").count() == 0
+
+
+def test_every_signal_can_be_plotted_with_its_value_at_the_cursor(opened):
+    page = opened.page
+    choice = page.locator(".plot select").first
+    names = choice.locator("option").evaluate_all("all => all.map(o => o.value)")
+    assert {"position", "velocity", "effort", "tracking", "gripper", "clearance"} <= set(names)
+    page.keyboard.press("End")
+    for name in names:
+        choice.select_option(name)
+        shown = page.locator(".plot").first.locator(".legend output").all_inner_texts()
+        assert shown, name
+        assert any(re.match(r"^-?\d", text) for text in shown), (name, shown)
+
+
+def test_a_legend_hides_a_line_everywhere(opened):
+    page = opened.page
+    chips = page.locator(".legend button[title='elbow_joint']")
+    assert chips.count() >= 2
+    chips.first.click()
+    pressed = chips.evaluate_all("all => all.map(chip => chip.ariaPressed)")
+    assert set(pressed) == {"false"}
+    chips.first.click()
+    assert chips.first.get_attribute("aria-pressed") == "true"
+
+
+def test_tabs_show_planner_source_joints_and_environment(opened):
+    page = opened.page
+    page.click("#tab-planner")
+    assert "state checks" in opened.text("#panel-planner")
+    page.keyboard.press("ArrowRight")
+    assert page.locator("#panel-findings").is_visible()
+    page.click("#tab-source")
+    failing = page.locator(".source .line.failing").all_inner_texts()
+    assert any("duration" in line for line in failing)
+    page.click("#tab-joints")
+    assert "shoulder_pan_joint" in opened.text("#panel-joints")
+    page.click("#tab-environment")
+    assert "mujoco" in opened.text("#panel-environment")
+
+
+def test_light_and_dark_differ_and_can_be_switched(visit, failed_run):
+    shades = {}
+    for scheme in ("light", "dark"):
+        opened = visit(failed_run / "report.html", color_scheme=scheme)
+        shades[scheme] = picture(opened.page)[:4].mean()
+        page_colour = "getComputedStyle(document.body).backgroundColor"
+        first = opened.page.evaluate(page_colour)
+        opened.page.click("#theme")
+        assert opened.page.evaluate(page_colour) != first
+    assert shades["light"] > 180 > 80 > shades["dark"]
+
+
+def test_without_scripts_the_summary_is_there_to_read(visit, failed_run):
+    opened = visit(failed_run / "report.html", scripts=False)
+    assert not opened.page.locator("#app").is_visible()
+    text = opened.text("#summary")
+    for said in ("FAILED", "ptp", "duration", "failed by", "seed", "digest", "tracking_error"):
+        assert said in text
+    assert opened.page.locator("#summary .pictures img").count() >= 2
+
+
+def test_a_telephone_sees_everything_without_scrolling_sideways(visit, failed_run):
+    opened = visit(failed_run / "report.html", width=390, height=800)
+    page = opened.page
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    for name in ("#view", "#track", "#steps", "#tabs", ".plot canvas"):
+        assert page.locator(name).first.bounding_box()["width"] > 200, name
+    assert picture(page).std() > 10
+
+
+def test_it_prints_on_one_or_two_pages(visit, failed_run):
+    pdf = visit(failed_run / "report.html").page.pdf(prefer_css_page_size=True)
+    pages = len(re.findall(rb"/Type\s*/Page\b(?!s)", pdf))
+    assert 1 <= pages <= 2
+
+
+def test_a_browser_without_webgl_still_shows_the_rest(failed_run, visit):
+    opened = visit(failed_run / "report.html")
+    page = opened.page
+    page.add_init_script(NO_WEBGL)
+    page.reload()
+    page.wait_for_function("document.documentElement.dataset.ready === 'yes'")
+    assert page.locator(".no-view").is_visible()
+    page.click(".verdict >> nth=0")
+    assert opened.time() > 0
+
+
+def test_a_saved_run_gets_the_same_page_again(failed_run, tmp_path, capsys):
+    from harness.cli.main import main
+
+    folder = tmp_path / "copy"
+    shutil.copytree(failed_run, folder)
+    (folder / "report.html").unlink()
+    assert main(["view", f"{folder}#t=1", "--no-open"]) == 0
+    assert capsys.readouterr().out == f"{folder}/report.html#t=1\n"
+    written = (failed_run / "report.html").read_text()
+    assert (folder / "report.html").read_text() == written
+    assert main(["view", str(tmp_path), "--no-open"]) == 2
