@@ -32,12 +32,14 @@ class PoseGoal:
         pose: T_world_link.
         position_tolerance: Radius around the target [m].
         orientation_tolerance: Largest rotation about each axis [rad].
+        axis_tolerances: About the goal's own x, y, z instead [rad]; pi and more: any turn.
     """
 
     link: str
     pose: SE3
     position_tolerance: float = 1e-4
     orientation_tolerance: float = 1e-3
+    axis_tolerances: tuple[float, float, float] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +59,61 @@ class PositionGoal:
 
 
 Goal = JointGoal | PoseGoal | PositionGoal
+
+
+@dataclass(frozen=True, eq=False)
+class AnyGoal:
+    """One of several goals, whichever is nearest."""
+
+    goals: tuple[Goal, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class OrientationBand:
+    """A link stays turned as given.
+
+    Attributes:
+        link: Of the robot.
+        rotation: R_world_link in the middle of the band, shape (3, 3).
+        tolerance: About its x, y, z [rad]; pi and more: any turn.
+    """
+
+    link: str
+    rotation: FloatArray
+    tolerance: tuple[float, float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class PositionBox:
+    """A link's origin stays in a box.
+
+    Attributes:
+        link: Of the robot.
+        pose: T_world_box, of its middle.
+        size: Along its x, y, z, full [m].
+    """
+
+    link: str
+    pose: SE3
+    size: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class JointBand:
+    """A joint stays between two positions [rad or m]."""
+
+    joint: str
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True, eq=False)
+class PathConstraints:
+    """What must hold all along a motion."""
+
+    orientation: OrientationBand | None = None
+    position: PositionBox | None = None
+    joints: tuple[JointBand, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -274,9 +331,17 @@ class MotionPlanner(Protocol):
     """Finds motions of a group that can be trusted, or raises PlanningFailed and says why."""
 
     def plan(
-        self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
+        self,
+        group: str,
+        start: FloatArray,
+        goal: Goal | AnyGoal,
+        options: PlanningOptions,
+        constraints: PathConstraints | None = None,
     ) -> MotionPlan:
-        """Plan a collision-free motion to a goal; `start` in description order."""
+        """Plan a collision-free motion to a goal; `start` in description order.
+
+        With constraints, every sample of the motion holds them.
+        """
         ...
 
     def plan_joint_motion(
@@ -356,7 +421,12 @@ class MotionPlanner(Protocol):
         ...
 
     def check_goal(
-        self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
+        self,
+        group: str,
+        start: FloatArray,
+        goal: Goal | AnyGoal,
+        options: PlanningOptions,
+        constraints: PathConstraints | None = None,
     ) -> Mapping[str, Any]:
         """What can be said of a goal without planning to it: IK solutions and what became of each.
 

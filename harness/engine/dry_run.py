@@ -18,6 +18,7 @@ from harness.core.types import FloatArray
 from harness.engine.grasping import turn_about
 from harness.engine.program import Program
 from harness.ports import (
+    AnyGoal,
     ArcPoint,
     CartesianPathOptions,
     Goal,
@@ -26,6 +27,7 @@ from harness.ports import (
     Kinematics,
     MotionPlan,
     MotionPlanner,
+    PathConstraints,
     PlanningOptions,
     PoseGoal,
     PositionGoal,
@@ -157,15 +159,15 @@ class DryPlanner:
         self._description = description
 
     def plan(
-        self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
+        self,
+        group: str,
+        start: FloatArray,
+        goal: Goal | AnyGoal,
+        options: PlanningOptions,
+        constraints: PathConstraints | None = None,
     ) -> MotionPlan:
-        facts = self.check_goal(group, start, goal, options)
-        if isinstance(goal, JointGoal):
-            positions = goal.positions
-        else:
-            positions = facts.get("positions")
-            if positions is None:
-                positions = self._kinematics.solve(group, goal, start, options.seed)[0]
+        facts = self.check_goal(group, start, goal, options, constraints)
+        positions = goal.positions if isinstance(goal, JointGoal) else facts["positions"]
         names = self._description.groups[group].joint_names
         indices = list(self._description.group_indices(group))
         ends = np.vstack([start[indices], positions])
@@ -232,6 +234,11 @@ class DryPlanner:
         return self.plan(group, start, PoseGoal(link, moved, 1e-3, 1e-2), options)
 
     def check_goal(
-        self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
+        self,
+        group: str,
+        start: FloatArray,
+        goal: Goal | AnyGoal,
+        options: PlanningOptions,
+        constraints: PathConstraints | None = None,
     ) -> Mapping[str, Any]:
-        return self._planner.check_goal(group, start, goal, options)
+        return self._planner.check_goal(group, start, goal, options, constraints)

@@ -7,15 +7,28 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.core.errors import StepFailed
+from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.engine.cell import Cell
-from harness.ports import ArcPoint, Goal, JointGoal, PoseGoal, PositionGoal
+from harness.ports import (
+    AnyGoal,
+    ArcPoint,
+    Goal,
+    JointBand,
+    JointGoal,
+    OrientationBand,
+    PathConstraints,
+    PoseGoal,
+    PositionBox,
+    PositionGoal,
+)
 from harness.ports import CartesianLimits as LinkLimits
-from harness.spec.goals import GoalFields
-from harness.spec.poses import Pose, PoseTolerance, Position
+from harness.spec.goals import GoalFields, GoalTolerance
+from harness.spec.planning import PathConstraints as ConstraintsSpec
+from harness.spec.poses import Pose, Position
 from harness.spec.steps import ArcFields, CartesianLimits, Lin, MoveTo
 
-DEFAULT_TOLERANCE = PoseTolerance()
+DEFAULT_TOLERANCE = GoalTolerance()
 
 
 @dataclass(frozen=True)
@@ -63,12 +76,19 @@ def resolve_goal(goal: GoalFields, group: str, cell: Cell) -> Goal:
         position=world_point(goal.position, cell),
         pitch=goal.pitch,
         position_tolerance=tolerance.position,
-        pitch_tolerance=tolerance.orientation,
+        pitch_tolerance=_largest(tolerance),
     )
 
 
+def resolve_goals(step: MoveTo, group: str, cell: Cell) -> Goal | AnyGoal:
+    """The step's goal, or its several."""
+    if step.any_of is None:
+        return resolve_goal(step, group, cell)
+    return AnyGoal(tuple(resolve_goal(goal, group, cell) for goal in step.any_of))
+
+
 def pose_goal(
-    pose: Pose, link: str | None, tolerance: PoseTolerance | None, cell: Cell
+    pose: Pose, link: str | None, tolerance: GoalTolerance | None, cell: Cell
 ) -> PoseGoal:
     """A pose goal; `link` may be a held object, as Task Constructor's ik_frame."""
     limits = tolerance or DEFAULT_TOLERANCE
@@ -82,7 +102,34 @@ def pose_goal(
             name, start
         )
         name, target = carrier, target @ in_carrier.inverse()
-    return PoseGoal(name, target, limits.position, limits.orientation)
+    axes = limits.orientation if isinstance(limits.orientation, tuple) else None
+    return PoseGoal(name, target, limits.position, _largest(limits), axes)
+
+
+def _largest(tolerance: GoalTolerance) -> float:
+    given = tolerance.orientation
+    return max(given) if isinstance(given, tuple) else given
+
+
+def path_constraints(said: ConstraintsSpec, cell: Cell) -> PathConstraints:
+    """What must hold along a motion, in the world, as things stand now."""
+    band, box = said.orientation, said.position
+    tcp = cell.description.tcp_link
+    orientation = position = None
+    if band is not None:
+        rotation = cell.world_pose(band.pose).rotation
+        orientation = OrientationBand(band.link or tcp, rotation, band.tolerance)
+    if box is not None:
+        frame = cell.frame(box.center.frame)
+        middle = SE3(frame.rotation, frame.apply(np.array(box.center.xyz)))
+        position = PositionBox(box.link or tcp, middle, box.size)
+    joints = tuple(
+        JointBand(
+            name, joint.position - joint.tolerance_below, joint.position + joint.tolerance_above
+        )
+        for name, joint in (said.joints or {}).items()
+    )
+    return PathConstraints(orientation, position, joints)
 
 
 def arc_point(arc: ArcFields, cell: Cell) -> ArcPoint:

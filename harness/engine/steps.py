@@ -7,6 +7,7 @@ from harness.engine.blends import check_blends
 from harness.engine.program import Loc
 from harness.engine.scope import Scope
 from harness.spec.goals import GoalFields
+from harness.spec.planning import PathConstraints
 from harness.spec.poses import Pose
 from harness.spec.steps import (
     AddObject,
@@ -92,8 +93,25 @@ def _check_goal(goal: GoalFields, group_name: str | None, at: At) -> None:
 @check.handles(MoveTo)
 def _move_to(step: MoveTo, at: At) -> None:
     _check_goal(step, step.group, at)
+    for index, goal in enumerate(step.any_of or ()):
+        _check_goal(goal, step.group, At(at.scope, at.key("any_of", index)))
     if step.path_constraints is not None:
-        at.scope.problems.add(at.key("path_constraints"), "`path_constraints` is not yet available")
+        _check_constraints(step.path_constraints, step.group, at)
+
+
+def _check_constraints(constraints: PathConstraints, group_name: str | None, at: At) -> None:
+    scope = at.scope
+    band, box = constraints.orientation, constraints.position
+    if band is not None:
+        scope.check_link(band.link, at.key("path_constraints", "orientation", "link"))
+        _check_pose(band.pose, at, "path_constraints", "orientation", "pose")
+    if box is not None:
+        scope.check_link(box.link, at.key("path_constraints", "position", "link"))
+        frame = at.key("path_constraints", "position", "center", "frame")
+        scope.check_frame(box.center.frame, frame)
+    group = scope.check_group(group_name, at.key("group"))
+    for name in constraints.joints or {}:
+        scope.check_joint(name, at.key("path_constraints", "joints", name), group)
 
 
 @check.handles(Ptp)

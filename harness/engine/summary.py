@@ -17,6 +17,7 @@ from harness.spec.steps import (
     Gripper,
     Inject,
     MoveRelative,
+    MoveTo,
     Parallel,
     RemoveObject,
     Repeat,
@@ -41,10 +42,13 @@ def summarize(step: AnyStep) -> str:
 
 def _content(step: AnyStep) -> str:
     match step:
+        case MoveTo(any_of=goals) if goals is not None:
+            return "any of " + ", ".join(_goal(goal) for goal in goals)
         case GoalFields():
             return _goal(step)
         case CartesianPath():
-            return f"through {len(step.waypoints)} waypoints"
+            many = len(step.waypoints)
+            return f"through {many} waypoint" + ("" if many == 1 else "s")
         case Sequence():
             return ", ".join(
                 next(word for word in ("ptp", "lin", "circ") if getattr(item, word) is not None)

@@ -80,6 +80,8 @@ def nearest_knots(spline: JointSpline, trajectory: JointTrajectory) -> IntArray:
 
 def link_excess(curve: RatedCurve, space: GroupSpace, trajectory: JointTrajectory) -> float:
     """How many times too fast the link is between samples; at most 1 when it keeps its limits."""
+    if all(rates is None for rates in curve.rates):
+        return 0.0
     near = nearest_knots(curve.spline, trajectory)
     poses = [
         space.robot.link_pose(space.whole(positions), curve.link)

@@ -12,8 +12,10 @@ from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.cartesian_path import plan_waypoints
+from harness.planning.constrained_motion import find_constrained_motion
 from harness.planning.explanation import explained
 from harness.planning.free_motion import find_motion
+from harness.planning.goal_choice import choose_goals
 from harness.planning.goals import find_goals
 from harness.planning.kinematics import PinocchioKinematics
 from harness.planning.limits import Limits
@@ -24,11 +26,13 @@ from harness.planning.scene import CoalScene
 from harness.planning.task import PlanningTask, make_task
 from harness.planning.timing import time_straight
 from harness.ports import (
+    AnyGoal,
     ArcPoint,
     CartesianPathOptions,
     Goal,
     JointGoal,
     MotionPlan,
+    PathConstraints,
     PlanningOptions,
     PoseGoal,
     PositionGoal,
@@ -58,12 +62,19 @@ class VerifiedPlanner:
 
     @explained
     def plan(
-        self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
+        self,
+        group: str,
+        start: FloatArray,
+        goal: Goal | AnyGoal,
+        options: PlanningOptions,
+        constraints: PathConstraints | None = None,
     ) -> MotionPlan:
         """Plan a collision-free motion to a goal; `start` in description order."""
-        task = self._task(group, start, options)
-        found = find_goals(self.kinematics, task.checker, np.asarray(start), goal, options.seed)
+        task = self._task(group, start, options, constraints)
+        found = choose_goals(self.kinematics, task, np.asarray(start), goal, task.held)
         explanation = {**found.explanation, "lowered_margins": list(task.checker.lowered)}
+        if task.held is not None:
+            return find_constrained_motion(task, task.held, found.positions, explanation)
         return find_motion(task, found.positions, explanation)
 
     @explained
@@ -146,18 +157,30 @@ class VerifiedPlanner:
 
     @explained
     def check_goal(
-        self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
+        self,
+        group: str,
+        start: FloatArray,
+        goal: Goal | AnyGoal,
+        options: PlanningOptions,
+        constraints: PathConstraints | None = None,
     ) -> Mapping[str, Any]:
         """What can be said of a goal without planning to it: each IK solution's fate.
 
         `positions` are the group's at the free solution that would be tried first.
         """
-        task = self._task(group, start, options)
-        found = find_goals(self.kinematics, task.checker, np.asarray(start), goal, options.seed)
+        task = self._task(group, start, options, constraints)
+        found = choose_goals(self.kinematics, task, np.asarray(start), goal, task.held)
         return {**found.explanation, "positions": found.positions[0].tolist()}
 
-    def _task(self, group: str, start: FloatArray, options: PlanningOptions) -> PlanningTask:
-        return make_task(self.scene, self.kinematics.robot, group, start, options)
+    def _task(
+        self,
+        group: str,
+        start: FloatArray,
+        options: PlanningOptions,
+        constraints: PathConstraints | None = None,
+    ) -> PlanningTask:
+        robot = self.kinematics.robot
+        return make_task(self.scene, robot, group, start, options, constraints)
 
     def _links(self, group: str, start: FloatArray, options: PlanningOptions) -> LinkMotions:
         return LinkMotions(self.kinematics, self._task(group, start, options))

@@ -13,11 +13,12 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.checker import MotionChecker
 from harness.planning.limits import Limits
+from harness.planning.path_constraints import HeldConstraints
 from harness.planning.profiles import SAMPLE_PERIOD
 from harness.planning.robot_model import GroupSpace, RobotModel
 from harness.planning.scene import CoalScene
 from harness.planning.verify import Defect, find_defect
-from harness.ports import MotionPlan, PlanningOptions
+from harness.ports import MotionPlan, PathConstraints, PlanningOptions
 
 START_SLACK = 0.01
 """How far outside its limit a joint may start; it is not asked to go farther [rad or m]."""
@@ -33,6 +34,7 @@ class PlanningTask:
         start: Group positions.
         limits: Of the joints, scaled.
         options: As asked for.
+        held: Path constraints; None where there are none.
     """
 
     space: GroupSpace
@@ -40,10 +42,11 @@ class PlanningTask:
     start: FloatArray
     limits: Limits
     options: PlanningOptions
+    held: HeldConstraints | None = None
 
     def defect(self, trajectory: JointTrajectory, end: FloatArray) -> Defect | None:
         """What forbids a trajectory to be executed, or None."""
-        return find_defect(trajectory, self.checker, self.start, end, self.limits)
+        return find_defect(trajectory, self.checker, self.start, end, self.limits, self.held)
 
     def accept(self, trajectory: JointTrajectory, end: FloatArray, what: str) -> None:
         """Let a trajectory pass that may be executed.
@@ -89,12 +92,18 @@ class PlanningTask:
 
 
 def make_task(
-    scene: CoalScene, robot: RobotModel, group: str, start: FloatArray, options: PlanningOptions
+    scene: CoalScene,
+    robot: RobotModel,
+    group: str,
+    start: FloatArray,
+    options: PlanningOptions,
+    constraints: PathConstraints | None = None,
 ) -> PlanningTask:
     """Prepare a call: `start` in description order.
 
     Raises:
-        PlanningFailed: INVALID_GROUP_NAME, START_STATE_INVALID, START_STATE_IN_COLLISION.
+        PlanningFailed: INVALID_GROUP_NAME, START_STATE_INVALID, START_STATE_IN_COLLISION,
+            START_STATE_VIOLATES_PATH_CONSTRAINTS.
     """
     if group not in scene.description.groups:
         known = ", ".join(scene.description.groups)
@@ -110,7 +119,27 @@ def make_task(
         space.velocity, space.acceleration, options.velocity_scaling, options.acceleration_scaling
     )
     limits = replace(limits, jerk=options.max_jerk)
-    return PlanningTask(space, checker, positions, limits, options)
+    held = None if constraints is None else _held(constraints, space, positions)
+    return PlanningTask(space, checker, positions, limits, options, held)
+
+
+def _held(
+    constraints: PathConstraints, space: GroupSpace, positions: FloatArray
+) -> HeldConstraints:
+    """Path constraints that hold at the start.
+
+    Raises:
+        PlanningFailed: START_STATE_VIOLATES_PATH_CONSTRAINTS, when they do not.
+    """
+    held = HeldConstraints(constraints, space)
+    broken = held.violation(positions)
+    if broken is not None:
+        raise PlanningFailed(
+            "START_STATE_VIOLATES_PATH_CONSTRAINTS",
+            f"the path constraints do not hold at the start: {broken.what}",
+            broken.facts,
+        )
+    return held
 
 
 def _widen_for_start(space: GroupSpace, positions: FloatArray) -> None:

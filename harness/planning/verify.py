@@ -11,7 +11,8 @@ import numpy as np
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.checker import MotionChecker, describe_touches, touch_facts
-from harness.planning.timing import Limits
+from harness.planning.limits import Limits
+from harness.planning.path_constraints import HeldConstraints
 
 FINAL_RESOLUTION = 1 / 128
 """Joint-space distance between states checked on the final trajectory [rad]."""
@@ -39,16 +40,19 @@ def find_defect(
     start: FloatArray,
     end: FloatArray,
     limits: Limits,
+    held: HeldConstraints | None = None,
 ) -> Defect | None:
     """The first thing that forbids a trajectory to be executed, or None.
 
     Stamps must rise, the ends be where they should and at rest, positions be inside the joint
-    limits, velocities and accelerations inside the scaled ones, and every state on the way free.
+    limits, velocities and accelerations inside the scaled ones, path constraints hold on every
+    sample and midway between, and every state on the way be free.
     """
     return (
         _stamps(trajectory)
         or _ends(trajectory, start, end)
         or _limits(trajectory, checker, limits)
+        or _constraints(trajectory, held)
         or _collision(trajectory, checker)
     )
 
@@ -91,6 +95,21 @@ def _limits(trajectory: JointTrajectory, checker: MotionChecker, limits: Limits)
             return Defect(
                 f"{name} is beyond its {what} by {excess[row, joint]:.3g} at {time:.3f} s",
                 {"broken": what, "joint": name, "excess": float(excess[row, joint]), "time": time},
+            )
+    return None
+
+
+def _constraints(trajectory: JointTrajectory, held: HeldConstraints | None) -> Defect | None:
+    if held is None:
+        return None
+    positions = trajectory.positions
+    middles = 0.5 * (positions[1:] + positions[:-1])
+    times = np.concatenate([trajectory.times, 0.5 * (trajectory.times[1:] + trajectory.times[:-1])])
+    for time, state in zip(times, np.concatenate([positions, middles]), strict=True):
+        broken = held.violation(state)
+        if broken is not None:
+            return Defect(
+                f"at {time:.2f} s {broken.what}", {"broken": "path constraints", **broken.facts}
             )
     return None
 

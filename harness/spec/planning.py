@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from harness.spec.base import (
     Angle,
@@ -12,11 +12,10 @@ from harness.spec.base import (
     Duration,
     JointJerk,
     JointValue,
+    Length,
     Name,
-    NonNegativeAngle,
     NonNegativeLength,
     Number,
-    PositiveLength,
     SpecModel,
 )
 from harness.spec.poses import Pose, Position
@@ -64,13 +63,18 @@ class Planning(SpecModel):
     )
 
 
+BandAngle = Annotated[Angle, Field(ge=0.001)]
+BandValue = Annotated[JointValue, Field(ge=0.0005)]
+BandLength = Annotated[Length, Field(ge=0.0005)]
+
+
 class OrientationConstraint(SpecModel):
     """Keep a link turned as given, within a tolerance about each axis."""
 
     link: Name | None = Field(default=None, description="Default: the TCP.")
     pose: Pose = Field(description="Its rotation.")
-    tolerance: tuple[NonNegativeAngle, NonNegativeAngle, NonNegativeAngle] = Field(
-        description="About x, y, z [rad]."
+    tolerance: tuple[BandAngle, BandAngle, BandAngle] = Field(
+        description="About x, y, z of `pose`, 0.001 at least; 3.15 and more: any turn [rad]."
     )
 
 
@@ -79,8 +83,8 @@ class PositionConstraint(SpecModel):
 
     link: Name | None = Field(default=None, description="Default: the TCP.")
     center: Position = Field(description="Of the box.")
-    size: tuple[PositiveLength, PositiveLength, PositiveLength] = Field(
-        description="Full size of the box [m]."
+    size: tuple[BandLength, BandLength, BandLength] = Field(
+        description="Full size along the axes of the centre's frame, 0.5 mm at least [m]."
     )
 
 
@@ -88,13 +92,19 @@ class JointConstraint(SpecModel):
     """Keep a joint near a position."""
 
     position: JointValue = Field(description="Where it shall stay.")
-    tolerance_above: Annotated[Angle, Field(ge=0)] = Field(description="So much more.")
-    tolerance_below: Annotated[Angle, Field(ge=0)] = Field(description="So much less.")
+    tolerance_above: BandValue = Field(description="So much more, 0.0005 at least.")
+    tolerance_below: BandValue = Field(description="So much less, 0.0005 at least.")
 
 
 class PathConstraints(SpecModel):
-    """moveit_msgs/Constraints held along the path."""
+    """moveit_msgs/Constraints held along the path; at least one."""
 
     orientation: OrientationConstraint | None = Field(default=None, description="Of a link.")
     position: PositionConstraint | None = Field(default=None, description="Of a link.")
     joints: dict[Name, JointConstraint] | None = Field(default=None, description="By name.")
+
+    @model_validator(mode="after")
+    def _some(self) -> PathConstraints:
+        if self.orientation is None and self.position is None and not self.joints:
+            raise ValueError("path constraints are at least one of orientation, position, joints")
+        return self

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
@@ -29,7 +29,7 @@ from harness.spec.base import (
     kind_of,
 )
 from harness.spec.checks import Expectation
-from harness.spec.goals import GoalFields
+from harness.spec.goals import GOAL_KEYS, GoalFields
 from harness.spec.planning import PathConstraints, Planning
 from harness.spec.poses import Direction, Pose, Position
 from harness.spec.world import ObjectSpec
@@ -57,9 +57,14 @@ class StepFields(SpecModel):
 class MoveTo(GoalFields, StepFields):
     """Plan a collision-free motion to a goal, then execute it."""
 
+    goal_keys: ClassVar[tuple[str, ...]] = (*GOAL_KEYS, "any_of")
+
     do: Literal["move_to"] = "move_to"
+    any_of: Annotated[tuple[GoalFields, ...], Field(min_length=1, max_length=100)] | None = Field(
+        default=None, description="Several goals: the nearest that can be taken is."
+    )
     path_constraints: PathConstraints | None = Field(
-        default=None, description="Held along the path."
+        default=None, description="Held on every sample of the motion."
     )
 
 

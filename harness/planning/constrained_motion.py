@@ -1,0 +1,239 @@
+"""Finds motions along which path constraints hold: two trees whose every step is projected."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from harness.core.errors import PlanningFailed
+from harness.core.trajectory import JointTrajectory
+from harness.core.types import FloatArray
+from harness.planning.curve_timing import RatedCurve, time_curve
+from harness.planning.ik_numeric import random_positions
+from harness.planning.joint_spline import JointSpline
+from harness.planning.limits import TimingError
+from harness.planning.path_constraints import HeldConstraints
+from harness.planning.task import PlanningTask
+from harness.planning.timing import time_stopping, time_straight
+from harness.planning.verify import FINAL_RESOLUTION, Defect
+from harness.ports import MotionPlan
+
+PLANNER_ID = "RRTConnect, projected"
+
+LONGEST_STEP = 0.1
+"""Between neighbouring states of a tree [rad]; less for narrow tolerances."""
+
+RESOLUTIONS = (FINAL_RESOLUTION, FINAL_RESOLUTION / 2, FINAL_RESOLUTION / 4)
+"""Between checked states while searching [rad]; finer when a path fails."""
+
+_LEAST_STEP = 0.01
+_SHORTCUTS = 60
+_SMOOTHINGS = 8
+_MOST_ROUNDS = 20_000
+
+
+def find_constrained_motion(
+    task: PlanningTask,
+    held: HeldConstraints,
+    goals: Sequence[FloatArray],
+    explanation: dict[str, Any],
+) -> MotionPlan:
+    """A verified motion from the task's start to a goal, the constraints holding on every sample.
+
+    Args:
+        task: What is asked; its verification knows the constraints too.
+        held: The constraints; they hold at the start.
+        goals: Free group positions at which they hold, nearest first.
+        explanation: Of the goals.
+
+    Raises:
+        PlanningFailed: PLANNING_FAILED, when the budget is used up; INVALID_MOTION_PLAN, when no
+            path that was found holds once it is timed.
+
+    References:
+        D. Berenson, S. Srinivasa, D. Ferguson, J. Kuffner, "Manipulation planning on constraint
+        manifolds", ICRA 2009: CBiRRT.
+    """
+    names = task.space.joint_names
+    for end in goals:
+        if held.hold_between(task.start, end, FINAL_RESOLUTION):
+            trajectory = time_straight(names, task.start, end, task.limits)
+            if task.defect(trajectory, end) is None:
+                statistics = task.statistics("straight line", trajectory, [task.start, end])
+                return MotionPlan(trajectory, statistics, explanation)
+    defect: Defect | None = None
+    for attempt in range(task.options.attempts):
+        for level, resolution in enumerate(RESOLUTIONS):
+            rng = np.random.default_rng([task.options.seed % 2**63, attempt, level])
+            search = _Search(task, held, rng, resolution)
+            path = search.connect(goals)
+            if path is None:
+                break
+            short = search.smooth(search.shorten(path))
+            timed = _timed(task, short)
+            if isinstance(timed, JointTrajectory):
+                statistics = task.statistics(PLANNER_ID, timed, short, np.array(path))
+                return MotionPlan(timed, statistics | {"attempts": attempt + 1}, explanation)
+            defect = timed
+    if defect is not None:
+        raise PlanningFailed(
+            "INVALID_MOTION_PLAN",
+            "paths were found, but none that holds when it is checked finely: " + defect.message,
+            {**explanation, **defect.facts},
+        )
+    raise PlanningFailed(
+        "PLANNING_FAILED",
+        "no free path along which the constraints hold was found in "
+        f"{task.checker.checks} state checks",
+        {**explanation, "state_checks": task.checker.checks},
+    )
+
+
+def _timed(task: PlanningTask, path: FloatArray) -> JointTrajectory | Defect:
+    """The path's curve as fast as it goes; else its polyline, at rest at every corner."""
+    names, end = task.space.joint_names, path[-1]
+    spline = JointSpline(path)
+    try:
+        curve = RatedCurve(spline, "", [None] * len(spline.knots))
+        trajectory = time_curve(curve, names, task.space, task.limits)
+        if task.defect(trajectory, end) is None:
+            return trajectory
+    except TimingError:
+        pass
+    trajectory = time_stopping(names, path, task.limits)
+    return task.defect(trajectory, end) or trajectory
+
+
+@dataclass
+class _Tree:
+    nodes: list[FloatArray]
+    parents: list[int]
+
+    def nearest(self, positions: FloatArray, metric: FloatArray) -> int:
+        """Index of the node nearest to some positions."""
+        away = (np.array(self.nodes) - positions) * metric
+        return int(np.argmin((away**2).sum(axis=1)))
+
+    def way(self, index: int) -> list[FloatArray]:
+        """From the root to a node."""
+        found: list[FloatArray] = []
+        while index >= 0:
+            found.append(self.nodes[index])
+            index = self.parents[index]
+        return found[::-1]
+
+
+class _Search:
+    def __init__(
+        self,
+        task: PlanningTask,
+        held: HeldConstraints,
+        rng: np.random.Generator,
+        resolution: float,
+    ) -> None:
+        self.task, self.held, self.rng, self.resolution = task, held, rng, resolution
+        # a chord leaves a curve of radius 1 rad by an eighth of its length squared
+        self.step = float(np.clip(np.sqrt(held.narrowest), _LEAST_STEP, LONGEST_STEP))
+        self.budget_end = task.checker.checks + task.options.max_state_checks
+
+    def connect(self, goals: Sequence[FloatArray]) -> list[FloatArray] | None:
+        """Grow a tree from the start and one from the goals until they meet."""
+        space, metric = self.task.space, self.task.space.metric
+        first = _Tree([self.task.start], [-1])
+        second = _Tree(list(goals), [-1] * len(goals))
+        from_start = True
+        for _ in range(_MOST_ROUNDS):
+            if self.task.checker.checks >= self.budget_end:
+                return None
+            sample = random_positions(space, self.rng)
+            reached = self._extend(first, first.nearest(sample, metric), sample)
+            target = first.nodes[reached]
+            met = self._extend(second, second.nearest(target, metric), target)
+            if space.distance(second.nodes[met], target) < 1e-9:
+                ways = first.way(reached), second.way(met)
+                forth, back = ways if from_start else ways[::-1]
+                return [*forth, *back[::-1][1:]]
+            first, second = second, first
+            from_start = not from_start
+        return None
+
+    def _extend(self, tree: _Tree, index: int, target: FloatArray) -> int:
+        """Walk from a node towards a target as far as goes, adding nodes; the last one's index."""
+        for positions in self._walk(tree.nodes[index], target):
+            tree.nodes.append(positions)
+            tree.parents.append(index)
+            index = len(tree.nodes) - 1
+        return index
+
+    def _walk(self, start: FloatArray, target: FloatArray) -> list[FloatArray]:
+        """States one step from each other towards a target, free and inside the constraints."""
+        space, here, found = self.task.space, start, list[FloatArray]()
+        left = space.distance(here, target)
+        while left > 1e-9 and self.task.checker.checks < self.budget_end:
+            if left <= self.step:
+                new: FloatArray | None = target
+            else:
+                new = self.held.project(here + (target - here) * (self.step / left))
+            if new is None or not self._passable(here, new):
+                break
+            rest = space.distance(new, target)
+            if rest > left - 0.1 * self.step and rest > 1e-9:
+                break
+            found.append(new)
+            here, left = new, rest
+        return found
+
+    def _passable(self, first: FloatArray, second: FloatArray) -> bool:
+        if self.task.space.distance(first, second) > 2 * self.step:
+            return False
+        return self.held.hold_between(first, second, self.step / 4) and (
+            self.task.checker.edge_free(first, second, self.resolution)
+        )
+
+    def shorten(self, path: list[FloatArray]) -> list[FloatArray]:
+        """Replace parts of a path by shorter walks between their ends."""
+        space = self.task.space
+        for _ in range(_SHORTCUTS):
+            if len(path) < 4:
+                break
+            low, high = np.sort(self.rng.choice(len(path), 2, replace=False))
+            if high - low < 2:
+                continue
+            walk = [path[low], *self._walk(path[low], path[high])]
+            if space.distance(walk[-1], path[high]) > 1e-9:
+                continue
+            if _length(space.metric, walk) < _length(space.metric, path[low : high + 1]) - 1e-6:
+                path = [*path[:low], *walk, *path[high + 1 :]]
+        return path
+
+    def smooth(self, path: list[FloatArray]) -> FloatArray:
+        """Even out the corners of a path, every state projected again, as long as it is free."""
+        points = list(_resampled(np.array(path), 0.5 * self.step))
+        for _ in range(_SMOOTHINGS):
+            middles = [points[0]]
+            for before, here, after in zip(points, points[1:], points[2:], strict=False):
+                middles.append(self.held.project(0.25 * before + 0.5 * here + 0.25 * after))
+            middles.append(points[-1])
+            if any(point is None for point in middles):
+                break
+            smoother = [point for point in middles if point is not None]
+            if not all(self._passable(*edge) for edge in pairwise(smoother)):
+                break
+            points = smoother
+        return np.array(points)
+
+
+def _resampled(path: FloatArray, step: float) -> FloatArray:
+    lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
+    count = max(4, int(np.ceil(lengths[-1] / step)))
+    places = np.linspace(0.0, lengths[-1], count + 1)
+    return np.column_stack([np.interp(places, lengths, column) for column in path.T])
+
+
+def _length(metric: FloatArray, path: Sequence[FloatArray]) -> float:
+    steps = np.diff(np.array(path), axis=0) * metric
+    return float(np.linalg.norm(steps, axis=1).sum())
