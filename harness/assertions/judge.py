@@ -18,6 +18,7 @@ from harness.assertions import (
     lifted,
     limits,
     objects,
+    sees,
     tcp,
     tcp_path,
     timing,
@@ -35,7 +36,7 @@ from harness.spec.checks import AnyExpectation, AnyPredicate, Formula, Until
 
 HANDLERS = (
     *(clearance, collision, contact, fraction, grasp, inside, joints, lifted, limits, objects),
-    *(tcp, tcp_path, timing),
+    *(sees, tcp, tcp_path, timing),
 )
 TEMPORAL = (*WORDS, Until)
 EXECUTED: frozenset[type] = frozenset(signal) | frozenset((*TEMPORAL, Formula))

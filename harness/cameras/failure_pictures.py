@@ -10,10 +10,10 @@ import cv2
 import numpy as np
 
 from harness.cameras.picture_model import PictureModel, build_picture_model
-from harness.cameras.recorded_scene import poses_at
+from harness.cameras.recorded_scene import floor_height, poses_at
 from harness.cameras.renderer import make_renderer
 from harness.cameras.robot_poses import link_poses
-from harness.cameras.stills import HEIGHT, INK, WIDTH, floor_height
+from harness.cameras.stills import HEIGHT, INK, WIDTH
 from harness.cameras.viewpoint import fit_viewpoint
 from harness.core.geometry import Capsule, Rgba, Shape, Sphere, bounding_radius
 from harness.core.spatial import SE3, rotation_from_rpy
@@ -75,7 +75,7 @@ def draw_failure(
     renderer = make_renderer(picture, WIDTH, HEIGHT, backend)
     try:
         points, radii = _in_view(description, poses, marks)
-        pixels = renderer.render(fit_viewpoint(points, radii, WIDTH, HEIGHT))
+        pixels = renderer.render(fit_viewpoint(points, radii, WIDTH, HEIGHT).view)
     finally:
         renderer.close()
     _write(file, pixels, f"{step.error_code}: {nearest['shows']}{_missed_by(nearest)}")

@@ -13,7 +13,7 @@ import mujoco
 import numpy as np
 
 from harness.cameras.picture_model import PictureModel
-from harness.cameras.viewpoint import Viewpoint
+from harness.cameras.viewpoint import View
 
 MAX_GEOMS = 4000
 
@@ -79,15 +79,17 @@ class GLRenderer:
         self._option = mujoco.MjvOption()
         self._viewport = mujoco.MjrRect(0, 0, width, height)
 
-    def render(self, viewpoint: Viewpoint) -> np.ndarray:
-        """What is seen from a viewpoint, RGB."""
+    def render(self, view: View) -> np.ndarray:
+        """What is seen from a view, RGB."""
         model, data = self._picture.model, self._picture.data
         camera = mujoco.MjvCamera()
-        camera.type = mujoco.mjtCamera.mjCAMERA_FREE
-        camera.lookat[:] = viewpoint.lookat
-        camera.distance = viewpoint.distance
-        camera.azimuth, camera.elevation = viewpoint.azimuth, viewpoint.elevation
-        model.vis.global_.fovy = viewpoint.field_of_view
+        camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
+        camera.fixedcamid = self._picture.eye
+        model.cam_fovy[self._picture.eye] = view.field_of_view
+        data.cam_xpos[self._picture.eye] = view.pose.translation
+        data.cam_xmat[self._picture.eye] = view.pose.rotation.ravel()
+        model.vis.map.znear = view.near / model.stat.extent
+        model.vis.map.zfar = view.far / model.stat.extent
         everything = mujoco.mjtCatBit.mjCAT_ALL
         mujoco.mjv_updateScene(model, data, self._option, None, camera, everything, self._scene)
         mujoco.mjr_render(self._viewport, self._scene, self._context)

@@ -18,7 +18,8 @@ from harness.robot.description import RobotDescription
 
 SOLID_GROUP = 0
 TRANSLUCENT_GROUP = 1
-FLOOR = "floor"
+FLOOR_GROUP = 2
+FLOOR, EYE = "floor", "eye"
 
 MUJOCO_SUFFIXES = (".stl", ".msh")
 OBJ_SUFFIX = ".obj"
@@ -42,6 +43,7 @@ class PictureModel:
         mocap: Mocap index of each link and object that has something to draw.
         geoms: Geom ids of each.
         rgba: Colours of the geoms when shown, shape (G, 4).
+        eye: Id of the camera that renderers put where they look from.
     """
 
     model: mujoco.MjModel
@@ -49,6 +51,7 @@ class PictureModel:
     mocap: Mapping[str, int]
     geoms: Mapping[str, slice]
     rgba: np.ndarray
+    eye: int = 0
 
     def pose(self, poses: Mapping[str, SE3]) -> None:
         """Place what is named, hide the rest."""
@@ -84,12 +87,12 @@ def build_picture_model(
     spec.compiler.degree = False
     spec.visual.global_.offwidth, spec.visual.global_.offheight = width, height
     _add_surroundings(spec, floor_height)
+    spec.worldbody.add_camera(name=EYE)
     for link in description.links:
         _add_body(spec, link.name, link.visuals, ghost=False)
     for obj in objects:
         _add_body(spec, obj.name, obj.visuals or obj.shapes, ghost=not obj.in_simulation)
     model = spec.compile()
-    model.vis.map.znear, model.vis.map.zfar = 0.01, 60.0
     mocap: dict[str, int] = {}
     geoms: dict[str, slice] = {}
     for body in (model.body(index) for index in range(1, model.nbody)):
@@ -197,6 +200,7 @@ def _add_surroundings(spec: mujoco.MjSpec, floor_height: float) -> None:
         name=FLOOR, type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 0.05], material=FLOOR
     )
     floor.pos = 0.0, 0.0, floor_height
+    floor.group = FLOOR_GROUP
     floor.contype = floor.conaffinity = 0
     light = spec.worldbody.add_light(
         type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL, dir=LIGHT_DIRECTION, castshadow=True

@@ -4,19 +4,23 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+
 import mujoco
 import numpy as np
 
 from harness.cameras.picture_model import (
     FLOOR_COLOUR,
+    FLOOR_GROUP,
     FLOOR_LINES,
     HORIZON,
     LIGHT_DIRECTION,
     SKY_TOP,
     SOLID_GROUP,
+    TRANSLUCENT_GROUP,
     PictureModel,
 )
-from harness.cameras.viewpoint import Viewpoint
+from harness.cameras.viewpoint import View
 
 LIGHT_DISTANCE = 30.0
 """How far the sun stands [m]; its shadows are cast from a point."""
@@ -31,7 +35,22 @@ AMBIENT, HEAD, SUN = 0.48, 0.25, 0.42
 """Light from everywhere, from the camera, and from the sun."""
 
 
-_SOLID = np.eye(6, dtype=np.uint8)[SOLID_GROUP].copy()
+_SOLID = np.isin(np.arange(6), (SOLID_GROUP, FLOOR_GROUP)).astype(np.uint8)
+
+
+@dataclass(frozen=True, eq=False)
+class _Rays:
+    """Unit directions from one origin; `cosines` to the camera's axis turn lengths into depths."""
+
+    origin: np.ndarray
+    directions: np.ndarray
+    cosines: np.ndarray
+    near: float
+    far: float
+
+    def chosen(self, which: np.ndarray) -> _Rays:
+        """Some of them."""
+        return replace(self, directions=self.directions[which], cosines=self.cosines[which])
 
 
 class RayRenderer:
@@ -45,40 +64,90 @@ class RayRenderer:
         self._picture = picture
         self._oversampling = oversampling
         self._size = height * oversampling, width * oversampling
+        self._local: dict[float, np.ndarray] = {}
 
-    def render(self, viewpoint: Viewpoint) -> np.ndarray:
-        """What is seen from a viewpoint, RGB."""
+    def render(self, view: View) -> np.ndarray:
+        """What is seen from a view, RGB."""
         model = self._picture.model
-        origin, rays = self._rays(viewpoint)
-        colour, geoms = self._colour(origin, rays, None)
+        rays = self._rays(view)
+        colour, geoms = self._colour(rays, None)
         behind = geoms >= 0
-        behind[behind] = model.geom_group[geoms[behind]] != SOLID_GROUP
+        behind[behind] = model.geom_group[geoms[behind]] == TRANSLUCENT_GROUP
         if behind.any():
             alpha = model.geom_rgba[geoms[behind], 3, None]
-            through, _ = self._colour(origin, rays[behind], _SOLID)
+            through, _ = self._colour(rays.chosen(behind), _SOLID)
             colour[behind] = alpha * colour[behind] + (1 - alpha) * through
         height, width = self._size
         step = self._oversampling
         blocks = colour.reshape(height // step, step, width // step, step, 3)
         return np.clip(255 * blocks.mean(axis=(1, 3)), 0, 255).astype(np.uint8)
 
+    def measure(self, view: View) -> tuple[np.ndarray, np.ndarray]:
+        """Depth along the axis [m] and geom of every pixel, shape (height, width) each.
+
+        Where nothing is within near and far: inf, and -1.
+        """
+        rays = self._rays(view)
+        geoms, distances, _ = self._see(rays, None)
+        depth = np.where(geoms >= 0, distances * rays.cosines, np.inf)
+        return depth.reshape(self._size), geoms.reshape(self._size)
+
     def close(self) -> None:
         """Nothing is held."""
 
-    def _rays(self, viewpoint: Viewpoint) -> tuple[np.ndarray, np.ndarray]:
+    def _rays(self, view: View) -> _Rays:
         height, width = self._size
-        focal = 0.5 * height / np.tan(np.radians(viewpoint.field_of_view) / 2)
-        u, v = np.meshgrid(
-            (np.arange(width) + 0.5 - width / 2) / focal,
-            (height / 2 - np.arange(height) - 0.5) / focal,
-        )
-        local = np.stack([u, v, -np.ones_like(u)], axis=-1).reshape(-1, 3)
-        local /= np.linalg.norm(local, axis=1, keepdims=True)
-        pose = viewpoint.pose
-        return pose.translation, local @ pose.rotation.T
+        local = self._local.get(view.field_of_view)
+        if local is None:
+            focal = 0.5 * height / np.tan(np.radians(view.field_of_view) / 2)
+            u, v = np.meshgrid(
+                (np.arange(width) + 0.5 - width / 2) / focal,
+                (height / 2 - np.arange(height) - 0.5) / focal,
+            )
+            local = np.stack([u, v, -np.ones_like(u)], axis=-1).reshape(-1, 3)
+            local /= np.linalg.norm(local, axis=1, keepdims=True)
+            self._local = {view.field_of_view: local}
+        directions = local @ view.pose.rotation.T
+        return _Rays(view.pose.translation, directions, -local[:, 2], view.near, view.far)
+
+    def _see(
+        self, rays: _Rays, groups: np.ndarray | None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """As `_cast`, of what is neither too near nor too far.
+
+        A geom that a ray enters before the near plane is looked through by that ray, as graphics
+        cards do that draw no inner sides. The floor, geom 0, has none.
+        """
+        model = self._picture.model
+        longest = rays.far / float(rays.cosines.min(initial=1.0))
+        opacity = model.geom_rgba[:, 3].copy()
+        model.geom_rgba[self._within(rays.origin, rays.near), 3] = 0.0  # most often: its own box
+        geoms, distances, normals = self._cast(rays.origin, rays.directions, groups, longest)
+        pending = np.flatnonzero((geoms > 0) & (distances * rays.cosines < rays.near))
+        while len(pending):
+            model.geom_rgba[np.unique(geoms[pending]), 3] = 0.0
+            found = self._cast(rays.origin, rays.directions[pending], groups, longest)
+            geoms[pending], distances[pending], normals[pending] = found
+            too_near = (geoms[pending] > 0) & (
+                distances[pending] * rays.cosines[pending] < rays.near
+            )
+            pending = pending[too_near]
+        model.geom_rgba[:, 3] = opacity
+        geoms[(geoms >= 0) & (distances * rays.cosines > rays.far)] = -1
+        return geoms, distances, normals
+
+    def _within(self, origin: np.ndarray, distance: float) -> np.ndarray:
+        """Whether all of a geom is nearer than a distance, for every geom."""
+        centres = np.linalg.norm(self._picture.data.geom_xpos - origin, axis=1)
+        radii = self._picture.model.geom_rbound
+        return (radii > 0) & (centres + radii <= distance)  # planes have a radius of 0
 
     def _cast(
-        self, origin: np.ndarray, rays: np.ndarray, groups: np.ndarray | None
+        self,
+        origin: np.ndarray,
+        rays: np.ndarray,
+        groups: np.ndarray | None,
+        longest: float = 1e10,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Geom (-1: none), distance in ray lengths and surface normal of each ray's first hit."""
         count = len(rays)
@@ -96,15 +165,14 @@ class RayRenderer:
             distances,
             normals,
             count,
-            1e10,
+            longest,
         )
         return geoms, distances, normals.reshape(-1, 3)
 
-    def _colour(
-        self, origin: np.ndarray, rays: np.ndarray, groups: np.ndarray | None
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def _colour(self, seen_from: _Rays, groups: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
         """Colour, shape (N, 3) in 0..1, and geom of each ray's first hit."""
-        geoms, distances, normals = self._cast(origin, rays, groups)
+        geoms, distances, normals = self._see(seen_from, groups)
+        origin, rays = seen_from.origin, seen_from.directions
         rise = np.clip(rays[:, 2:], 0, 1)
         colour = (1 - rise) * np.array(HORIZON) + rise * np.array(SKY_TOP)
         hit = np.flatnonzero(geoms >= 0)

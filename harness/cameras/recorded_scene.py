@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from harness.cameras.robot_poses import link_poses
+from harness.core.geometry import Plane
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.recording.run import Run, StepRecord
@@ -46,6 +47,16 @@ def poses_at(
         if len(finite):
             poses[obj.name] = SE3.from_vector(rows[finite[0]])
     return poses
+
+
+def floor_height(description: RobotDescription, world_objects: Sequence[WorldObject]) -> float:
+    """Z of the floor that pictures show [m]: the first plane's, else the base's, at most 0."""
+    for obj in world_objects:
+        for shape in obj.shapes:
+            if isinstance(shape.geometry, Plane):
+                return float((obj.pose @ shape.pose).translation[2])
+    base = link_poses(description, description.start_positions())[description.base_link]
+    return min(0.0, float(base.translation[2]))
 
 
 def _present_after(run: Run, step: StepRecord | None) -> set[str] | None:

@@ -9,7 +9,7 @@ import numpy as np
 from harness.cameras.gl_renderer import GLRenderer, gl_contexts
 from harness.cameras.picture_model import PictureModel
 from harness.cameras.ray_renderer import RayRenderer
-from harness.cameras.viewpoint import Viewpoint
+from harness.cameras.viewpoint import View
 
 Picture = np.ndarray
 """RGB, shape (height, width, 3), uint8."""
@@ -24,8 +24,8 @@ class Renderer(Protocol):
 
     backend: str
 
-    def render(self, viewpoint: Viewpoint) -> Picture:
-        """What is seen from a viewpoint."""
+    def render(self, view: View) -> Picture:
+        """What is seen from a view."""
         ...
 
     def close(self) -> None:

@@ -11,11 +11,11 @@ import cv2
 import numpy as np
 
 from harness.cameras.picture_model import build_picture_model, undrawn
-from harness.cameras.recorded_scene import poses_at
+from harness.cameras.recorded_scene import floor_height, poses_at
 from harness.cameras.renderer import Renderer, make_renderer
 from harness.cameras.robot_poses import link_poses
-from harness.cameras.viewpoint import Viewpoint, fit_viewpoint
-from harness.core.geometry import Plane, bounding_radius
+from harness.cameras.viewpoint import View, Viewpoint, fit_viewpoint
+from harness.core.geometry import bounding_radius
 from harness.core.world import WorldObject
 from harness.recording.run import Run, StepRecord
 from harness.robot.description import RobotDescription
@@ -76,7 +76,7 @@ def save_stills(
         width=WIDTH,
         height=HEIGHT,
     )
-    viewpoint = overview(description, world_objects, run)
+    view = overview(description, world_objects, run).view
     renderer = make_renderer(picture, WIDTH, HEIGHT, backend)
     folder.mkdir(parents=True, exist_ok=True)
     files: list[Path] = []
@@ -85,7 +85,7 @@ def save_stills(
             sample = min(max(step.end_index - 1, 0), len(run.signals.times) - 1)
             picture.pose(poses_at(description, world_objects, run, sample, step))
             files.append(folder / f"{number:02d}-{slug(step.id)}.jpg")
-            _write(files[-1], renderer, viewpoint, step, f"{number}/{len(steps)}")
+            _write(files[-1], renderer, view, step, f"{number}/{len(steps)}")
     finally:
         renderer.close()
     notes: list[str] = []
@@ -129,25 +129,13 @@ def overview(
     return fit_viewpoint(np.array(points), np.array(radii), WIDTH, HEIGHT)
 
 
-def floor_height(description: RobotDescription, world_objects: Sequence[WorldObject]) -> float:
-    """Height of the floor [m]: of a plane among the objects, else at most that of the base."""
-    for obj in world_objects:
-        for shape in obj.shapes:
-            if isinstance(shape.geometry, Plane):
-                return float((obj.pose @ shape.pose).translation[2])
-    base = link_poses(description, description.start_positions())[description.base_link]
-    return min(0.0, float(base.translation[2]))
-
-
 def slug(text: str) -> str:
     """A step's id as part of a file name."""
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:48] or "step"
 
 
-def _write(
-    file: Path, renderer: Renderer, viewpoint: Viewpoint, step: StepRecord, number: str
-) -> None:
-    picture = np.ascontiguousarray(renderer.render(viewpoint)[:, :, ::-1])
+def _write(file: Path, renderer: Renderer, view: View, step: StepRecord, number: str) -> None:
+    picture = np.ascontiguousarray(renderer.render(view)[:, :, ::-1])
     font, line = cv2.FONT_HERSHEY_SIMPLEX, cv2.LINE_AA
     picture[-26:] = (0.25 * picture[-26:] + 0.75 * 255).astype(np.uint8)
     text = f"{number}  {step.summary or step.verb}"[:62]

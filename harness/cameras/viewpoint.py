@@ -1,4 +1,4 @@
-"""From where a picture is taken, so that everything that matters is in it."""
+"""From where pictures are taken: overviews that hold everything that matters, and cameras."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from harness.core.camera import Camera
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 
@@ -17,6 +18,38 @@ FIELD_OF_VIEW = 38.0
 
 FILLED = 0.86
 """Part of the picture that the fitted points may fill."""
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """What a renderer draws from: a pinhole with square pixels.
+
+    Attributes:
+        pose: T_world_camera in OpenGL's convention: x right, y up, looks along -z.
+        field_of_view: Vertical [deg].
+        near: Nothing nearer along the axis is seen [m].
+        far: Nothing farther along the axis is seen [m].
+    """
+
+    pose: SE3
+    field_of_view: float
+    near: float = 0.01
+    far: float = 60.0
+
+
+FLIP = SE3(np.diag([1.0, -1.0, -1.0]), np.zeros(3))
+"""T_optical_opengl: the picture's y and the axis turned round."""
+
+
+def view_of(camera: Camera, carrier: SE3) -> View:
+    """From where a camera looks.
+
+    Args:
+        camera: Which.
+        carrier: T_world_frame of what carries it.
+    """
+    pose = carrier @ camera.optical_pose @ FLIP
+    return View(pose, np.degrees(camera.vertical_fov), camera.clip_near, camera.clip_far)
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,10 +71,11 @@ class Viewpoint:
     field_of_view: float = FIELD_OF_VIEW
 
     @property
-    def pose(self) -> SE3:
-        """T_world_camera in OpenGL's convention: x right, y up, looks along -z."""
+    def view(self) -> View:
+        """What renderers take."""
         rotation = _camera_rotation(self.azimuth, self.elevation)
-        return SE3(rotation, self.lookat + self.distance * rotation[:, 2])
+        pose = SE3(rotation, self.lookat + self.distance * rotation[:, 2])
+        return View(pose, self.field_of_view)
 
 
 def fit_viewpoint(points: FloatArray, radii: FloatArray, width: int, height: int) -> Viewpoint:

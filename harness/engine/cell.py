@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from harness.core.camera import Camera
 from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
@@ -83,6 +84,7 @@ class Cell:
     notes: StepNotes = field(default_factory=StepNotes)
     step: ProgramStep | None = None
     seed: int = 0
+    cameras: Mapping[str, Camera] = field(default_factory=dict[str, Camera])
     run_steps: Callable[[Sequence[ProgramStep]], None] = _cannot_nest
 
     @property

@@ -20,6 +20,7 @@ from harness.spec.checks import (
     ObjectCheck,
     On,
     Placed,
+    Sees,
     Static,
     TcpPath,
     TcpPose,
@@ -75,6 +76,10 @@ def _check_names(spec: AnyExpectation, loc: Loc, scope: Scope) -> None:
         case Between() | Clearance() | Collision():
             for index, name in enumerate(spec.between or ()):
                 scope.check_body(name, (*loc, "between", index), special=SPECIAL)
+        case Sees():
+            scope.check_camera(spec.camera, (*loc, "camera"))
+            if spec.object is not None:
+                scope.check_object(spec.object, (*loc, "object"), simulated=True)
         case TcpPose():
             scope.check_link(spec.link, (*loc, "link"))
         case TcpPath():

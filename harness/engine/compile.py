@@ -11,6 +11,7 @@ from harness.core.geometry import Mesh
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.engine import executors as executors
+from harness.engine.cameras import all_cameras, check_cameras, check_videos
 from harness.engine.checks import check_expectation
 from harness.engine.objects import ObjectUnusableError, resolve_object, resolve_world
 from harness.engine.options import check_planning, merged_options
@@ -91,12 +92,17 @@ class _Compiler:
         objects = self._objects_at_start()
         for obj in objects:
             self.scope.add_object(obj, present=True)
+        self.scope.cameras = all_cameras(
+            sources.description.cameras, sources.world.cameras, scenario.cameras, self.problems
+        )
         check_planning(scenario.planning, ("planning",), self.problems, sources.check_planner)
         steps = self._steps(scenario.steps, ("steps",), "steps")
         for index, expectation in enumerate(scenario.expect):
             self._expectation(expectation, ("expect", index), "")
         for expectation, loc in self.pending:
             check_expectation(expectation, loc, self.scope, sources.judged)
+        check_cameras(sources.world.cameras, scenario.cameras, self.scope)
+        videos = check_videos(scenario.videos, self.scope)
         if len(objects) + len(self.later) > MOST_OBJECTS:
             self.problems.add(
                 ("objects",) if scenario.objects else ("world",),
@@ -113,6 +119,8 @@ class _Compiler:
             expectations=tuple(self.expectations),
             seed=scenario.seed,
             step_locs=self.step_locs,
+            cameras=self.scope.cameras,
+            videos=videos,
         )
 
     def _refuse_later_features(self, scenario: Scenario) -> None:

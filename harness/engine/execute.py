@@ -135,6 +135,7 @@ def execute_program(
         simulator=simulator,
         later_objects=program.later_objects,
         seed=program.seed,
+        cameras=program.cameras,
     )
     for obj in program.world.objects:
         cell.presence[obj.name] = Presence(obj, obj.pose, [[0.0, float("inf")]])

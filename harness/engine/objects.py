@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +23,8 @@ from harness.core.solids import solid_of
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import Light, World, WorldObject
-from harness.spec.world import FrictionSpec, ObjectSpec, ShapeSpec, WorldSpec
+from harness.engine.markers import plate, printed
+from harness.spec.world import GEOMETRIES, FrictionSpec, ObjectSpec, ShapeSpec, WorldSpec
 
 DEFAULT_DENSITY = 1000.0  # [kg/m^3]
 DEFAULT_COLOR: Rgba = (0.62, 0.66, 0.72, 1.0)
@@ -60,8 +62,21 @@ def resolve_object(spec: ObjectSpec, pose: SE3, base_dir: Path) -> WorldObject:
         friction=_friction(spec.friction),
         in_planning=spec.in_ in ("planning", "both"),
         in_simulation=spec.in_ in ("simulation", "both"),
-        visuals=tuple(_shape(part, spec.color, base_dir) for part in spec.visuals),
+        visuals=_looks(spec, parts, base_dir),
     )
+
+
+def _looks(
+    spec: ObjectSpec, parts: Sequence[ObjectSpec | ShapeSpec], base_dir: Path
+) -> tuple[Shape, ...]:
+    """What pictures show instead of the shapes; nothing where the shapes themselves will do."""
+    if not spec.visuals and all(part.marker is None for part in parts):
+        return ()
+    looks: list[Shape] = []
+    for part in spec.visuals or parts:
+        shape = _shape(part, spec.color, base_dir)
+        looks += [shape] if part.marker is None else printed(part.marker, shape.pose, shape.name)
+    return tuple(looks)
 
 
 def resolve_world(spec: WorldSpec, objects: tuple[WorldObject, ...]) -> World:
@@ -78,8 +93,7 @@ def resolve_world(spec: WorldSpec, objects: tuple[WorldObject, ...]) -> World:
 
 
 def _has_geometry(spec: ObjectSpec) -> bool:
-    kinds = (spec.box, spec.cylinder, spec.sphere, spec.capsule, spec.plane, spec.mesh)
-    return any(kind is not None for kind in kinds)
+    return any(getattr(spec, kind) is not None for kind in GEOMETRIES)
 
 
 def _geometry(spec: ObjectSpec | ShapeSpec, base_dir: Path) -> Geometry:
@@ -91,6 +105,8 @@ def _geometry(spec: ObjectSpec | ShapeSpec, base_dir: Path) -> Geometry:
         return Sphere(spec.sphere.radius)
     if spec.capsule is not None:
         return Capsule(spec.capsule.radius, spec.capsule.length)
+    if spec.marker is not None:
+        return plate(spec.marker)
     if spec.mesh is not None:
         path = base_dir / spec.mesh.file
         if not path.is_file():

@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
+from harness.core.camera import Camera
 from harness.core.world import World, WorldObject
 from harness.ports import PlanningOptions
 from harness.robot.description import RobotDescription
@@ -71,6 +72,8 @@ class Program:
         steps: Of the file.
         expectations: Of steps and run, in file order.
         seed: Of the run.
+        cameras: Of robot, world and scenario, by name.
+        videos: Cameras that are recorded all through the run, and their frames a second.
     """
 
     title: str
@@ -81,6 +84,8 @@ class Program:
     expectations: tuple[ProgramExpectation, ...]
     seed: int
     step_locs: Mapping[str, Loc] = field(default_factory=dict[str, Loc])
+    cameras: Mapping[str, Camera] = field(default_factory=dict[str, Camera])
+    videos: Mapping[str, float] = field(default_factory=dict[str, float])
 
     def all_steps(self) -> Iterator[ProgramStep]:
         """Every step of the file, nested ones after the one they are nested in."""

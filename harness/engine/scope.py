@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Iterable
 
+from harness.core.camera import Camera
 from harness.core.errors import Problem, SpecError
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
@@ -76,6 +77,7 @@ class Scope:
         present: Objects in the scene at this point of the file, as far as the file tells.
         attached: Objects attached at this point.
         added: Objects that steps added and nothing removed.
+        cameras: Every camera, by name.
         asked_time: Simulated time that steps have asked for by number [s].
         problems: Where to report.
         link_pose: T_world_link at joint positions in description order.
@@ -94,6 +96,7 @@ class Scope:
         self.present: dict[str, None] = {}
         self.attached: dict[str, None] = {}
         self.added: dict[str, None] = {}
+        self.cameras: dict[str, Camera] = {}
         self.asked_time = 0.0
         self.step_ids: dict[str, None] = {}
 
@@ -168,6 +171,11 @@ class Scope:
             self.check_object(name, loc)
         elif name not in self.present:
             self.problems.add(loc, f"'{name}' is not in the scene at this step", "add it first")
+
+    def check_camera(self, name: str, loc: Loc) -> None:
+        """A camera of the robot, the world or the scenario."""
+        if name not in self.cameras:
+            self.problems.unknown(loc, "camera", name, self.cameras)
 
     def check_body(self, name: str, loc: Loc, *, special: tuple[str, ...]) -> None:
         """A link, an object, or one of some special words."""

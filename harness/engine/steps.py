@@ -15,6 +15,7 @@ from harness.spec.steps import (
     AnyStep,
     ArcFields,
     AttachObject,
+    Capture,
     CartesianPath,
     Circ,
     ClearObjects,
@@ -123,6 +124,11 @@ def _ptp(step: Ptp, at: At) -> None:
             at.scope.problems.add(
                 at.key("duration"), "`duration` goes with `joints` or a named state"
             )
+
+
+@check.handles(Capture)
+def _capture(step: Capture, at: At) -> None:
+    at.scope.check_camera(step.camera, at.key("camera"))
 
 
 @check.handles(Wait)

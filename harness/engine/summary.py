@@ -11,6 +11,7 @@ from harness.spec.steps import (
     AllowCollisions,
     AnyStep,
     AttachObject,
+    Capture,
     CartesianPath,
     ClearObjects,
     Grasp,
@@ -82,6 +83,8 @@ def _content(step: AnyStep) -> str:
             return " and ".join(child.do for child in step.steps)
         case Inject():
             return ", ".join(_faults(step))
+        case Capture():
+            return f"{step.camera}: {', '.join(step.kinds)}"
         case Wait():
             return f"{step.duration:g} s"
         case _:

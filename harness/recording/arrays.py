@@ -11,7 +11,7 @@ import zipfile
 from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 
@@ -61,7 +61,7 @@ def signals_from(arrays: Mapping[str, Array], clearance_cutoff: float) -> Signal
     return Signals(**plain, **named, **paired, clearance_cutoff=clearance_cutoff)  # pyright: ignore[reportArgumentType]
 
 
-def write_npz(path: Path, arrays: Mapping[str, Array]) -> None:
+def write_npz(path: Path | IO[bytes], arrays: Mapping[str, Array]) -> None:
     """Write arrays as NumPy's .npz: sorted and without a clock, equal bytes for equal arrays."""
     with zipfile.ZipFile(path, "w") as archive:
         for name in sorted(arrays):

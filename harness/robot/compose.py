@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import count
+from pathlib import Path
 
 import numpy as np
 
+from harness.core.camera import Camera
 from harness.core.errors import RobotError
 from harness.core.spatial import SE3
 from harness.robot.description import (
-    Camera,
     Gripper,
     Joint,
     Link,
@@ -100,11 +102,7 @@ def compose(arm: Part | None, gripper: Part | None, base: SE3) -> RobotDescripti
         tcp_link=tcp_link,
         base_link=first.urdf.root,
         start_state=_start_state(parts, srdf),
-        cameras={
-            name: Camera(name=name, **camera.model_dump())
-            for part in parts
-            for name, camera in part.facts.cameras.items()
-        },
+        cameras=_cameras(parts, tree_links),
         tracking=TrackingTolerances(**first.facts.tracking.model_dump()),
         ik_solver=first.facts.ik_solver,
         notes=tuple(note for part in parts for note in part.notes),
@@ -212,6 +210,24 @@ def _gripper(facts: GripperFacts) -> Gripper:
         widths=np.array(facts.widths),
         friction=facts.friction,
     )
+
+
+def _cameras(parts: list[Part], links: tuple[Link, ...]) -> dict[str, Camera]:
+    """Cameras of every part's robot.yaml, by name."""
+    cameras: dict[str, Camera] = {}
+    names = [link.name for link in links]
+    for part in parts:
+        for name, facts in part.facts.cameras.items():
+            where = f"{Path(part.source) / 'robot.yaml'}: cameras.{name}"
+            if name in cameras:
+                raise RobotError(f"{where}: another camera is called '{name}'")
+            if facts.link not in names:
+                near = difflib.get_close_matches(facts.link, names, 1)
+                hint = f"; did you mean '{near[0]}'?" if near else ""
+                raise RobotError(f"{where}.link: there is no link '{facts.link}'{hint}")
+            pose = SE3.from_xyz_rpy(facts.pose.xyz, facts.pose.rpy)
+            cameras[name] = facts.camera(name, facts.link, pose)
+    return cameras
 
 
 def _start_state(parts: list[Part], srdf: Srdf) -> Mapping[str, float]:

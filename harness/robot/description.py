@@ -13,6 +13,7 @@ from typing import Literal
 
 import numpy as np
 
+from harness.core.camera import Camera
 from harness.core.geometry import Shape
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
@@ -155,23 +156,6 @@ class Gripper:
 
 
 @dataclass(frozen=True)
-class Camera:
-    """A camera on a link, in the SDF camera's words; looks along +x of `link`, z up."""
-
-    name: str
-    link: str
-    horizontal_fov: float
-    width: int
-    height: int
-    clip_near: float = 0.01
-    clip_far: float = 15.0
-    noise_mean: float = 0.0
-    noise_stddev: float = 0.0
-    update_rate: float = 20.0
-    optical_frame_id: str = ""
-
-
-@dataclass(frozen=True)
 class TrackingTolerances:
     """Of a JointTrajectoryController, for every joint [rad or m]."""
 
@@ -201,7 +185,7 @@ class RobotDescription:
         tcp_link: The link whose pose is "the TCP".
         base_link: First link of the arm.
         start_state: Joint positions by name at the start of a run.
-        cameras: By name.
+        cameras: By name, each on a link.
         tracking: Tolerances of the trajectory controller.
         ik_solver: `ur`, `open_manipulator_x`, `numeric`, or `auto`: the first of these that fits.
         notes: What of its files was ignored or assumed, for people.

@@ -10,7 +10,8 @@ from pydantic import Field, ValidationError, model_validator
 
 from harness.core.errors import RobotError
 from harness.robot.description import IkSolver
-from harness.spec.base import Length, Name, PositiveLength, Rpy, SpecModel, Xyz
+from harness.spec.base import Length, Name, Rpy, SpecModel, Xyz
+from harness.spec.cameras import CameraFields
 from harness.spec.scenario import JointLimits, StartState
 from harness.spec.yaml_file import LOADER
 
@@ -80,19 +81,11 @@ class Mount(Placement):
     tcp: ToolCenterPoint
 
 
-class CameraFacts(SpecModel):
-    """A camera on a link, in the words of SDF's camera sensor."""
+class CameraFacts(CameraFields):
+    """A camera on a link, in the words of SDF's camera sensor; looks along +x of its pose."""
 
     link: Name
-    horizontal_fov: Annotated[float, Field(gt=0, lt=3.1416)]
-    width: Annotated[int, Field(gt=0)]
-    height: Annotated[int, Field(gt=0)]
-    clip_near: PositiveLength = 0.01
-    clip_far: PositiveLength = 15.0
-    noise_mean: float = 0.0
-    noise_stddev: Annotated[float, Field(ge=0)] = 0.0
-    update_rate: Annotated[float, Field(gt=0)] = 20.0
-    optical_frame_id: str = ""
+    pose: Placement = Placement()
 
 
 class Tracking(SpecModel):

@@ -122,4 +122,5 @@ def run_record(
         resolved=resolved,
         versions={name: version(name) for name in LIBRARIES},
         ended_early=execution.ended_early,
+        cameras=tuple(program.cameras.values()),
     )

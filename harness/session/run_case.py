@@ -22,6 +22,7 @@ from harness.reporting.explanation import explanation_lines
 from harness.reporting.result import CaseResult, ProgressEvent, StepLine
 from harness.session.agreement import plan_against_physics
 from harness.session.beliefs import believed_poses
+from harness.session.camera_pictures import with_camera_pictures
 from harness.session.failure_pictures import draw_pictures, with_pictures
 from harness.session.prepare import Prepared, prepare
 from harness.session.record import run_record
@@ -70,8 +71,11 @@ def run_case(
         run = _execute(prepared, str(path), clock, on_progress, report_dir)
         if report_dir is not None and stills:
             run = with_pictures(run)
+        placed = _placed(program)
+        with clock.part("render"):
+            run = with_camera_pictures(run, program, placed, is_kept=report_dir is not None)
         with clock.part("judge"):
-            verdicts = judge(run, _placed(program))
+            verdicts = judge(run, placed)
         outcome = _outcome(run, verdicts)
         _tell_verdicts(program, run, outcome, on_progress)
         fingerprint = digest(run, verdicts)

@@ -39,6 +39,7 @@ Number = Annotated[float, Strict()]
 Count = Annotated[int, Strict()]
 Flag = Annotated[bool, Strict()]
 
+Rate = Annotated[float, BeforeValidator(quantity("Hz"))]
 Length = Annotated[float, BeforeValidator(quantity("m"))]
 Angle = Annotated[float, BeforeValidator(quantity("rad"))]
 Duration = Annotated[float, BeforeValidator(quantity("s")), Field(ge=0)]

@@ -13,7 +13,6 @@ from pydantic import AfterValidator, Field, model_validator
 from harness.spec.base import (
     Angle,
     AngularVelocity,
-    Color,
     Count,
     Duration,
     Flag,
@@ -30,8 +29,10 @@ from harness.spec.base import (
     SpecModel,
 )
 from harness.spec.formula_parser import readable
+from harness.spec.markers import MarkerName
 from harness.spec.poses import Pose, PoseTolerance
 
+ColorName = Literal["red", "orange", "yellow", "green", "cyan", "blue", "purple", "pink"]
 Judged = Literal["at_end", "always", "eventually"]
 
 
@@ -390,18 +391,63 @@ class FractionCheck(CheckFields):
     )
 
 
-class Sees(CheckFields):
-    """A camera sees a colour blob, a marker or an object."""
+class HueRange(SpecModel):
+    """Pixels of a colour: a named one, or a range of hues."""
 
-    judged = "eventually"
+    short = "named"
+
+    named: ColorName | None = Field(
+        default=None,
+        description="From, to in degrees: red 340 18, orange 18 45, yellow 45 75, green 75 165,"
+        " cyan 165 200, blue 200 255, purple 255 295, pink 295 340.",
+    )
+    hue: tuple[Angle, Angle] | None = Field(
+        default=None,
+        description="From, to on the colour circle: 0 is red, 120 deg green, 240 deg blue;"
+        " `[340 deg, 20 deg]` goes through 0.",
+    )
+    min_saturation: Annotated[Number, Field(ge=0, le=1)] = Field(
+        default=0.4, description="0 is grey, 1 the pure colour."
+    )
+    min_value: Annotated[Number, Field(ge=0, le=1)] = Field(
+        default=0.15, description="0 is black, 1 the brightest."
+    )
+
+    @model_validator(mode="after")
+    def _one(self) -> HueRange:
+        if (self.named is None) == (self.hue is None):
+            raise ValueError("exactly one of `named` and `hue`")
+        return self
+
+
+class Sees(CheckFields):
+    """A camera's picture shows a blob of a colour, an ArUco marker, or an object.
+
+    Judged from the picture at the window's end; beside a temporal word, `for` or `within` from
+    pictures all along, at the camera's `update_rate`, at most 5 a second.
+    """
+
     check: Literal["sees"] = "sees"
     camera: Name = Field(description="Its name.")
-    object: Name | None = Field(default=None, description="An object's pixels.")
-    color: Color | None = Field(default=None, description="A blob of this colour.")
-    marker: Count | None = Field(default=None, description="An ArUco marker's number.")
-    min_fraction: Annotated[Number, Field(ge=0, le=1)] = Field(
-        default=0.001, description="Share of the image's pixels."
+    object: Name | None = Field(default=None, description="Either an object, by segmentation,")
+    color: HueRange | None = Field(default=None, description="or the largest blob of a colour,")
+    marker: MarkerName | None = Field(default=None, description="or a marker.")
+    min_area: Annotated[Count, Field(ge=1)] = Field(
+        default=100, description="Pixels of the object, the blob or the marker."
     )
+    min_visible: Fraction = Field(
+        default=0.5,
+        description="Share of the object's outline that nothing hides and that is in the picture.",
+    )
+
+    @model_validator(mode="after")
+    def _one(self) -> Sees:
+        given = [key for key in ("object", "color", "marker") if getattr(self, key) is not None]
+        if len(given) != 1:
+            raise ValueError("`sees` is of exactly one of object, color, marker")
+        if "min_visible" in self.model_fields_set and self.object is None:
+            raise ValueError("`min_visible` is of an object; say `min_area` here")
+        return self
 
 
 class Slip(ObjectCheck):

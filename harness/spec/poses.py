@@ -57,6 +57,11 @@ class Pose(SpecModel):
             raise ValueError(f"a pose has one rotation; this one has {' and '.join(given)}")
         return self
 
+    @property
+    def has_rotation(self) -> bool:
+        """Whether the file gives one."""
+        return any(part is not None for part in (self.rpy, self.quat_xyzw, self.quat_wxyz))
+
     def se3(self) -> SE3:
         """The pose in its frame: T_frame_this, quaternion normalised."""
         from harness.core.spatial import SE3, wxyz_from_xyzw  # NumPy: 0.1 s, not needed to load

@@ -18,6 +18,7 @@ from harness.spec.base import (
     Number,
     SpecModel,
 )
+from harness.spec.cameras import CameraSpec, VideoSpec
 from harness.spec.checks import Expectation
 from harness.spec.planning import Planning
 from harness.spec.poses import Pose
@@ -156,6 +157,12 @@ class Scenario(SpecModel):
     )
     objects: tuple[ObjectSpec, ...] = Field(
         default=(), description="Added to, or replacing, the world's."
+    )
+    cameras: tuple[CameraSpec, ...] = Field(
+        default=(), description="Added to the world's and the robot's."
+    )
+    videos: tuple[VideoSpec, ...] = Field(
+        default=(), description="Cameras that are recorded all through the run."
     )
     seed: Annotated[Count, Field(ge=0, le=2**31 - 1)] = Field(
         default=0, description="Of everything random; each step's seed follows from it."

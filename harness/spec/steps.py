@@ -430,15 +430,15 @@ class Place(StepFields):
 
 
 class Capture(StepFields):
-    """Take an image with a camera."""
+    """Wait for a camera's next picture and keep it; it is drawn after the run."""
 
     short = "camera"
 
     do: Literal["capture"] = "capture"
     camera: Name = Field(description="Its name.")
-    kinds: tuple[Literal["color", "depth", "segmentation"], ...] = Field(
-        default=("color",), description="Which images."
-    )
+    kinds: Annotated[
+        tuple[Literal["color", "depth", "segmentation"], ...], Field(min_length=1, max_length=3)
+    ] = Field(default=("color",), description="Which images.")
 
 
 class Wait(StepFields):

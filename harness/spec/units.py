@@ -38,7 +38,7 @@ DEFINITIONS = (
 SUGGESTED = (
     *("m", "mm", "cm", "km", "meter", "millimeter", "centimeter", "kilometer", "inch", "foot"),
     *("rad", "deg", "radian", "degree", "turn", "mrad", "s", "ms", "second", "millisecond"),
-    *("minute", "hour", "kg", "g", "kilogram", "gram", "N", "kN", "newton", "Nm", "N*m"),
+    *("minute", "hour", "kg", "g", "kilogram", "gram", "N", "kN", "newton", "Nm", "N*m", "Hz"),
     *("m/s", "mm/s", "cm/s", "rad/s", "deg/s", "rpm", "m/s**2", "rad/s**2", "deg/s**2"),
 )
 """Units offered when one is misspelt."""
@@ -49,6 +49,7 @@ MEANINGS = {
     "s": ("a time", "s, ms"),
     "kg": ("a mass", "kg, g"),
     "N": ("a force", "N"),
+    "Hz": ("a rate", "Hz"),
     "N*m": ("a torque", "N*m"),
     "m/s": ("a speed", "m/s, cm/s"),
     "rad/s": ("a turning speed", "rad/s, deg/s"),
@@ -65,6 +66,7 @@ COMMON = {
     "s": {"s": 1.0, "ms": 0.001},
     "kg": {"kg": 1.0, "g": 0.001},
     "N": {"N": 1.0},
+    "Hz": {"Hz": 1.0},
     "m/s": {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001},
     "rad/s": {"rad/s": 1.0, "deg/s": 0.017453292519943295},
 }

@@ -19,6 +19,8 @@ from harness.spec.base import (
     Xyz,
     kind_of,
 )
+from harness.spec.cameras import CameraSpec
+from harness.spec.markers import MarkerSpec
 from harness.spec.poses import Pose
 
 
@@ -79,6 +81,8 @@ class FrictionSpec(SpecModel):
     )
 
 
+GEOMETRIES = ("box", "cylinder", "sphere", "capsule", "plane", "mesh", "marker")
+
 SurfaceFriction = Annotated[
     Annotated[Number, Field(ge=0), Tag("one")] | Annotated[FrictionSpec, Tag("many")],
     Discriminator(kind_of),
@@ -100,14 +104,14 @@ class ShapeSpec(SpecModel):
     capsule: CapsuleSpec | None = None
     plane: PlaneSpec | None = None
     mesh: MeshSpec | None = None
+    marker: MarkerSpec | None = None
 
     @model_validator(mode="after")
     def _one_geometry(self) -> ShapeSpec:
-        kinds = ("box", "cylinder", "sphere", "capsule", "plane", "mesh")
-        given = [kind for kind in kinds if getattr(self, kind) is not None]
+        given = [kind for kind in GEOMETRIES if getattr(self, kind) is not None]
         if len(given) != 1:
             found = " and ".join(given) or "none"
-            raise ValueError(f"a shape is exactly one of {', '.join(kinds)}; found {found}")
+            raise ValueError(f"a shape is exactly one of {', '.join(GEOMETRIES)}; found {found}")
         return self
 
 
@@ -139,6 +143,7 @@ class ObjectSpec(SpecModel):
     capsule: CapsuleSpec | None = None
     plane: PlaneSpec | None = None
     mesh: MeshSpec | None = None
+    marker: MarkerSpec | None = None
     shapes: tuple[ShapeSpec, ...] = Field(
         default=(), description="Several geometries of one object."
     )
@@ -167,11 +172,12 @@ class ObjectSpec(SpecModel):
 
     @model_validator(mode="after")
     def _some_shape(self) -> ObjectSpec:
-        kinds = ("box", "cylinder", "sphere", "capsule", "plane", "mesh")
-        given = [kind for kind in kinds if getattr(self, kind) is not None]
+        given = [kind for kind in GEOMETRIES if getattr(self, kind) is not None]
         is_only_seen = bool(self.visuals) and not given
         if len(given) > 1 or (bool(given) == bool(self.shapes) and not is_only_seen):
-            raise ValueError(f"an object is exactly one of {', '.join(kinds)}, or several `shapes`")
+            raise ValueError(
+                f"an object is exactly one of {', '.join(GEOMETRIES)}, or several `shapes`"
+            )
         return self
 
 
@@ -201,4 +207,7 @@ class WorldSpec(SpecModel):
     description: str = Field(default="", description="For people.")
     objects: tuple[ObjectSpec, ...] = Field(default=(), description="What stands in it.")
     lights: tuple[LightSpec, ...] = Field(default=(), description="For pictures.")
+    cameras: tuple[CameraSpec, ...] = Field(
+        default=(), description="In the world, on objects, or on links of whatever robot."
+    )
     physics: PhysicsSpec = Field(default=PhysicsSpec(), description="Time step and gravity.")

@@ -58,6 +58,7 @@ from harness.spec.checks import (
     WithinLimits,
 )
 from harness.spec.poses import Pose
+from tests.assertions.picture_mutants import SUBJECTS, seen_run, spoilt
 from tests.assertions.synthetic_run import (
     BOX,
     TABLE,
@@ -396,6 +397,18 @@ def survivors(spec, run, step_id):
     return found, tried
 
 
+@pytest.mark.parametrize("kind", SUBJECTS)
+def test_no_spoilt_picture_goes_on_passing(kind):
+    spec, run, step_id = seen_run(kind)
+    assert answer(run, spec, step_id).status == "passed"
+    survived = [
+        number
+        for number, (_, mutant) in enumerate(spoilt(run, spec))
+        if answer(mutant, spec, step_id).status == "passed"
+    ]
+    assert survived == []
+
+
 @pytest.mark.parametrize(("spec", "run", "step_id"), CASES, ids=[name_of(c[0]) for c in CASES])
 def test_no_spoilt_signal_goes_on_passing(spec, run, step_id):
     found, tried = survivors(spec, run, step_id)
@@ -406,6 +419,7 @@ def test_no_spoilt_signal_goes_on_passing(spec, run, step_id):
 def test_every_predicate_has_a_case():
     judged = set(get_args(AnyPredicate)) & EXECUTED
     named = {type(getattr(spec, "predicate", spec)) for spec, _, _ in CASES} | {Lifted}
+    named |= {type(seen_run(kind)[0]) for kind in SUBJECTS}
     assert judged <= named
 
 

@@ -32,14 +32,14 @@ def draw(description, run, sample, backend):
     except RuntimeError as error:
         pytest.skip(str(error))
     try:
-        return renderer.render(overview(description, OBJECTS, run))
+        return renderer.render(overview(description, OBJECTS, run).view)
     finally:
         renderer.close()
 
 
 def pixel(viewpoint, point):
     """Column and row of a point in the world."""
-    x, y, z = viewpoint.pose.inverse().apply(np.asarray(point))
+    x, y, z = viewpoint.view.pose.inverse().apply(np.asarray(point))
     focal = 0.5 * SIZE[1] / np.tan(np.radians(viewpoint.field_of_view) / 2)
     return round(SIZE[0] / 2 + focal * x / -z), round(SIZE[1] / 2 - focal * y / -z)
 

@@ -3,6 +3,7 @@
 from harness.engine.executors import (
     allow_collisions,
     attach_object,
+    capture,
     cartesian_path,
     circ,
     grasp,
@@ -25,6 +26,7 @@ from harness.engine.executors import (
 __all__ = [
     "allow_collisions",
     "attach_object",
+    "capture",
     "cartesian_path",
     "circ",
     "grasp",

@@ -1,0 +1,40 @@
+"""What a camera makes of the light: grey or colour, with its noise."""
+
+from __future__ import annotations
+
+import hashlib
+
+import cv2
+import numpy as np
+
+from harness.core.camera import Camera
+
+
+def as_delivered(picture: np.ndarray, camera: Camera, seed: int, sample: int) -> np.ndarray:
+    """The picture with the camera's channels and noise.
+
+    Noise is drawn for each channel of each pixel. Its generator is seeded by the run's seed, the
+    camera's name and the recorded sample: the same picture whichever others were taken.
+
+    Args:
+        picture: As rendered, RGB, shape (height, width, 3), uint8.
+        camera: Which.
+        seed: Of the run.
+        sample: Index into the signals.
+
+    Returns:
+        RGB, or one channel of a grey camera, uint8.
+    """
+    if camera.is_grey:
+        picture = cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY)
+    if not (camera.noise_mean or camera.noise_stddev):
+        return picture
+    rng = np.random.default_rng(_noise_seed(camera.name, seed, sample))
+    noise = rng.standard_normal(picture.shape, dtype=np.float32)
+    noisy = picture + 255.0 * (camera.noise_mean + camera.noise_stddev * noise)
+    return np.clip(np.rint(noisy), 0, 255).astype(np.uint8)
+
+
+def _noise_seed(camera: str, seed: int, sample: int) -> int:
+    digest = hashlib.sha256(f"{seed}:{camera}:{sample}".encode()).digest()
+    return int.from_bytes(digest[:8], "big")

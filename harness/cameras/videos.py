@@ -1,0 +1,143 @@
+"""What cameras saw all through a run, as videos; nothing of them is judged."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from harness.cameras.camera_scene import CameraScene
+from harness.cameras.captures import camera_folders
+from harness.cameras.encoding import jpeg
+from harness.cameras.quiet import quiet_stderr
+from harness.cameras.renderer import Renderer, make_renderer
+from harness.cameras.sensor import as_delivered
+from harness.core.camera import Camera
+from harness.core.world import WorldObject
+from harness.recording.run import Finding, Run, VideoRecord
+from harness.robot.description import RobotDescription
+
+MOST_FRAMES = 1500
+"""Of one video: a minute at 25 Hz; a longer run is recorded at a lower rate, and says so."""
+
+WIDEST = 320
+"""Of the WebM [pixels], which is for reports; the JPEG stream has the camera's size."""
+
+TRACK_UID = b"\x73\xc5\x88"
+"""Matroska's element for it, and that its content has 8 bytes."""
+
+
+def record_videos(
+    description: RobotDescription,
+    objects: Sequence[WorldObject],
+    run: Run,
+    rates: Mapping[str, float],
+    *,
+    backend: str = "auto",
+) -> tuple[tuple[VideoRecord, ...], dict[str, bytes], tuple[Finding, ...]]:
+    """A video of each camera, its files by path, and what a person should know of them.
+
+    Args:
+        description: The robot.
+        objects: Everything that takes part.
+        run: What happened, its cameras included.
+        rates: Frames a second of simulated time by camera.
+        backend: `auto`, `egl`, `osmesa` or `rays`.
+    """
+    if not rates:
+        return (), {}, ()
+    scene = CameraScene(description, objects, run)
+    cameras = {camera.name: camera for camera in run.cameras}
+    folders = camera_folders(run.cameras)
+    videos: list[VideoRecord] = []
+    files: dict[str, bytes] = {}
+    notes: list[Finding] = []
+    for name, asked in rates.items():
+        camera = cameras[name]
+        duration = float(run.signals.times[-1])
+        rate = min(asked, MOST_FRAMES / duration) if duration > 0 else asked
+        if rate < asked:
+            message = (
+                f"{name} is recorded at {rate:.3g} Hz instead of {asked:g} Hz: the run is long"
+            )
+            notes.append(Finding("video_rate", message))
+        renderer = make_renderer(scene.picture, camera.width, camera.height, backend)
+        try:
+            video, content = _record(scene, camera, run, rate, renderer, folders[name])
+        finally:
+            renderer.close()
+        if video is not None:
+            videos.append(video)
+            files |= content
+    return tuple(videos), files, tuple(notes)
+
+
+def _record(
+    scene: CameraScene,
+    camera: Camera,
+    run: Run,
+    rate: float,
+    renderer: Renderer,
+    folder: str,
+) -> tuple[VideoRecord | None, dict[str, bytes]]:
+    scale = min(1.0, WIDEST / camera.width)
+    size = 2 * round(scale * camera.width / 2), 2 * round(scale * camera.height / 2)
+    times: list[float] = []
+    stream, offsets = bytearray(), [0]
+    with tempfile.TemporaryDirectory() as place:
+        film = Path(place) / "film.webm"
+        with quiet_stderr():
+            writer = cv2.VideoWriter(str(film), cv2.VideoWriter.fourcc(*"VP80"), rate, size)
+        for time, frame in _frames(scene, camera, run, rate, renderer):
+            times.append(time)
+            stream += jpeg(frame, camera)
+            offsets.append(len(stream))
+            colours = frame if frame.ndim == 3 else cv2.cvtColor(frame, cv2.COLOR_GRAY2RGB)
+            small = cv2.resize(colours, size, interpolation=cv2.INTER_AREA)
+            writer.write(np.ascontiguousarray(small[:, :, ::-1]))
+        with quiet_stderr():
+            writer.release()
+        if not times:
+            return None, {}
+        content = _reproducible(film.read_bytes())
+    names = f"{folder}/video.webm", f"{folder}/video.mjpeg"
+    video = VideoRecord(
+        camera=camera.name,
+        file=names[0],
+        times=tuple(times),
+        rate=rate,
+        width=size[0],
+        height=size[1],
+        backend=renderer.backend,
+        frames=names[1],
+        frame_offsets=tuple(offsets),
+    )
+    return video, {names[0]: content, names[1]: bytes(stream)}
+
+
+def _reproducible(webm: bytes) -> bytes:
+    """The same video without the random number that names its track, in two places."""
+    place = webm.find(TRACK_UID)
+    if place < 0:
+        return webm
+    begin = place + len(TRACK_UID)
+    return webm.replace(webm[begin : begin + 8], (1).to_bytes(8, "big"))
+
+
+def _frames(
+    scene: CameraScene, camera: Camera, run: Run, rate: float, renderer: Renderer
+) -> Iterator[tuple[float, np.ndarray]]:
+    """Simulated time and picture of every frame; the last one stands while there is none."""
+    times = run.signals.times
+    previous: np.ndarray | None = None
+    count = int(np.floor(float(times[-1]) * rate + 1e-6)) + 1
+    for number in range(count):
+        sample = min(int(np.searchsorted(times, number / rate - 1e-9)), len(times) - 1)
+        view = scene.view(camera, scene.pose(sample))
+        if view is not None:
+            previous = as_delivered(renderer.render(view), camera, run.seed, sample)
+        if previous is not None:
+            yield number / rate, previous

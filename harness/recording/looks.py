@@ -1,0 +1,48 @@
+"""Which pictures of a run are wanted: what `capture` steps took and what expectations look at."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+from harness.recording.run import StepRecord
+
+PictureKind = Literal["color", "depth", "segmentation"]
+
+
+@dataclass(frozen=True)
+class Look:
+    """One camera at one recorded sample.
+
+    Attributes:
+        camera: Its name.
+        sample: Index into the signals.
+        kinds: Which pictures.
+        step: Id of the `capture` step; empty when an expectation wants to look.
+    """
+
+    camera: str
+    sample: int
+    kinds: tuple[PictureKind, ...]
+    step: str = ""
+
+
+def looks_of_steps(steps: Iterable[StepRecord]) -> tuple[Look, ...]:
+    """What `capture` steps took."""
+    return tuple(
+        Look(step.result["camera"], step.result["sample"], tuple(step.result["kinds"]), step.id)
+        for step in steps
+        if step.verb == "capture" and "sample" in step.result
+    )
+
+
+def merged(looks: Iterable[Look]) -> tuple[Look, ...]:
+    """One look for each camera and sample, of every kind that any of them wants, in time order."""
+    together: dict[tuple[int, str], Look] = {}
+    for look in looks:
+        known = together.get((look.sample, look.camera), look)
+        kinds = tuple(dict.fromkeys((*known.kinds, *look.kinds)))
+        step = known.step or look.step
+        together[look.sample, look.camera] = Look(look.camera, look.sample, kinds, step)
+    return tuple(together[key] for key in sorted(together))

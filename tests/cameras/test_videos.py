@@ -1,0 +1,95 @@
+"""A recorded camera's video, its clock, and the stream of its compressed pictures."""
+
+import subprocess
+import sys
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+
+from harness.cameras.videos import MOST_FRAMES, record_videos
+from tests.cameras.camera_runs import ball, eye, robot, run_with
+from tests.cameras.test_captures import centre_of, predicted
+
+CAMERA = eye(width=200, height=150, update_rate=10.0, jpeg_quality=75)
+
+
+def crossing(n=101):
+    """A ball that crosses the picture in one second."""
+    thing = ball("ball", (0.8, 0.0, 1.0), 0.08)
+    rows = np.tile(thing.pose.as_vector(), (n, 1))
+    rows[:, 1] = np.linspace(-0.3, 0.3, n)
+    return run_with([CAMERA], [thing], n=n, poses={"ball": rows})
+
+
+def recorded(run, objects, rate=10.0, backend="rays"):
+    (video,), files, notes = record_videos(robot(), objects, run, {"eye": rate}, backend=backend)
+    return video, files, notes
+
+
+def film_of(content, folder):
+    path = folder / "film.webm"
+    path.write_bytes(content)
+    reader, frames = cv2.VideoCapture(str(path)), []
+    while True:
+        is_there, frame = reader.read()
+        if not is_there:
+            return frames
+        frames.append(frame)
+
+
+def red_in(picture):
+    blue, green, red = (picture[:, :, i].astype(int) for i in range(3))
+    return (red > 90) & (red > 2 * np.maximum(blue, green))
+
+
+@pytest.mark.parametrize("backend", ["rays", "egl"])
+def test_every_frame_shows_the_moment_that_the_clock_table_says(tmp_path, backend):
+    run, objects = crossing()
+    try:
+        video, files, notes = recorded(run, objects, backend=backend)
+    except RuntimeError as error:
+        pytest.skip(str(error))
+    assert (video.backend, video.rate, notes) == (backend, 10.0, ())
+    np.testing.assert_allclose(video.times, np.arange(11) / 10)
+    film = film_of(files[video.file], tmp_path)
+    assert len(film) == len(video.times)
+    assert film[0].shape == (video.height, video.width, 3)
+    stream = files[video.frames]
+    assert len(video.frame_offsets) == len(video.times) + 1
+    for number, time in enumerate(video.times):
+        place = (0.8, -0.3 + 0.6 * time, 1.0)
+        column = predicted(CAMERA, place)[0]
+        assert abs(centre_of(red_in(film[number]))[0] - column) < 3
+        jpeg = stream[video.frame_offsets[number] : video.frame_offsets[number + 1]]
+        picture = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
+        assert picture.shape == (150, 200, 3)
+        assert abs(centre_of(red_in(picture))[0] - column) < 2
+
+
+def test_a_long_run_is_recorded_more_slowly_and_says_so():
+    run, objects = run_with([CAMERA], [], n=2)
+    times = np.array([0.0, 2 * MOST_FRAMES / 10.0])
+    run = replace(run, signals=replace(run.signals, times=times))
+    tiny = replace(CAMERA, width=16, height=16)
+    video, _, (note,) = recorded(replace(run, cameras=(tiny,)), objects)
+    assert len(video.times) <= MOST_FRAMES + 1
+    assert note.message == "eye is recorded at 5 Hz instead of 10 Hz: the run is long"
+
+
+def test_videos_of_equal_runs_are_equal_bytes():
+    run, objects = crossing(21)
+    run = replace(run, cameras=(replace(CAMERA, noise_stddev=0.01),))
+    assert recorded(run, objects)[1] == recorded(run, objects)[1]
+
+
+def test_nothing_of_the_video_library_reaches_the_terminal():
+    code = (
+        "from tests.cameras.test_videos import crossing, recorded\n"
+        "recorded(*crossing(11))\nprint('done')"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120
+    )
+    assert (done.stdout, done.stderr) == ("done\n", "")
