@@ -10,8 +10,8 @@ import numpy as np
 from harness.core.types import FloatArray
 from harness.planning.profiles import GRID, Curve, on_grid, smoothed
 
-EFFORT_PERIOD = 5
-"""Every so many samples of the time grid the efforts are computed: every 10 ms."""
+EFFORT_PERIOD = 10
+"""Every so many samples of the time grid the efforts are computed: every 20 ms."""
 
 _MOST_STRETCHES = 20
 

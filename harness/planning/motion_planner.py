@@ -18,7 +18,7 @@ from harness.planning.free_motion import find_motion
 from harness.planning.goal_choice import choose_goals
 from harness.planning.goals import find_goals
 from harness.planning.kinematics import PinocchioKinematics
-from harness.planning.limits import Limits
+from harness.planning.limits import Limits, TimingError
 from harness.planning.link_motion import LinkMotions
 from harness.planning.motion_sequence import plan_items
 from harness.planning.profiles import cubic_curve, on_grid, sample
@@ -73,9 +73,12 @@ class VerifiedPlanner:
         task = self._task(group, start, options, constraints)
         found = choose_goals(self.kinematics, task, np.asarray(start), goal, task.held)
         explanation = {**found.explanation, "lowered_margins": list(task.checker.lowered)}
-        if task.held is not None:
-            return find_constrained_motion(task, task.held, found.positions, explanation)
-        return find_motion(task, found.positions, explanation)
+        try:
+            if task.held is not None:
+                return find_constrained_motion(task, task.held, found.positions, explanation)
+            return find_motion(task, found.positions, explanation)
+        except TimingError as problem:
+            raise _untimed(problem) from problem
 
     @explained
     def plan_joint_motion(
@@ -96,7 +99,10 @@ class VerifiedPlanner:
         found = find_goals(self.kinematics, task.checker, np.asarray(start), goal, options.seed)
         end = found.positions[0]
         if duration is None:
-            trajectory = time_straight(task.space.joint_names, task.start, end, task.limits)
+            try:
+                trajectory = time_straight(task.space.joint_names, task.start, end, task.limits)
+            except TimingError as problem:
+                raise _untimed(problem) from problem
         else:
             task = replace(task, limits=_whole_limits(task))
             trajectory = _timed_by_hand(task, end, duration)
@@ -187,7 +193,12 @@ class VerifiedPlanner:
 
 
 def _whole_limits(task: PlanningTask) -> Limits:
-    return Limits.scaled(task.space.velocity, task.space.acceleration, 1.0, 1.0)
+    whole = Limits.scaled(task.space.velocity, task.space.acceleration, 1.0, 1.0)
+    return replace(whole, dynamics=task.limits.dynamics)
+
+
+def _untimed(problem: TimingError) -> PlanningFailed:
+    return PlanningFailed("INVALID_MOTION_PLAN", str(problem), {"broken": "timing"})
 
 
 def _timed_by_hand(task: PlanningTask, end: FloatArray, duration: float) -> JointTrajectory:

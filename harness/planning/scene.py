@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pinocchio as pin
@@ -33,12 +33,29 @@ class SceneObject:
         pose: T_world_object, or T_link_object while attached.
         link: What it is attached to; None while it stands in the world.
         touch_links: Links it may touch while attached.
+        mass: [kg]
+        center_of_mass: In the object [m], shape (3,).
+        inertia: About the centre of mass, object axes, shape (3, 3).
     """
 
     shapes: tuple[Shape, ...]
     pose: SE3
     link: str | None = None
     touch_links: frozenset[str] = frozenset()
+    mass: float = 0.0
+    center_of_mass: FloatArray = field(default_factory=lambda: np.zeros(3))
+    inertia: FloatArray = field(default_factory=lambda: np.zeros((3, 3)))
+
+
+@dataclass(frozen=True, eq=False)
+class Payload:
+    """What an attached object adds to the link that carries it; as in SceneObject."""
+
+    link: str
+    pose: SE3
+    mass: float
+    center_of_mass: FloatArray
+    inertia: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +127,13 @@ class CoalScene:
         """Put an object into the scene, at T_world_object."""
         if obj.name in self._objects:
             raise StepFailed("INVALID_OBJECT_NAME", f"object '{obj.name}' is in the scene already")
-        self._objects[obj.name] = SceneObject(obj.shapes, pose)
+        self._objects[obj.name] = SceneObject(
+            obj.shapes,
+            pose,
+            mass=obj.mass,
+            center_of_mass=obj.center_of_mass,
+            inertia=obj.inertia,
+        )
         self._model = None
 
     def remove_object(self, name: str) -> None:
@@ -149,7 +172,7 @@ class CoalScene:
         if found.link is None:
             raise StepFailed("INVALID_OBJECT_NAME", f"object '{name}' is not attached")
         pose = self.object_pose(name, joint_positions)
-        self._objects[name] = SceneObject(found.shapes, pose)
+        self._objects[name] = replace(found, pose=pose, link=None, touch_links=frozenset())
         self._model = None
         return pose
 
@@ -172,6 +195,14 @@ class CoalScene:
     def attached(self) -> Mapping[str, str]:
         """Link of each attached object."""
         return {name: obj.link for name, obj in self._objects.items() if obj.link is not None}
+
+    def payloads(self) -> tuple[Payload, ...]:
+        """Of attached objects that weigh something."""
+        return tuple(
+            Payload(found.link, found.pose, found.mass, found.center_of_mass, found.inertia)
+            for found in self._objects.values()
+            if found.link is not None and found.mass > 0
+        )
 
     def object_pose(self, name: str, joint_positions: FloatArray) -> SE3:
         """T_world_object, attached or not."""

@@ -12,6 +12,7 @@ from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.checker import MotionChecker
+from harness.planning.efforts import InverseDynamics
 from harness.planning.limits import Limits
 from harness.planning.path_constraints import HeldConstraints
 from harness.planning.profiles import SAMPLE_PERIOD
@@ -118,7 +119,8 @@ def make_task(
     limits = Limits.scaled(
         space.velocity, space.acceleration, options.velocity_scaling, options.acceleration_scaling
     )
-    limits = replace(limits, jerk=options.max_jerk)
+    dynamics = InverseDynamics.of(space, scene.payloads())
+    limits = replace(limits, jerk=options.max_jerk, dynamics=dynamics)
     held = None if constraints is None else _held(constraints, space, positions)
     return PlanningTask(space, checker, positions, limits, options, held)
 

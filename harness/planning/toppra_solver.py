@@ -15,6 +15,9 @@ from harness.core.types import FloatArray
 from harness.planning.limits import Limits, TimingError
 from harness.planning.profiles import SAMPLE_PERIOD, Curve
 
+UNLIMITED_EFFORT = 1e6
+"""Stands for no limit [N m or N]: the solver takes finite numbers."""
+
 
 class JointCurve(Protocol):
     """A curve in joint space over a parameter from 0 to its length."""
@@ -79,7 +82,8 @@ def _effort_constraint(limits: Limits) -> Any:
     dynamics = limits.dynamics
     if dynamics is None:
         raise TimingError("the robot has no effort limits")
-    bounds = np.column_stack([-dynamics.limits, dynamics.limits])
+    most = np.minimum(dynamics.limits, UNLIMITED_EFFORT)
+    bounds = np.column_stack([-most, most])
 
     def inverse_dynamics(q: FloatArray, qd: FloatArray, qdd: FloatArray) -> FloatArray:
         return dynamics.efforts(q[None], qd[None], qdd[None])[0]

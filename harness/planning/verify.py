@@ -23,6 +23,9 @@ END_TOLERANCE = 1e-6
 LIMIT_TOLERANCE = 1e-3
 """Share by which a sampled velocity or acceleration may exceed its limit."""
 
+EFFORT_TOLERANCE = 1e-2
+"""Share by which an effort may exceed its limit between the samples that were timed."""
+
 _POSITION_SLACK = 1e-9  # [rad or m] rounding at a limit
 
 
@@ -45,13 +48,14 @@ def find_defect(
     """The first thing that forbids a trajectory to be executed, or None.
 
     Stamps must rise, the ends be where they should and at rest, positions be inside the joint
-    limits, velocities and accelerations inside the scaled ones, path constraints hold on every
-    sample and midway between, and every state on the way be free.
+    limits, velocities and accelerations inside the scaled ones, efforts inside theirs; path
+    constraints must hold on every sample and midway between, and every state on the way be free.
     """
     return (
         _stamps(trajectory)
         or _ends(trajectory, start, end)
         or _limits(trajectory, checker, limits)
+        or _efforts(trajectory, limits)
         or _constraints(trajectory, held)
         or _collision(trajectory, checker)
     )
@@ -97,6 +101,25 @@ def _limits(trajectory: JointTrajectory, checker: MotionChecker, limits: Limits)
                 {"broken": what, "joint": name, "excess": float(excess[row, joint]), "time": time},
             )
     return None
+
+
+def _efforts(trajectory: JointTrajectory, limits: Limits) -> Defect | None:
+    dynamics = limits.dynamics
+    if dynamics is None:
+        return None
+    efforts = dynamics.efforts(
+        trajectory.positions, trajectory.velocities, trajectory.accelerations
+    )
+    excess = np.abs(efforts) - dynamics.limits * (1 + EFFORT_TOLERANCE)
+    row, joint = np.unravel_index(int(np.argmax(excess)), excess.shape)
+    if excess[row, joint] <= 0:
+        return None
+    name, time = dynamics.joint_names[joint], float(trajectory.times[row])
+    return Defect(
+        f"{name} would need {abs(efforts[row, joint]):.1f} of at most "
+        f"{dynamics.limits[joint]:.1f} N m (or N) at {time:.3f} s",
+        {"broken": "effort limit", "joint": name, "time": time},
+    )
 
 
 def _constraints(trajectory: JointTrajectory, held: HeldConstraints | None) -> Defect | None:

@@ -1,0 +1,106 @@
+"""Motions stay inside the joints' efforts, with what the robot holds."""
+
+from dataclasses import replace
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from harness.core.errors import PlanningFailed
+from harness.core.geometry import Box, Shape
+from harness.core.world import WorldObject
+from harness.planning.efforts import InverseDynamics
+from harness.planning.robot_model import GroupSpace
+from harness.planning.timing import Limits, time_blended, time_straight
+from harness.ports import JointGoal, PlanningOptions
+from tests.planning.lesson import ARM, TCP, Cell, ur
+
+START = np.array([0.0, -0.6, 0.4, -1.4, -1.57, 0.0])
+AWAY = np.array([[0, 0, 0, 0, 0, 0], [0.5, -0.6, 0.9, 0.2, 0.1, 0], [1.0, 0.1, 0.2, 0, 0, 1]])
+PATH = START + AWAY
+
+
+def cell_with(mass):
+    """A UR3e alone, a mass in its gripper."""
+    cell = Cell(ur("ur3e"), with_tables=False)
+    cell.state = cell.with_arm(START)
+    if mass:
+        pose = cell.kinematics.link_pose(cell.state, TCP)
+        inertia = 1e-3 * np.eye(3)
+        shape = Shape(Box((0.02, 0.02, 0.02)))
+        load = WorldObject("load", (shape,), pose, False, mass, np.zeros(3), inertia)
+        cell.scene.add_object(load, pose)
+        cell.scene.attach_object("load", TCP, cell.description.gripper.links, cell.state)
+    return cell
+
+
+def dynamics_of(cell):
+    space = GroupSpace(cell.kinematics.robot, ARM, cell.state)
+    return InverseDynamics.of(space, cell.scene.payloads())
+
+
+def test_efforts_at_rest_hold_the_weight_of_a_load_against_the_work_it_does():
+    """By the principle of virtual work: the difference is the load's weight times the Jacobian."""
+    still = np.zeros((1, 6))
+    bare, loaded = (
+        dynamics_of(cell_with(mass)).efforts(START[None], still, still)[0] for mass in (0, 2.0)
+    )
+    cell = cell_with(0)
+    step = 1e-6
+    heights = []
+    for joint in range(6):
+        moved = START.copy()
+        moved[joint] += step
+        up = cell.kinematics.link_pose(cell.with_arm(moved), TCP).translation[2]
+        down = cell.kinematics.link_pose(cell.with_arm(START), TCP).translation[2]
+        heights.append((up - down) / step)
+    assert np.allclose(loaded - bare, 2.0 * 9.81 * np.array(heights), atol=1e-4)
+
+
+@pytest.mark.parametrize("way", ["straight", "toppra"])
+def test_a_motion_is_slowed_until_its_efforts_are_kept(way):
+    dynamics = dynamics_of(cell_with(1.0))
+    still = np.zeros_like(PATH)
+    standing = np.abs(dynamics.efforts(PATH, still, still)).max(axis=0)
+    tight = replace(dynamics, limits=standing * 1.25 + 1.0)
+    free = Limits.scaled(np.full(6, np.pi), np.full(6, 20.0), 1.0, 1.0)
+    bound = replace(free, dynamics=tight)
+    names = dynamics.joint_names
+
+    def timed(limits):
+        if way == "straight":
+            return time_straight(names, PATH[0], PATH[1], limits)
+        return time_blended(names, PATH, limits, 0.05)
+
+    def share(trajectory):
+        efforts = dynamics.efforts(
+            trajectory.positions, trajectory.velocities, trajectory.accelerations
+        )
+        return np.abs(efforts / tight.limits).max()
+
+    fast, slow = timed(free), timed(bound)
+    assert share(fast) > 1.2
+    assert 0.85 < share(slow) <= 1.01
+    assert slow.duration > fast.duration
+
+
+def test_a_load_that_the_arm_cannot_hold_never_moves():
+    cell = cell_with(20.0)
+    goal = JointGoal(np.array([0.0, 0.0, 0.0, -1.4, -1.57, 0.0]))
+    with pytest.raises(PlanningFailed) as caught:
+        cell.planner.plan(ARM, cell.state, goal, PlanningOptions())
+    assert caught.value.code == "INVALID_MOTION_PLAN"
+    assert "to hold the arm still on the way" in caught.value.message
+    light = cell_with(1.0).planner.plan(ARM, cell.state, goal, PlanningOptions())
+    assert light.trajectory.duration > 0
+
+
+def test_the_library_agrees_about_the_whole_robot():
+    cell = cell_with(0)
+    robot = cell.kinematics.robot
+    configuration = robot.configuration(cell.with_arm(START))
+    gravity = pin.computeGeneralizedGravity(robot.model, robot.model.createData(), configuration)
+    still = np.zeros((1, 6))
+    found = dynamics_of(cell).efforts(START[None], still, still)[0]
+    arm = robot.velocity_columns[list(cell.description.group_indices(ARM))]
+    assert np.allclose(found, gravity[arm])
