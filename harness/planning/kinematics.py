@@ -74,6 +74,9 @@ class PinocchioKinematics:
             PlanningFailed: INVALID_LINK_NAME, when the link is not moved by the group alone.
         """
         self._check_link(space, goal.link)
+        if isinstance(goal, PoseGoal) and space.group in self.description.position_only_groups:
+            point = goal.pose.translation
+            goal = PositionGoal(goal.link, point, position_tolerance=goal.position_tolerance)
         reference = space.part(seed_positions)
         joints = tuple(self.description.joint_by_name[name] for name in space.joint_names)
         T_last_link = self._behind(joints[-1], goal.link)

@@ -188,6 +188,8 @@ class RobotDescription:
         cameras: By name, each on a link.
         tracking: Tolerances of the trajectory controller.
         ik_solver: `ur`, `open_manipulator_x`, `numeric`, or `auto`: the first of these that fits.
+        position_only_groups: Groups whose pose goals fix the position alone, as MoveIt's
+            `position_only_ik` has it.
         notes: What of its files was ignored or assumed, for people.
     """
 
@@ -207,6 +209,7 @@ class RobotDescription:
     cameras: Mapping[str, Camera] = field(default_factory=dict)
     tracking: TrackingTolerances = field(default_factory=TrackingTolerances)
     ik_solver: IkSolver = "numeric"
+    position_only_groups: frozenset[str] = frozenset()
     notes: tuple[str, ...] = ()
 
     @cached_property

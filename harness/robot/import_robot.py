@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from harness.core.errors import RobotError
 from harness.robot.compose import WORLD, Part
+from harness.robot.find_file import find_file, find_folder
 from harness.robot.imported_part import imported_part
 from harness.robot.mass import refuse_weightless
-from harness.robot.packages import NotFoundError, PackagePath
+from harness.robot.packages import PackagePath
 from harness.robot.srdf import Srdf, parse_srdf
 from harness.robot.srdf_check import checked_srdf, default_srdf
 from harness.robot.urdf import Urdf, parse_urdf
@@ -35,7 +34,7 @@ def read_robot(spec: RobotSpec, base_dir: Path) -> Part:
         RobotError: A file is not found, or an option does not fit it.
     """
     key = "urdf" if spec.urdf is not None else "xacro"
-    given = tuple(_folder(each, base_dir) for each in spec.packages)
+    given = tuple(find_folder(each, base_dir) for each in spec.packages)
     path = find_file(getattr(spec, key), key, base_dir, given)
     packages = PackagePath.of_file(path, given)
     if key == "xacro":
@@ -56,36 +55,6 @@ def read_robot(spec: RobotSpec, base_dir: Path) -> Part:
             parsed = _with_own_world(parsed)
         srdf = checked_srdf(parsed, urdf, source)
     return imported_part(spec, urdf, srdf, path, source)
-
-
-def find_file(name: str, key: str, base_dir: Path, given: Sequence[Path]) -> Path:
-    """A robot's file: a path from the scenario's folder, or package://name/path.
-
-    Raises:
-        RobotError: It is not there.
-    """
-    if name.startswith("package://"):
-        try:
-            return PackagePath.of_file(base_dir / "scenario", given).file(name, base_dir)
-        except NotFoundError as error:
-            raise RobotError(f"robot.{key}: {error}") from error
-    path = base_dir / Path(name).expanduser()
-    if not path.is_file():
-        near = difflib.get_close_matches(path.name, _names(path.parent), 1)
-        hint = f"; did you mean '{near[0]}'?" if near else ""
-        raise RobotError(f"robot.{key}: there is no file {path}{hint}")
-    return path
-
-
-def _names(folder: Path) -> list[str]:
-    return sorted(each.name for each in folder.iterdir()) if folder.is_dir() else []
-
-
-def _folder(name: str, base_dir: Path) -> Path:
-    folder = base_dir / Path(name).expanduser()
-    if not folder.is_dir():
-        raise RobotError(f"robot.packages: there is no folder {folder}")
-    return folder
 
 
 def _own_world(urdf: Urdf) -> Urdf:

@@ -13,11 +13,13 @@ from typing import Any
 from harness.core.errors import RobotError
 from harness.core.resources import data_folder
 from harness.robot.acceleration import with_possible_accelerations
+from harness.robot.calibration import calibrated
 from harness.robot.compose import Part, compose
 from harness.robot.description import Joint, RobotDescription
+from harness.robot.find_file import find_file
 from harness.robot.import_robot import read_robot
 from harness.robot.imported_part import names_own_gripper
-from harness.robot.options import with_options
+from harness.robot.options import with_moveit_files, with_options
 from harness.robot.packages import PackagePath
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml
 from harness.robot.srdf import parse_srdf
@@ -26,7 +28,7 @@ from harness.robot.xacro_file import arguments_of, render, render_bundled
 from harness.spec.scenario import RobotSpec
 from harness.spec.xml_file import read_xml
 
-LATER = ("mjcf", "kinematics")
+LATER = ("mjcf",)
 OF_FILES = ("srdf", "packages", "group", "flange_link")
 
 
@@ -79,10 +81,19 @@ def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
         if tool is not None:
             raise RobotError(f"robot.model: '{spec.model}' is a gripper and carries no other one")
         main, tool = None, main
+    if spec.kinematics is not None:
+        main = _calibrated(main, find_file(spec.kinematics, "kinematics", base_dir, ()))
     description = compose(main, tool, spec.base.se3())
+    description, known = with_moveit_files(description, spec.moveit, base_dir)
     if spec.model is None and main is not None:
-        description = with_possible_accelerations(description)
+        description = with_possible_accelerations(description, known)
     return with_options(description, spec)
+
+
+def _calibrated(main: Part | None, path: Path) -> Part:
+    if main is None:
+        raise RobotError("robot.kinematics: a gripper alone has no calibration")
+    return replace(main, urdf=replace(main.urdf, joints=calibrated(main.urdf.joints, path)))
 
 
 def _main(spec: RobotSpec, base_dir: Path) -> Part | None:

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
 from harness.core.errors import RobotError
 from harness.robot.description import Joint, NamedState, RobotDescription
+from harness.robot.find_file import find_file
+from harness.robot.moveit_files import position_only_groups, with_joint_limits
 from harness.robot.srdf import parse_srdf, write_srdf
 from harness.robot.write_urdf import write_urdf
-from harness.spec.scenario import JointLimits, RobotSpec, StartState
+from harness.spec.scenario import JointLimits, MoveItFiles, RobotSpec, StartState
 
 
 def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescription:
@@ -43,6 +46,29 @@ def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescrip
     for name, position in description.start_state.items():
         _within(description, name, position, "start_state")
     return description
+
+
+def with_moveit_files(
+    description: RobotDescription, files: MoveItFiles, base_dir: Path
+) -> tuple[RobotDescription, frozenset[str]]:
+    """The robot under MoveIt's files, and the joints whose acceleration they say.
+
+    Raises:
+        SpecError: A file says what cannot be meant; at line and column.
+        RobotError: A file is not there.
+    """
+    given: frozenset[str] = frozenset()
+    if files.joint_limits is not None:
+        path = find_file(files.joint_limits, "moveit", base_dir, ())
+        notes = list(description.notes)
+        joints, given = with_joint_limits(description.joints, path, description.name, notes)
+        urdf = write_urdf(description.name, description.links, joints)
+        description = replace(description, joints=joints, urdf=urdf, notes=tuple(notes))
+    if files.kinematics is not None:
+        path = find_file(files.kinematics, "moveit", base_dir, ())
+        only = position_only_groups(path, description.groups, description.name)
+        description = replace(description, position_only_groups=only)
+    return description, given
 
 
 def _movable(description: RobotDescription, name: str, where: str) -> Joint:

@@ -17,7 +17,7 @@ def paths_from(root: Located, old: Path, new: Path) -> Located:
 
     def moved(item: Located) -> Located:
         is_path = isinstance(item.value, str) and not Path(item.value).is_absolute()
-        if not is_path or str(item.value).startswith("~"):
+        if not is_path or str(item.value).startswith("~") or "://" in str(item.value):
             return item
         return Located(os.path.relpath(old / str(item.value), new), item.place)
 
@@ -30,6 +30,7 @@ def paths_from(root: Located, old: Path, new: Path) -> Located:
         for key, (place, child) in item.value.items():
             is_file = key == "file" and above == "mesh"
             is_robots = above == "robot" and (key in ROBOT_FILES or _is_folder(key, child))
+            is_robots = is_robots or (above == "moveit" and isinstance(child.value, str))
             is_world = _is_world_file(child) and (
                 (item is root and key == "world") or (above == "world" and key == "name")
             )

@@ -53,6 +53,17 @@ class JointLimits(SpecModel):
     )
 
 
+class MoveItFiles(SpecModel):
+    """Files of a MoveIt configuration package."""
+
+    joint_limits: str | None = Field(
+        default=None, description="joint_limits.yaml: narrows the robot's limits."
+    )
+    kinematics: str | None = Field(
+        default=None, description="kinematics.yaml: `position_only_ik` of each group."
+    )
+
+
 class RobotSpec(SpecModel):
     """The robot: a bundled model or files, with its gripper and where it stands."""
 
@@ -88,8 +99,9 @@ class RobotSpec(SpecModel):
     )
     base: Pose = Field(default=Pose(), description="Where the base stands in the world.")
     kinematics: str | None = Field(
-        default=None, description="A UR calibration file; not yet available."
+        default=None, description="A UR calibration file, as ur_calibration writes it."
     )
+    moveit: MoveItFiles = Field(default=MoveItFiles(), description="Files that MoveIt has.")
     joint_limits: dict[Name, JointLimits] = Field(
         default_factory=dict, description="By joint; narrower than the robot's own."
     )

@@ -27,7 +27,6 @@ from tests.robot.models import robot
         ({"model": "ur3e", "srdf": "a.srdf"}, ["robot.srdf goes with a robot's file"]),
         ({"xacro": "arm.xacro"}, ["robot.xacro: there is no file"]),
         ({"mjcf": "arm.xml"}, ["`mjcf` is not yet available"]),
-        ({"model": "ur3e", "kinematics": "c.yaml"}, ["`kinematics` is not yet available"]),
         ({"model": "ur3e", "base": {"frame": "Table"}}, ["'world'", "'Table'"]),
         ({"model": "ur3e", "args": {"tool": "x"}}, ["no argument 'tool'", "safety_limits"]),
         ({"model": "ur3e", "args": {"ur_type": "ur5"}}, ["no argument 'ur_type'"]),

@@ -1,0 +1,45 @@
+"""Files and folders that a scenario names for its robot."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Sequence
+from pathlib import Path
+
+from harness.core.errors import RobotError
+from harness.robot.packages import NotFoundError, PackagePath
+
+
+def find_file(name: str, key: str, base_dir: Path, given: Sequence[Path]) -> Path:
+    """A robot's file: a path from the scenario's folder, or package://name/path.
+
+    Raises:
+        RobotError: It is not there.
+    """
+    if name.startswith("package://"):
+        try:
+            return PackagePath.of_file(base_dir / "scenario", given).file(name, base_dir)
+        except NotFoundError as error:
+            raise RobotError(f"robot.{key}: {error}") from error
+    path = base_dir / Path(name).expanduser()
+    if not path.is_file():
+        near = difflib.get_close_matches(path.name, _names(path.parent), 1)
+        hint = f"; did you mean '{near[0]}'?" if near else ""
+        raise RobotError(f"robot.{key}: there is no file {path}{hint}")
+    return path
+
+
+def _names(folder: Path) -> list[str]:
+    return sorted(each.name for each in folder.iterdir()) if folder.is_dir() else []
+
+
+def find_folder(name: str, base_dir: Path) -> Path:
+    """A folder of `packages`.
+
+    Raises:
+        RobotError: It is not there.
+    """
+    folder = base_dir / Path(name).expanduser()
+    if not folder.is_dir():
+        raise RobotError(f"robot.packages: there is no folder {folder}")
+    return folder

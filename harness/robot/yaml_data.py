@@ -1,0 +1,57 @@
+"""Files in YAML that other programs write for a robot, each mistake at its place."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Iterable
+from pathlib import Path
+from typing import NoReturn
+
+from harness.core.errors import SpecError
+from harness.spec.source import Entry, Located, Source
+from harness.spec.yaml_file import parse_yaml, read_text
+
+
+def read_data(path: Path) -> Located:
+    """The one mapping of a file.
+
+    Raises:
+        SpecError: It is no YAML; at line and column.
+    """
+    text = read_text(path)
+    return parse_yaml(text, Source.of_text(str(path), text))
+
+
+def number(item: Located) -> float:
+    """A finite number.
+
+    Raises:
+        SpecError: It is none.
+    """
+    value = item.value
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        refuse(item, f"expected a number, found '{item.plain()}'")
+    return float(value)
+
+
+def known_entry(
+    entries: dict[str, Entry], name: str, known: Iterable[str], kind: str, robot: str
+) -> Located:
+    """The value of a key that has to name something of the robot's.
+
+    Raises:
+        SpecError: The robot has nothing of that name; at the key.
+    """
+    names = list(known)
+    if name not in names:
+        near = difflib.get_close_matches(name, names, 1)
+        hint = (f"did you mean '{near[0]}'? " if near else "") + f"{kind}s: {', '.join(names)}"
+        problem = entries[name].key.problem(f"'{robot}' has no {kind} '{name}'", hint)
+        raise SpecError([problem])
+    return entries[name].value
+
+
+def refuse(item: Located, message: str, hint: str = "") -> NoReturn:
+    """Raise a mistake at a value."""
+    raise SpecError([item.place.problem(message, hint)])

@@ -1,0 +1,100 @@
+"""MoveIt's joint_limits.yaml and kinematics.yaml."""
+
+import numpy as np
+import pytest
+
+from harness.core.errors import RobotError, SpecError
+from harness.core.spatial import SE3
+from harness.planning.kinematics import PinocchioKinematics
+from harness.ports import PoseGoal
+from harness.robot.load import load_robot
+from harness.spec.scenario import RobotSpec
+
+LIMITS = """\
+default_velocity_scaling_factor: 0.1
+joint_limits:
+  shoulder_pan_joint:
+    has_velocity_limits: true
+    max_velocity: 1.5
+    has_acceleration_limits: true
+    max_acceleration: 2.5
+  elbow_joint:
+    has_velocity_limits: false
+    max_velocity: 0.1
+    has_position_limits: true
+    min_position: -1.0
+    max_position: 2
+  wrist_1_joint: {has_velocity_limits: true, max_velocity: 100.0}
+"""
+KINEMATICS = """\
+ur_manipulator:
+  kinematics_solver: kdl_kinematics_plugin/KDLKinematicsPlugin
+  kinematics_solver_timeout: 0.005
+  position_only_ik: {only}
+"""
+
+
+def load(folder, **files):
+    words = {}
+    for key, text in files.items():
+        (folder / f"{key}.yaml").write_text(text, encoding="utf-8")
+        words[key] = f"{key}.yaml"
+    return load_robot(RobotSpec.model_validate({"model": "ur5e", "moveit": words}), folder)
+
+
+@pytest.mark.parametrize("wrapper", ["", "/**:\n ros__parameters:\n  robot_description_planning:\n"])
+def test_joint_limits_narrow_the_robots_own(tmp_path, wrapper):
+    indent = "   " if wrapper else ""
+    text = wrapper + "".join(f"{indent}{line}\n" for line in LIMITS.splitlines())
+    arm = load(tmp_path, joint_limits=text)
+    pan, elbow, wrist = (
+        arm.joint_by_name[f"{name}_joint"] for name in ("shoulder_pan", "elbow", "wrist_1")
+    )
+    assert (pan.velocity, pan.acceleration) == (1.5, 2.5)
+    assert (elbow.lower, elbow.upper) == (-1.0, 2.0)
+    assert elbow.velocity > 3, "has_velocity_limits is false"
+    assert wrist.velocity < 4
+    assert any("wrist_1_joint has a wider velocity limit" in note for note in arm.notes)
+    assert 'upper="2.0"' in arm.urdf
+
+
+@pytest.mark.parametrize("only", ["true", "false"])
+def test_position_only_ik_frees_the_orientation(tmp_path, only):
+    arm = load(tmp_path, kinematics=KINEMATICS.format(only=only))
+    kinematics = PinocchioKinematics(arm)
+    # A point at the edge of the reach, looking back at the arm: to be reached, but not like that.
+    goal = PoseGoal("tool0", SE3.from_xyz_rpy((0.75, 0.2, 0.3), (0, -np.pi / 2, 0)))
+    start = arm.start_positions()
+    solutions = kinematics.solve("ur_manipulator", goal, start, 1)
+    assert bool(solutions) == (only == "true")
+    for positions in solutions:
+        there = kinematics.link_pose(positions, "tool0").translation
+        assert there == pytest.approx(goal.pose.translation, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("files", "words"),
+    [
+        (
+            {"joint_limits": LIMITS.replace("elbow_joint", "elbo_joint")},
+            ["joint_limits.yaml:8:3", "no joint 'elbo_joint'", "did you mean 'elbow_joint'"],
+        ),
+        ({"joint_limits": LIMITS.replace("1.5", "fast")}, ["joint_limits.yaml:5:19", "'fast'"]),
+        ({"joint_limits": LIMITS.replace("1.5", "-1")}, [":5:19", "above zero"]),
+        ({"joint_limits": LIMITS.replace("-1.0", "5")}, [":9:5", "nothing is between 5 and 2"]),
+        ({"joint_limits": "joints: {}"}, ["has `joint_limits` at the top"]),
+        ({"kinematics": KINEMATICS.format(only="yes")}, [":4:21", "true or false"]),
+        ({"kinematics": "arm: {}"}, ["kinematics.yaml:1:1", "no group 'arm'", "ur_manipulator"]),
+    ],
+)
+def test_what_the_robot_has_not_is_told_at_its_place(tmp_path, files, words):
+    with pytest.raises(SpecError) as caught:
+        load(tmp_path, **files)
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_a_file_that_is_not_there_is_told(tmp_path):
+    words = {"model": "ur5e", "moveit": {"kinematics": "gone.yaml"}}
+    with pytest.raises(RobotError, match="robot.moveit: there is no file"):
+        load_robot(RobotSpec.model_validate(words), tmp_path)
