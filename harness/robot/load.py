@@ -28,7 +28,6 @@ from harness.robot.xacro_file import arguments_of, render, render_bundled
 from harness.spec.scenario import RobotSpec
 from harness.spec.xml_file import read_xml
 
-LATER = ("mjcf",)
 OF_FILES = ("srdf", "packages", "group", "flange_link")
 
 
@@ -63,12 +62,6 @@ def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
     Raises:
         RobotError: The robot is not known, its files cannot be used, or an option does not fit it.
     """
-    for key in LATER:
-        if getattr(spec, key) is not None:
-            raise RobotError(
-                f"robot: `{key}` is not yet available; use `model` with one of "
-                f"{', '.join(robot_names())}"
-            )
     if spec.base.frame != "world":
         raise RobotError(f"robot.base stands in the frame 'world', not in '{spec.base.frame}'")
     main = _main(spec, base_dir)
@@ -98,7 +91,7 @@ def _calibrated(main: Part | None, path: Path) -> Part:
 
 def _main(spec: RobotSpec, base_dir: Path) -> Part | None:
     """The arm, or the gripper that stands alone; None where only `gripper` is given."""
-    if spec.urdf is not None or spec.xacro is not None:
+    if spec.urdf is not None or spec.xacro is not None or spec.mjcf is not None:
         return read_robot(spec, base_dir)
     for key in OF_FILES:
         if getattr(spec, key):

@@ -77,7 +77,7 @@ class RobotSpec(SpecModel):
     )
     xacro: str | None = Field(default=None, description="A xacro file, rendered with `args`.")
     args: dict[Name, Any] = Field(default_factory=dict, description="Of the xacro file.")
-    mjcf: str | None = Field(default=None, description="A file; not yet available.")
+    mjcf: str | None = Field(default=None, description="An MJCF file, as MuJoCo reads it.")
     srdf: str | None = Field(
         default=None, description="Groups, states and allowed pairs, with `urdf`, `xacro`, `mjcf`."
     )

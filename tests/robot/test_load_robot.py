@@ -26,7 +26,7 @@ from tests.robot.models import robot
         ({"urdf": "arm.urdf"}, ["robot.urdf: there is no file arm.urdf"]),
         ({"model": "ur3e", "srdf": "a.srdf"}, ["robot.srdf goes with a robot's file"]),
         ({"xacro": "arm.xacro"}, ["robot.xacro: there is no file"]),
-        ({"mjcf": "arm.xml"}, ["`mjcf` is not yet available"]),
+        ({"mjcf": "arm.xml"}, ["robot.mjcf: there is no file"]),
         ({"model": "ur3e", "base": {"frame": "Table"}}, ["'world'", "'Table'"]),
         ({"model": "ur3e", "args": {"tool": "x"}}, ["no argument 'tool'", "safety_limits"]),
         ({"model": "ur3e", "args": {"ur_type": "ur5"}}, ["no argument 'ur_type'"]),

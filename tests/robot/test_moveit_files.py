@@ -42,7 +42,9 @@ def load(folder, **files):
     return load_robot(RobotSpec.model_validate({"model": "ur5e", "moveit": words}), folder)
 
 
-@pytest.mark.parametrize("wrapper", ["", "/**:\n ros__parameters:\n  robot_description_planning:\n"])
+@pytest.mark.parametrize(
+    "wrapper", ["", "/**:\n ros__parameters:\n  robot_description_planning:\n"]
+)
 def test_joint_limits_narrow_the_robots_own(tmp_path, wrapper):
     indent = "   " if wrapper else ""
     text = wrapper + "".join(f"{indent}{line}\n" for line in LIMITS.splitlines())
@@ -96,5 +98,5 @@ def test_what_the_robot_has_not_is_told_at_its_place(tmp_path, files, words):
 
 def test_a_file_that_is_not_there_is_told(tmp_path):
     words = {"model": "ur5e", "moveit": {"kinematics": "gone.yaml"}}
-    with pytest.raises(RobotError, match="robot.moveit: there is no file"):
+    with pytest.raises(RobotError, match="moveit: there is no file"):
         load_robot(RobotSpec.model_validate(words), tmp_path)

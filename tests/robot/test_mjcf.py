@@ -1,0 +1,161 @@
+"""MJCF robots: the same links, joints and masses as MuJoCo has of the file."""
+
+import mujoco
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from harness.core.errors import SpecError
+from harness.planning.kinematics import PinocchioKinematics
+from harness.robot.load import load_robot
+from harness.simulation.servo import bare_robot
+from harness.spec.scenario import RobotSpec
+from tests.engine.front_door import run
+
+MJCF = """\
+<mujoco model="arm">
+  <compiler angle="degree" meshdir="assets"/>
+  <asset><mesh name="tip" file="t.obj" scale="0.02 0.02 0.02"/></asset>
+  <worldbody>
+    <geom type="plane" size="1 1 0.1"/>
+    <body name="base">
+      <geom type="cylinder" size="0.05 0.05" pos="0 0 0.05"/>
+      <body name="upper" pos="0 0 0.12" euler="0 0 30">
+        <joint name="pan" axis="0 0 1"/>
+        <joint name="lift" axis="0 1 0" pos="0 0 0.03" range="-100 100" ref="20" damping="0.5"/>
+        <geom type="capsule" fromto="0 0 0.05 0 0 0.3" size="0.03"/>
+        <body name="lower" pos="0 0 0.35">
+          <joint name="elbow" axis="0 1 0" range="-120 120"/>
+          <geom type="box" size="0.02 0.03 0.1" pos="0 0 0.1"/>
+          <body name="wrist" pos="0 0 0.22">
+            <joint name="slide" type="slide" axis="0 0 1" range="0 0.1"/>
+            <geom type="mesh" mesh="tip" pos="0.01 0 0"/>
+            <site name="tcp" pos="0 0 0.08"/>
+            <body name="finger" pos="0.02 0 0.06">
+              <joint name="pinch" type="slide" axis="1 0 0" range="0 0.05"/>
+              <geom type="sphere" size="0.01"/>
+            </body>
+          </body>
+        </body>
+      </body>
+    </body>
+    <body name="cube" pos="1 0 0.5"><freejoint/><geom type="box" size="0.02 0.02 0.02"/></body>
+  </worldbody>
+  <actuator>
+    <position name="a1" joint="pan" kp="100" forcerange="-50 50"/>
+    <position name="a2" joint="lift" kp="100" forcerange="-60 60"/>
+    <motor name="a3" joint="elbow" gear="30" ctrlrange="-1 1" ctrllimited="true"/>
+  </actuator>
+  <equality><joint joint1="pinch" joint2="slide" polycoef="0.01 0.4 0 0 0"/></equality>
+  <contact><exclude body1="base" body2="lower"/></contact>
+  <keyframe><key name="home" qpos="0.1 0.5 0.7 0.02 0.018 1 0 0.5 1 0 0 0"/></keyframe>
+</mujoco>
+"""
+TIP = "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+JOINTS = ("pan", "lift", "elbow", "slide", "pinch")
+LINKS = ("base", "upper", "lower", "wrist", "finger")
+
+
+def write(folder, text=MJCF):
+    (folder / "assets").mkdir(exist_ok=True)
+    (folder / "assets" / "t.obj").write_text(TIP, encoding="utf-8")
+    (folder / "arm.xml").write_text(text, encoding="utf-8")
+
+
+def load(folder, **words):
+    words = {"mjcf": "arm.xml", "tcp_link": "tcp", **words}
+    return load_robot(RobotSpec.model_validate(words), folder)
+
+
+def test_planner_physics_and_the_file_agree_on_every_body(tmp_path):
+    write(tmp_path)
+    arm = load(tmp_path)
+    original = mujoco.MjModel.from_xml_path(str(tmp_path / "arm.xml"))
+    physics = bare_robot(arm).compile()
+    kinematics = PinocchioKinematics(arm)
+    rng = np.random.default_rng(3)
+    for _ in range(5):
+        positions = arm.with_mimics(rng.uniform(-0.5, 0.5, 5))
+        there, here = mujoco.MjData(original), mujoco.MjData(physics)
+        for name, value in zip(arm.joint_names, positions, strict=True):
+            there.joint(name).qpos = here.joint(name).qpos = value
+        mujoco.mj_kinematics(original, there)
+        mujoco.mj_kinematics(physics, here)
+        for link in LINKS:
+            expected = there.body(link).xpos
+            assert here.body(link).xpos == pytest.approx(expected, abs=1e-12)
+            planned = kinematics.link_pose(positions, link).translation
+            assert planned == pytest.approx(expected, abs=1e-12)
+        assert kinematics.link_pose(positions, "tcp").translation == pytest.approx(
+            there.site("tcp").xpos, abs=1e-12
+        )
+
+
+def test_masses_are_those_that_mujoco_makes_of_the_geoms(tmp_path):
+    write(tmp_path)
+    arm = load(tmp_path)
+    original = mujoco.MjModel.from_xml_path(str(tmp_path / "arm.xml"))
+    expected = sum(float(original.body(link).mass[0]) for link in LINKS)
+    assert bare_robot(arm).compile().body_mass.sum() == pytest.approx(expected, abs=1e-12)
+    model = pin.buildModelFromXML(arm.urdf)
+    on_world = model.inertias[0].mass
+    assert pin.computeTotalMass(model) + on_world == pytest.approx(expected, abs=1e-12)
+    data, original_data = mujoco.MjData(bare_robot(arm).compile()), mujoco.MjData(original)
+    mujoco.mj_forward(original, original_data)
+    assert data.model.nv == 5 < original.nv == 11
+
+
+def test_limits_efforts_states_and_pairs_are_read(tmp_path):
+    write(tmp_path)
+    arm = load(tmp_path)
+    joints = arm.joint_by_name
+    assert [joints[name].kind for name in JOINTS] == [
+        "continuous", "revolute", "revolute", "prismatic", "prismatic",
+    ]  # fmt: skip
+    assert [joints[name].effort for name in JOINTS] == [50, 60, 30, np.inf, np.inf]
+    assert joints["lift"].upper == pytest.approx(np.radians(100))
+    assert (joints["pinch"].mimic.joint, joints["pinch"].mimic.multiplier) == ("slide", 0.4)
+    assert joints["pinch"].mimic.offset == 0.01
+    assert arm.states_of("arm")["home"].positions["elbow"] == 0.7
+    assert arm.start_state["lift"] == 0.5
+    assert arm.allowed_collisions["base", "lower"] == "Excluded"
+    assert arm.notes[:4] == (
+        "body 'upper' has 2 joints: links are put between them",
+        "bodies that are free or no part of the arm are left out: cube",
+        "3 actuators are not used: the program drives every joint with its own servo",
+        "1 geoms of the world body are no part of the robot",
+    )
+
+
+def test_an_mjcf_arm_moves(tmp_path):
+    write(tmp_path)
+    robot = "{mjcf: arm.xml, tcp_link: tcp, base: {xyz: [0, 0, 0.5]}}"
+    steps = """
+        - move_to: {joints: {pan: 1.0, elbow: -0.5, slide: 0.05}}
+        - move_to: home
+    """
+    result, saved = run(tmp_path, steps, robot=robot, rest="expect: [{always: within_limits}]")
+    assert result.outcome == "passed", [step.message for step in result.steps]
+    assert saved.signals.joint_positions[-1][:4] == pytest.approx([0.1, 0.5, 0.7, 0.02], abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("</mujoco>", "</mujocoo>", ["arm.xml:37:3", "not well-formed"]),
+        ('<mujoco model="arm">', "<!DOCTYPE m><mujoco>", ["arm.xml:1:12", "DOCTYPE"]),
+        ('file="t.obj"', 'file="gone.obj"', ["arm.xml:3:33", "gone.obj", "not there"]),
+        ('file="t.obj"', 'file="/etc/passwd"', ["arm.xml:3:33", "outside"]),
+        ("<equality>", '<include file="arm.xml"/><equality>', ["circle", "arm.xml - arm.xml"]),
+        ("<equality>", "<extension/><equality>", ["plugins are not loaded"]),
+        ('type="sphere" size="0.01"', 'type="sphere" size="-1"', ["arm.xml", "MuJoCo:"]),
+        ('axis="0 0 1" range="0 0.1"', 'axis="0 0 1"', ["arm.xml:16:14", "has no range"]),
+    ],
+)
+def test_a_file_that_cannot_be_used_is_refused_at_its_place(tmp_path, old, new, words):
+    assert old in MJCF
+    write(tmp_path, MJCF.replace(old, new))
+    with pytest.raises(SpecError) as caught:
+        load(tmp_path)
+    for word in words:
+        assert word in str(caught.value)
