@@ -5,10 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from harness.assertions.contacts import (
+    GIVE,
     TOUCH_FORCE,
     attached,
+    between_fingers,
     bodies_touching,
+    finger_gap,
+    gripper_of,
     held_by_fingers,
+    least_width,
     side_forces,
     weld_note,
 )
@@ -56,7 +61,9 @@ def grasped(check: Grasped, window: Window) -> MarginSignal:
         Part("slip in the hand", distance, check.max_slip, "<=", "m", None, relevant),
         Part("turn in the hand", turn, check.max_rotation, "<=", "rad", None, relevant),
     ]
-    parts += slip
+    between = window.cut(between_fingers(run, name)).astype(float)
+    touched = np.min([part.margins() for part in parts], axis=0) >= 0
+    parts += [Part("between the fingers", between, 1.0, "==", "1", None, touched), *slip]
 
     def text(index: int, _: Measure) -> str:
         forces = ", ".join(
@@ -67,9 +74,18 @@ def grasped(check: Grasped, window: Window) -> MarginSignal:
             turned = amount(float(slip[1].values[index]), "rad")
             drift = f"{name} moved {moved} and turned {turned} in the hand"
             return f"{forces}; {drift}{weld_note(run, name)}"
-        return f"{forces}; {name} is not between the fingers{_planners_belief(run, name)}"
+        apart = _too_wide(run, name, window.start + index)
+        return f"{forces}; {name} is not between the fingers{apart}{_planners_belief(run, name)}"
 
     return all_of(window, parts, text, present=window.cut(present(run, name)))
+
+
+def _too_wide(run: Run, name: str, sample: int) -> str:
+    """Whether the fingers are too close for it to be between them."""
+    if not gripper_of(run).widths:
+        return ""
+    gap, width = float(finger_gap(run)[sample]), least_width(run, name)
+    return f", they are {amount(gap, 'm')} apart" if gap + GIVE < width else ""
 
 
 def _planners_belief(run: Run, name: str) -> str:

@@ -10,11 +10,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from harness.assertions.contacts import gripper_of
+from harness.assertions.contacts import finger_gap, gripper_of
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, NotReached, Window
-from harness.core.types import FloatArray
 from harness.recording.run import JointRecord, Measure, Run
 from harness.spec.checks import GripperState, Joints, NamedTarget
 
@@ -97,7 +96,7 @@ def gripper_state(check: GripperState, window: Window) -> MarginSignal:
     if check.position is not None:
         return _near(window, {hand.joint: check.position}, check.tolerance, given)
     width = check.width or 0.0
-    gap = window.cut(_gap(run))
+    gap = window.cut(finger_gap(run))
     limit = check.tolerance if given else SLIDING_TOLERANCE
     part = Part("gap error", np.abs(gap - width), limit, "<=", "m")
 
@@ -105,15 +104,6 @@ def gripper_state(check: GripperState, window: Window) -> MarginSignal:
         return f"the gap is {amount(float(gap[index]), 'm')}, {amount(width, 'm')} asked for"
 
     return all_of(window, [part], text)
-
-
-def _gap(run: Run) -> FloatArray:
-    hand = gripper_of(run)
-    if not hand.widths:
-        raise NotObservable("the gripper's widths are not known")
-    column, _ = joint_column(run, hand.joint)
-    rows = np.array(sorted(hand.widths))
-    return np.interp(run.signals.joint_positions[:, column], rows[:, 0], rows[:, 1])
 
 
 def _stalled(expected: bool, window: Window) -> MarginSignal:

@@ -14,6 +14,7 @@ WORDS = {
     "joint_commands": "the commanded positions of the joints",
     "joint_command_velocities": "the commanded velocities of the joints",
     "contact_forces": "contacts",
+    "grip_forces": "the directions in which the fingers press",
     "clearances": "distances",
 }
 

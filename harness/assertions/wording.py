@@ -25,7 +25,7 @@ UNITS = {
 }
 """Of numbers whose key alone gives them; `at_least` depends on the predicate."""
 AT_LEAST = {"clearance": "m", "displaced": "m", "duration": "s", "path_length": "m"}
-SUBJECTS = ("object", "state", "named_target", "between")
+SUBJECTS = ("object", "state", "named_target", "between", "formula")
 SILENT = ("check", "points", "name", "predicate", "until", *SUBJECTS)
 
 

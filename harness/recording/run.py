@@ -357,6 +357,8 @@ class Signals:
             physics had them, those of the planning scene alone as the planner believed them.
         contact_forces: Normal force [N] between two bodies that ever touched, (N,) each; keys are
             (body, body), robot link first, else sorted. Zero means no contact.
+        grip_forces: Net normal force [N] of a finger's link on an object that both sides of the
+            gripper ever touched, world axes, (N, 3) each; keys as in `contact_forces`.
         clearances: Distance [m] between the robot (key `robot`), or a held object (its name), and
             an object, or `robot` and itself: (N,) each; NaN while either is absent. Capped at
             `clearance_cutoff`: a value there means "at least that far".
@@ -374,6 +376,9 @@ class Signals:
     frames: Mapping[str, FloatArray] = field(default_factory=dict[str, FloatArray])
     object_poses: Mapping[str, FloatArray] = field(default_factory=dict[str, FloatArray])
     contact_forces: Mapping[Pair, FloatArray] = field(
+        default_factory=dict[tuple[str, str], FloatArray]
+    )
+    grip_forces: Mapping[Pair, FloatArray] = field(
         default_factory=dict[tuple[str, str], FloatArray]
     )
     clearances: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])

@@ -54,6 +54,7 @@ class Recording:
         self._contact_end = np.zeros(ROWS, dtype=np.int64)
         self._geoms = np.empty((ROWS * CONTACTS_PER_ROW, 2), dtype=np.int32)
         self._forces = np.empty(ROWS * CONTACTS_PER_ROW)
+        self._normals = np.empty((ROWS * CONTACTS_PER_ROW, 3), dtype=np.float32)
         self._contacts = 0
         self.count = 0
 
@@ -119,7 +120,7 @@ class Recording:
             )
         rows = (self._qpos, self._qvel, self._sensors, self._commands, self._command_velocities)
         per_row = 8 * (1 + sum(array.shape[1] for array in rows))
-        size = (self.count + steps) * per_row + 16 * self._contacts
+        size = (self.count + steps) * per_row + 28 * self._contacts
         if size > MOST_BYTES:
             raise StepFailed(
                 "TIMED_OUT",
@@ -136,9 +137,11 @@ class Recording:
         if end > len(self._forces):
             self._geoms = np.concatenate([self._geoms, np.empty_like(self._geoms)])
             self._forces = np.concatenate([self._forces, np.empty_like(self._forces)])
+            self._normals = np.concatenate([self._normals, np.empty_like(self._normals)])
         if end > begin:
             contact = data.contact
             self._geoms[begin:end] = contact.geom
+            self._normals[begin:end] = contact.frame[:, :3]
             data.efc_force.take(contact.efc_address, 0, self._forces[begin:end], "clip")
 
     def _record_forces_of_last_row(self) -> None:
@@ -226,6 +229,36 @@ class Recording:
             found[self._pair(first_body, second_body)] = force.astype(np.float64)
         return dict(sorted(found.items()))
 
+    def grip_forces(self, pairs: Mapping[BodyPair, FloatArray]) -> Mapping[BodyPair, FloatArray]:
+        """Net normal force [N] of finger links on what both sides touched, world axes, (N, 3) each.
+
+        Args:
+            pairs: Contact forces of the whole record.
+        """
+        gripper, count = self._physics.description.gripper, self.count
+        if gripper is None:
+            return {}
+        sides = [frozenset(links) for links in gripper.sides.values()]
+        touched = [{b for a, b in pairs if a in links} for links in sides]
+        both = set[str]().union(*touched).intersection(*touched)
+        end = self._contact_end[count - 1]
+        per_row = np.diff(self._contact_end[:count], prepend=0)
+        rows = np.repeat(np.arange(count), per_row)
+        bodies = self._physics.model.geom_bodyid[self._geoms[:end]]
+        numbers = {name: number for number, name in enumerate(self._physics.body_names)}
+        found: dict[BodyPair, FloatArray] = {}
+        for link, name in pairs:
+            if name not in both or not any(link in links for links in sides):
+                continue
+            there = bodies == numbers[link]
+            chosen = (there | (bodies == numbers[name])).all(axis=1)
+            # a contact's normal points from its first geom to its second
+            signed = np.where(there[chosen, 0], 1.0, -1.0) * self._forces[:end][chosen]
+            vectors = signed[:, None] * self._normals[:end][chosen]
+            found[link, name] = np.zeros((count, 3))
+            np.add.at(found[link, name], rows[chosen], vectors)
+        return found
+
     def _pair(self, first: int, second: int) -> BodyPair:
         names, robot = self._physics.body_names, self._physics.robot_bodies
         if (first in robot) != (second in robot):
@@ -250,6 +283,7 @@ class Recording:
         command_velocities[:, physics.actuated] = self._command_velocities[:count]
         efforts[:, physics.actuated] = self._sensors[:count, frame_end:]
         frames = self._sensors[:count, :frame_end].reshape(count, -1, 7)
+        contacts = self.contacts(0, count)
         return Signals(
             times=np.arange(count, dtype=np.float64) * self.timestep,
             joint_positions=self.joint_positions(0).copy(),
@@ -260,7 +294,8 @@ class Recording:
             tcp_pose=frames[:, 0].copy(),
             frames={name: frames[:, i + 1].copy() for i, name in enumerate(physics.frames)},
             object_poses=dict(object_poses),
-            contact_forces=self.contacts(0, count),
+            contact_forces=contacts,
+            grip_forces=self.grip_forces(contacts),
         )
 
     def free_poses(self, qpos: int) -> FloatArray:

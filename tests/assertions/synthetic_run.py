@@ -91,15 +91,17 @@ def make_run(n=200, *, objects=(TABLE, BOX), steps=(), attachments=(), robot=ROB
     """A run of n samples in which nothing moves or touches, but for what is given."""
     columns = len(robot.joints)
     zero = np.zeros((n, columns))
+    ajar = zero.copy()
+    ajar[:, -1] = 0.02  # the pads are 4 cm apart, as wide as the box
     poses = {"Table": at(n, (0, 0, -0.015)), "box": at(n, (0, 0, 0.02))}
     poses |= {"cylinder": at(n, (0, 0, 0.02))}
     names = {record.name for record in objects if record.in_simulation}
     given = {
         "times": np.arange(n) * DT,
-        "joint_positions": zero,
+        "joint_positions": ajar,
         "joint_velocities": zero,
         "joint_efforts": zero,
-        "joint_commands": zero,
+        "joint_commands": ajar,
         "joint_command_velocities": zero,
         "tcp_pose": at(n, (0, 0, 0.3)),
         "contact_forces": {},
@@ -173,10 +175,14 @@ def lift_run(n=200, *, grip=(50, 200), leave=100, height=0.1, value=2.0, **chang
         ("right_finger", "box"): force(n, grip, value=value),
         ("Table", "box"): force(n, (0, leave)),
     }
+    grips = {("left_finger", "box"): 1.0, ("right_finger", "box"): -1.0}
     given = {
         "object_poses": {"box": heights(0.02 + rise)},
         "tcp_pose": heights(0.05 + rise),
         "contact_forces": forces,
+        "grip_forces": {
+            pair: forces[pair][:, None] * np.array([0.0, sign, 0.0]) for pair, sign in grips.items()
+        },
         "steps": (
             step("approach", 0, 40),
             step("close", 39, 80, "gripper"),

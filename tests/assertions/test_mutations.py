@@ -76,7 +76,7 @@ pytestmark = pytest.mark.mutation
 N = 200
 SHIFTS = (0.02, 0.3, 3.0, 30.0)
 MOMENTS = range(0, N, 10)
-MAPPINGS = ("frames", "object_poses", "contact_forces", "clearances")
+MAPPINGS = ("frames", "object_poses", "contact_forces", "grip_forces", "clearances")
 SHOWN_ONLY = {
     ("collision", "clearances"): "contacts decide; how near it came is the margin of what did not"
 }
@@ -329,7 +329,7 @@ def frozen(run, place, _):
 
 def dropped(run, place, _):
     field, key = place
-    if key is None or field in ("contact_forces", "clearances"):
+    if key is None or field in ("contact_forces", "grip_forces", "clearances"):
         empty = {} if key is not None else np.full_like(array_of(run.signals, place), np.nan)
         lost = replace(run.signals, **{field: empty})
         yield replace(run, signals=lost, unrecorded=(field,))

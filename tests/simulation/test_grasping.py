@@ -152,3 +152,28 @@ def test_a_weld_carries_what_friction_would_not(ur3e):
     simulator.unweld("cylinder")
     simulator.hold(1.0)
     assert simulator.object_pose("cylinder").translation[2] < start + 0.05
+
+
+def test_the_fingers_press_a_grasped_object_against_each_other(gripper_over_table):
+    cylinder = a_cylinder("cylinder", 0.03, 0.1, (0, 0, 0.119), mass=0.1)
+    stand = a_box("stand", (0.5, 0.5, 0.02), (0, 0, 0.06))
+    simulator = MujocoSimulator(gripper_over_table, (cylinder, stand), ("cylinder", "stand"))
+    simulator.command_gripper(0.62, GRIP, timeout=5.0)
+    simulator.hold(0.2)
+    signals = simulator.finish()
+    pressing = {pair: force for pair, force in signals.grip_forces.items() if force.any()}
+    assert {name for _, name in pressing} == {"cylinder"}, "the stand is no grip"
+    sides = gripper_over_table.gripper.sides
+    totals = [
+        sum(force[-1] for (link, _), force in pressing.items() if link in links)
+        for links in sides.values()
+    ]
+    for links, total in zip(sides.values(), totals, strict=True):
+        scalar = sum(
+            force[-1]
+            for (link, name), force in signals.contact_forces.items()
+            if link in links and name == "cylinder"
+        )
+        assert 0.9 * scalar < np.linalg.norm(total) <= scalar * (1 + 1e-6)
+    directions = [total / np.linalg.norm(total) for total in totals]
+    assert directions[0] @ directions[1] < -0.9
