@@ -70,18 +70,19 @@ def _at_pose(check: Placed, window: Window) -> list[Part]:
     target = compose(frame_poses(run, check.pose.frame), check.pose.se3().as_vector())
     actual = object_poses(run, check.object)
     distance = window.cut(np.linalg.norm(actual[:, :3] - target[:, :3], axis=1))
+    points = (window.cut(target[:, :3]), window.cut(actual[:, :3]))
     if check.tolerance is None:
         up_in_target = rotate(conjugate(target[:, 3:]), UP)
         up_in_actual = rotate(conjugate(actual[:, 3:]), UP)
         lean = window.cut(angle_between(up_in_target, up_in_actual))
         return [
-            Part("position error", distance, PLACE_POSITION, "<=", "m"),
+            Part("position error", distance, PLACE_POSITION, "<=", "m", points=points),
             Part("lean", lean, PLACE_TILT, "<=", "rad"),
         ]
     turn = rotation_vector(quat_product(conjugate(target[:, 3:]), actual[:, 3:]))
     worst = window.cut(np.abs(turn).max(axis=1))
     return [
-        Part("position error", distance, check.tolerance.position, "<=", "m"),
+        Part("position error", distance, check.tolerance.position, "<=", "m", points=points),
         Part("orientation error", worst, check.tolerance.orientation, "<=", "rad"),
     ]
 

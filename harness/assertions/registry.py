@@ -70,6 +70,8 @@ class Part:
         scale: What a margin is divided by before it is compared with other parts'; default |limit|.
         relevant: Samples at which the part counts; default all.
         detail: Which joint, link or pair.
+        points: Of a distance in the world, where something was to be and where it was, shape
+            (n, 3) each.
     """
 
     name: str
@@ -80,6 +82,14 @@ class Part:
     scale: float | None = None
     relevant: BoolArray | None = None
     detail: str = ""
+    points: tuple[FloatArray, FloatArray] | None = None
+
+    def points_at(self, index: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Expected and actual point of a sample; empty where the part has none."""
+        if self.points is None:
+            return (), ()
+        expected, actual = (tuple(map(float, rows[index])) for rows in self.points)
+        return expected, actual
 
     def margins(self) -> FloatArray:
         """Not negative where the part holds, in `unit` (1 or -1 for equality), shape (n,)."""
@@ -142,6 +152,7 @@ def all_of(
                 part.unit,
                 window.time(index),
                 part.detail,
+                *part.points_at(index),
             )
             for part in chosen
         )

@@ -30,7 +30,8 @@ def tcp_pose(check: TcpPose, window: Window) -> MarginSignal:
         axis=1
     )
     tolerance = check.tolerance
-    parts = [Part(f"{what} position error", distance, tolerance.position, "<=", "m")]
+    points = (target[:, :3], actual[:, :3])
+    parts = [Part(f"{what} position error", distance, tolerance.position, "<=", "m", points=points)]
     if not check.position_only:
         parts.append(Part(f"{what} orientation error", turn, tolerance.orientation, "<=", "rad"))
 

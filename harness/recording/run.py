@@ -223,6 +223,8 @@ class Measure:
         unit: `m`, `rad`, `s`, `N`, `1`.
         time: Simulation time of the sample [s].
         detail: Which joint, link or pair it was.
+        expected: Where in the world something was to be (xyz), where the value is a distance.
+        actual: Where it was (xyz).
     """
 
     name: str
@@ -232,6 +234,8 @@ class Measure:
     unit: str
     time: float
     detail: str = ""
+    expected: Floats = ()
+    actual: Floats = ()
 
     def __str__(self) -> str:
         where = f" ({self.detail})" if self.detail else ""

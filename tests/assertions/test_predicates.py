@@ -469,6 +469,14 @@ def test_the_tcp_is_where_it_should_be_within_both_tolerances():
     assert verdict(run, TcpPose(pose=turned, position_only=True)).status == "passed"
 
 
+def test_a_position_error_says_where_it_was_to_be_and_where_it_was():
+    run = make_run(tcp_pose=heights(np.full(200, 0.3)))
+    answer = verdict(run, TcpPose(pose=Pose(xyz=(0, 0.5, 0.3)), position_only=True))
+    [measure] = answer.measures
+    assert measure.expected == pytest.approx((0, 0.5, 0.3))
+    assert measure.actual == pytest.approx((0, 0, 0.3))
+
+
 def test_a_pose_in_the_frame_of_a_fixed_link_or_of_an_object():
     run = make_run()
     assert verdict(run, TcpPose(pose=Pose(xyz=(0, 0, -0.2), frame="base_link"))).status == "passed"

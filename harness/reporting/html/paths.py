@@ -27,14 +27,15 @@ def pack_plan(run: Run, step: StepRecord, index: int, packer: Packer) -> dict[st
     """A step's planned TCP path, the path before shortening, and its goal, each if known."""
     poses = _planned_poses(run, step)
     found = _raw_poses(run, step)
-    goal = _goal(step)
+    nearest = _nearest(run, step)
+    goal = None if nearest is None else nearest["target"]
     if goal is None and poses is not None:
         goal = [round(float(value), 6) for value in poses[-1]]
     return {
         "plan": None if poses is None else packer.add(f"plan.{index}", _points(poses)),
         "rawPlan": None if found is None else packer.add(f"raw.{index}", _points(found)),
         "goal": goal,
-        "nearest": _nearest(step),
+        "nearest": nearest,
     }
 
 
@@ -76,17 +77,27 @@ def _tool_poses(
     return None if poses is None else np.broadcast_to(poses, (len(rows), 7))
 
 
-def _goal(step: StepRecord) -> list[float] | None:
-    """Where the tool was to be, as the step's explanation tells."""
-    return _numbers(step.explanation.get("goal_pose"), 7)
+def _nearest(run: Run, step: StepRecord) -> dict[str, Any] | None:
+    """The state that explains a failure: the whole robot there, and how far it is from the goal."""
+    facts = cast("Mapping[str, Any]", step.explanation.get("nearest", {}))
+    joints = cast("Mapping[str, float]", facts.get("joint_positions") or {})
+    names = [joint.name for joint in run.robot.joints]
+    if not set(names) <= set(joints):
+        return None
+    row = np.array([[float(joints[name]) for name in names]])
+    poses = link_poses(run.robot, row, [*run.robot.link_visuals, run.robot.tcp_link])
+    return {
+        "shows": str(facts.get("shows", "")),
+        "bodies": {name: [round(float(x), 6) for x in pose[0]] for name, pose in poses.items()},
+        "place": _numbers(facts.get("pose"), 7),
+        "target": _target(facts),
+    }
 
 
-def _nearest(step: StepRecord) -> list[float] | None:
-    """The reachable point nearest to a goal that cannot be reached."""
-    nearest = step.explanation.get("nearest_position")
-    if nearest is None and isinstance(step.explanation.get("nearest"), Mapping):
-        nearest = cast("Mapping[str, Any]", step.explanation["nearest"]).get("xyz")
-    return _numbers(nearest, 3)
+def _target(facts: Mapping[str, Any]) -> list[float] | None:
+    """Where a link was to be: a pose, or a point with no turn of its own."""
+    pose, point = _numbers(facts.get("target"), 7), _numbers(facts.get("target"), 3)
+    return pose or (None if point is None else [*point, 1.0, 0.0, 0.0, 0.0])
 
 
 def _numbers(values: Any, count: int) -> list[float] | None:

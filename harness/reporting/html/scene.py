@@ -67,17 +67,16 @@ def pack_scene(run: Run, packer: Packer) -> dict[str, Any]:
     for name in dict.fromkeys([*run.robot.link_visuals, run.robot.tcp_link]):
         if name in poses:
             looks = run.robot.link_visuals.get(name, ())
-            add(name, looks, poses[name], shown=always, ghost=False, isFloor=False)
+            add(name, looks, poses[name], shown=always, ghost=False, isLink=True)
     for obj in run.objects:
         recorded = run.signals.object_poses.get(obj.name)
         known = _filled(recorded[samples]) if recorded is not None else None
         rows = np.array([obj.pose]) if known is None and obj.pose else known
         if rows is None:
             continue
-        is_floor = any(isinstance(shape.geometry, Plane) for shape in obj.shapes)
         shown = always if recorded is None else _shown(run.signals.times, recorded)
         ghost = not obj.in_simulation
-        add(obj.name, obj.shapes, rows, shown=shown, ghost=ghost, isFloor=is_floor)
+        add(obj.name, obj.shapes, rows, shown=shown, ghost=ghost, isLink=False)
     unit = _pack_poses(columns, len(samples), packer)
     focus, bounds = _views(run, poses)
     return {

@@ -41,6 +41,16 @@ def depth_of(step: StepRecord, run: Run) -> int:
     return sum(_is_inside(step, other) for other in run.steps)
 
 
+def _decided_here(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> bool:
+    """Whether an expectation of the step, or of one around it, failed by a sample of it."""
+    around = {each.id for each in run.steps if each.path == step.path or _is_inside(step, each)}
+    return any(
+        each.status != "passed" and each.step in around
+        and (step.start_time < each.time <= step.end_time or each.step == step.id)
+        for each in verdicts
+    )  # fmt: skip
+
+
 def _is_inside(inner: StepRecord, outer: StepRecord) -> bool:
     return inner.path != outer.path and inner.path.startswith((f"{outer.path}.", f"{outer.path}["))
 
@@ -51,6 +61,7 @@ def step_facts(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> dict[
     tone = TONES[step.status]
     return {
         "tone": "bad" if broken and tone == "good" else tone,
+        "band": "bad" if tone == "good" and _decided_here(run, step, verdicts) else tone,
         "broken": [f"{each.expectation}: {each.reason or each.status}" for each in broken],
         "id": step.id,
         "verb": step.verb,
@@ -87,8 +98,17 @@ def verdict_facts(verdict: Verdict) -> dict[str, Any]:
         "reason": verdict.reason,
         "measures": [finite(to_plain(measure)) for measure in verdict.measures],
         "plot": next((plot for part, plot in PLOTS if part in name), None),
-        "points": None,
+        "points": _points(verdict),
     }
+
+
+def _points(verdict: Verdict) -> dict[str, list[float]] | None:
+    """Where something was to be and where it was, of the first measure that knows."""
+    for measure in verdict.measures:
+        if measure.expected and measure.actual:
+            points = {"expected": list(measure.expected), "actual": list(measure.actual)}
+            return points if np.isfinite([*measure.expected, *measure.actual]).all() else None
+    return None
 
 
 def allowance_used(measure: Measure) -> float | None:

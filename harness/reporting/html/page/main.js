@@ -28,7 +28,7 @@ async function start() {
   const clock = new Clock(run.duration);
   const bands = run.steps
     .filter((step) => step.status !== "not_reached" && !step.hasChildren)
-    .map((step) => ({ start: step.start, end: step.end, tone: step.tone }));
+    .map((step) => ({ start: step.start, end: step.end, tone: step.band }));
 
   const scene = makeScene(payload);
   const plots = new Plots(payload, clock, bands);
@@ -42,7 +42,7 @@ async function start() {
     { id: "findings", title: "Findings", badge: String(run.findings.length || ""), content: findingList(payload, (time) => clock.seek(time)) },
     { id: "source", title: "Source", content: source },
     { id: "joints", title: "Joints", content: jointTable(payload) },
-    { id: "environment", title: "Environment", content: pairTable(run.environment) },
+    { id: "environment", title: "Setup", content: pairTable(run.environment) },
   ]);
   makeTimeline(payload, clock, { step: selectStep, verdict: selectVerdict });
   const hasPictures = makePictures(payload, clock);
@@ -50,8 +50,10 @@ async function start() {
   const contacts = plots.panelData("contact");
 
   let currentStep = -2;
+  let chosen = { step: -1, time: NaN }; // several steps may share a moment
+  const stepNow = (time) => (time === chosen.time ? chosen.step : stepAt(run.steps, time));
   clock.onTime((time) => {
-    const step = stepAt(run.steps, time);
+    const step = stepNow(time);
     scene?.pose(time, step, contacts);
     showReadout(time, step);
     if (step === currentStep) return;
@@ -77,15 +79,16 @@ async function start() {
   function drawAt(time, canvas) {
     const step = stepAt(run.steps, time);
     scene.pose(time, step, null);
-    scene.viewer.copyTo(scene.orbit, canvas);
-    scene.pose(clock.time, stepAt(run.steps, clock.time), contacts);
+    scene.viewer.copyTo(scene.film, canvas);
+    scene.pose(clock.time, stepNow(clock.time), contacts);
   }
 
   function selectStep(index) {
     const step = run.steps[index];
     if (step.status === "not_reached") return;
     const isFailure = step.status === "failed";
-    clock.seek(isFailure ? step.end : Math.min(step.start + 1e-3, step.end));
+    chosen = { step: index, time: isFailure ? step.end : Math.min(step.start + 1e-3, step.end) };
+    clock.seek(chosen.time);
     writeAddress({ t: clock.time.toFixed(2), step: index + 1 });
   }
 
@@ -94,7 +97,11 @@ async function start() {
     for (const button of verdicts.querySelectorAll("[data-verdict]")) {
       button.toggleAttribute("aria-current", Number(button.dataset.verdict) === index);
     }
-    if (verdict.time !== null) clock.seek(verdict.time);
+    if (verdict.time !== null) {
+      const owner = run.steps.findIndex(({ id, hasChildren }) => id === verdict.step && !hasChildren);
+      chosen = { step: owner >= 0 ? owner : stepAt(run.steps, verdict.time), time: verdict.time };
+      clock.seek(verdict.time);
+    }
     scene?.marks.compare(verdict.points && { ...verdict.points, good: verdict.status === "passed" });
     if (verdict.plot) plots.reveal(verdict.plot);
     showTab("expect");
@@ -154,6 +161,7 @@ function makeScene(payload) {
     return null;
   }
   const orbit = new Orbit(run.focus, () => viewer.redraw());
+  const film = new Orbit({ ...run.focus, radius: 0.75 * run.focus.radius }, () => {});
   orbit.control(viewer.canvas);
   viewer.canvas.tabIndex = 0;
   viewer.canvas.setAttribute("role", "img");
@@ -161,7 +169,7 @@ function makeScene(payload) {
   const replay = new Replay(payload, viewer);
   const marks = new Marks(payload, viewer);
   return {
-    viewer, orbit, replay, marks,
+    viewer, orbit, film, replay, marks,
     toolPosition(time) {
       const { times, path } = marks.tcp;
       const index = 3 * indexAt(times, time);
@@ -179,6 +187,7 @@ function makeScene(payload) {
       }
       replay.glow(this.showsContacts ? pressed : new Map());
       const tool = replay.byName.get(run.toolBody);
+      replay.showState(marks.wanted.goal ? run.steps[step]?.nearest?.bodies : null);
       marks.show(time, step, tool ? [...this.toolPosition(time), ...replay.poseOf(tool, time).slice(3)] : null);
       if (this.follows) {
         orbit.target = this.toolPosition(time);

@@ -19,7 +19,7 @@ export class Marks {
     const path = new Float32Array(payload.buffer("tcp"));
     this.tcp = { times: new Float32Array(payload.buffer("tcp.times")), path };
     this.walked = viewer.addLine(path, { color: rgba(themeColor("--accent")), width: 3.5 });
-    this.ahead = viewer.addLine(path, { color: rgba(themeColor("--accent"), 0.22), width: 2 });
+    this.whole = viewer.addLine(path, { color: rgba(themeColor("--accent"), 0.25), width: 1.8 });
     this.planned = this.run.steps.map((step) =>
       step.plan === null
         ? null
@@ -37,6 +37,7 @@ export class Marks {
     this.tool = this.#frame(AXIS, 3);
     this.goal = this.#frame(AXIS * 1.35, 2);
     this.nearest = this.#cross("--warn");
+    this.missed = viewer.addLine([], { color: rgba(themeColor("--warn")), width: 2.5, dash: 0.012, onTop: true });
     this.expected = this.#cross("--good");
     this.actual = this.#cross("--bad");
     this.between = viewer.addLine([], { color: rgba(themeColor("--bad")), width: 3, onTop: true });
@@ -49,14 +50,22 @@ export class Marks {
   show(time, step, toolPose) {
     const { wanted } = this;
     const seen = indexAt(this.tcp.times, time);
-    this.walked.segments = Math.max(1, seen);
-    this.walked.visible = this.ahead.visible = wanted.path && this.tcp.times.length > 1;
+    const { start } = this.run.steps[step] ?? { start: 0 };
+    this.walked.first = Math.max(0, indexAt(this.tcp.times, start) - 1);
+    this.walked.segments = Math.max(0, seen - this.walked.first);
+    this.walked.visible = this.whole.visible = wanted.path && this.tcp.times.length > 1;
     for (const [index, line] of this.planned.entries()) if (line) line.visible = wanted.plan && index === step;
     for (const [index, line] of this.raw.entries()) if (line) line.visible = wanted.raw && index === step;
     this.#place(this.tool, wanted.frame ? toolPose : null);
     const { goal, nearest } = this.run.steps[step] ?? {};
     this.#place(this.goal, wanted.goal ? goal : null);
-    this.#place(this.nearest, wanted.goal && nearest ? [...nearest, 1, 0, 0, 0] : null);
+    this.#place(this.nearest, wanted.goal ? nearest?.place : null);
+    const isMissed = wanted.goal && nearest?.place && nearest.target;
+    this.missed.visible = Boolean(isMissed);
+    if (isMissed && this.missedBy !== step) {
+      this.missedBy = step;
+      this.viewer.setPoints(this.missed, [...nearest.place.slice(0, 3), ...nearest.target.slice(0, 3)]);
+    }
     this.viewer.redraw();
   }
 

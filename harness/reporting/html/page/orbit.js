@@ -3,6 +3,7 @@
 import { addScaled, lookAt, multiply, perspective } from "./vectors.js";
 
 const FIELD_OF_VIEW = 0.7; // [rad]
+const CLOSENESS = 0.82; // the corners of what is seen may touch the edge
 const TURN_PER_PIXEL = 0.008; // [rad]
 const STEEPEST = 1.55; // [rad]
 
@@ -15,7 +16,7 @@ export class Orbit {
     this.home = {
       azimuth: -0.72,
       elevation: 0.42,
-      distance: focus.radius / Math.sin(FIELD_OF_VIEW / 2),
+      distance: (CLOSENESS * focus.radius) / Math.sin(FIELD_OF_VIEW / 2),
       target: /** @type {number[]} */ ([...focus.center]),
     };
     this.changed = changed;

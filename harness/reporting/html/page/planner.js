@@ -26,13 +26,16 @@ export function plannerView({ run }, select) {
 }
 
 function planned(step, index, select) {
-  const { ik_solutions: solutions, ik_method: method, ...rest } = step.explanation;
+  const { ik_solutions: solutions, ik_method: method, stages, advice, nearest, picture, ...rest } = step.explanation;
   return element(
     `section.${tone(step.status)}`, {},
     element("h3", {}, element("button.link", { type: "button", onclick: () => select(index) }, `${index + 1}. ${step.summary}`)),
     step.message && element("p.why", {}, step.message),
     shortening(step.planner),
     facts(step.planner),
+    stages?.length ? stageList(stages) : null,
+    advice && element("p.advice", {}, element("b", {}, "What to do: "), advice),
+    nearest?.shows && element("p.remark", {}, element("b", {}, "Drawn in orange: "), nearest.shows),
     solutions && solutionTable(method, solutions),
     ...Object.entries(rest).map(([key, value]) => remark(key, value)),
   );
@@ -47,6 +50,23 @@ function shortening({ path_length: after, raw_path_length: before }) {
     return element("div.length", {}, element("span", {}, label), element("span.bar", {}, bar), element("code", {}, `${number(length)} rad`));
   };
   return element("div.lengths", {}, row("as found", before), row("shortened", after));
+}
+
+const SIGNS = { passed: "good", failed: "bad", "not reached": "open" };
+
+/** What became of each stage of planning. */
+function stageList(stages) {
+  return element(
+    "ol.stages", {},
+    ...stages.map(({ stage, status, code, text, details }) =>
+      element(
+        `li.${SIGNS[status] ?? "open"}`, {},
+        element("i.sign", { role: "img", "aria-label": status }),
+        element("b", {}, stage), code && element("span.tag.bad", {}, code), element("span.reason", {}, text),
+        ...details.map((line) => element("span.detail", {}, line)),
+      ),
+    ),
+  );
 }
 
 function facts(planner) {

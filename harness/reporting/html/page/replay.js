@@ -63,8 +63,28 @@ export class Replay {
   /** Let bodies glow by how hard they are pressed. @param {Map<string, number>} glows 0 to 1 by name */
   glow(glows) {
     for (const body of this.bodies) {
-      for (const piece of body.pieces) piece.surface.glow = body.isFloor ? 0 : glows.get(body.name) ?? 0;
+      for (const piece of body.pieces) piece.surface.glow = piece.surface.grid ? 0 : glows.get(body.name) ?? 0;
     }
+  }
+
+  /** A translucent robot in another state, beside the recorded one. @param {Record<string, number[]> | null} poses by body; null hides it */
+  showState(poses) {
+    this.state ??= this.#copies();
+    for (const { name, copy, local } of this.state) {
+      copy.visible = Boolean(poses?.[name]);
+      if (poses?.[name]) copy.model = multiply(poseMatrix(poses[name]), local);
+    }
+    this.viewer.redraw();
+  }
+
+  #copies() {
+    const tinted = (color) => [...[0.95, 0.55, 0.1].map((tint, i) => 0.6 * tint + 0.4 * color[i]), 0.6];
+    return this.bodies.flatMap(({ name, pieces, isLink }) =>
+      !isLink ? [] : pieces.map(({ surface, local }) => ({
+        name, local,
+        copy: this.viewer.addCopy(surface, { color: tinted(surface.color), castsShadow: false, glow: 0 }),
+      })),
+    );
   }
 
   /** Colour of the floor: it goes with the theme. @param {number[]} color */

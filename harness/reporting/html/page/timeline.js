@@ -19,7 +19,7 @@ export function makeTimeline({ run }, clock, select) {
     if (step.status === "not_reached") return;
     const isInstant = step.end - step.start <= clock.duration * NARROWEST;
     const band = element(
-      `span.band.${step.tone}${isInstant ? ".instant" : ""}`,
+      `span.band.${step.band}${isInstant ? ".instant" : ""}`,
       { title: `${index + 1}. ${step.summary}\n${seconds(step.start)} to ${seconds(step.end)}` },
       isInstant ? "" : step.summary,
     );

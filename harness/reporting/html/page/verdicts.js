@@ -27,10 +27,11 @@ function verdict(run, each, index, select) {
     element("i.sign", { role: "img", "aria-label": each.status }),
     element("b", {}, each.text),
     each.status !== "passed" && each.status !== "failed" && element("span.what", {}, each.status),
-    each.reason && element("span.reason", {}, each.reason),
+    each.status === "passed" ? null : element("span.reason", {}, each.reason),
+    ...each.measures.slice(0, each.status === "passed" ? 1 : WORST_SHOWN).map((measure) => measured(measure)),
+    each.status === "passed" && !each.measures.length ? element("span.what", {}, each.reason) : null,
     marginBar(each),
-    ...each.measures.slice(0, WORST_SHOWN).map((measure) => measured(measure)),
-    element("span.what", {}, place.filter(Boolean).join(" · ")),
+    element("span.what", { title: each.reason }, place.filter(Boolean).join(" · ")),
   );
 }
 

@@ -26,6 +26,7 @@ const IDENTITY = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 
  * @property {number} dash length of a dash and its gap [m]; 0 draws it whole
  * @property {boolean} visible
  * @property {boolean} onTop drawn over everything
+ * @property {number} first segment that is drawn
  * @property {number} segments how many are drawn
  * @property {Float32Array} model T_world_line
  */
@@ -100,6 +101,13 @@ export class Viewer {
     return surface;
   }
 
+  /** Another surface with the same triangles. @param {Surface} surface @param {Partial<Surface>} options @returns {Surface} */
+  addCopy(surface, options) {
+    const copy = { .../** @type {any} */ (surface), ...options };
+    this.surfaces.push(copy);
+    return copy;
+  }
+
   /** @param {ArrayLike<number>} points x, y, z of each @param {Partial<Line>} options @returns {Line} */
   addLine(points, options) {
     const { gl } = this;
@@ -110,7 +118,7 @@ export class Viewer {
     lineAttributes(gl);
     const line = {
       vertexArray, buffer, color: [0, 0, 0, 1], width: 2, dash: 0, visible: true, onTop: false,
-      segments: 0, model: IDENTITY, ...options,
+      first: 0, segments: 0, model: IDENTITY, ...options,
     };
     this.lines.push(line);
     this.setPoints(line, points);
@@ -246,16 +254,22 @@ export class Viewer {
       if (surface === translucent[0]) {
         gl.enable(gl.BLEND);
         gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-        gl.depthMask(false);
+        gl.depthFunc(gl.LEQUAL);
       }
       gl.uniformMatrix4fv(at.model, false, surface.model);
       gl.uniform4fv(at.color, surface.color);
       gl.uniform1f(at.grid, surface.grid);
       gl.uniform1f(at.glow, surface.glow);
       gl.bindVertexArray(surface.vertexArray);
+      if (surface.color[3] <= 0.99) {
+        // its depth alone first: then only its front is seen, not all of its folds
+        gl.colorMask(false, false, false, false);
+        gl.drawElements(gl.TRIANGLES, surface.count, gl.UNSIGNED_INT, 0);
+        gl.colorMask(true, true, true, true);
+      }
       gl.drawElements(gl.TRIANGLES, surface.count, gl.UNSIGNED_INT, 0);
     }
-    gl.depthMask(true);
+    gl.depthFunc(gl.LESS);
   }
 
   #drawLines(view, width, height, ratio) {
@@ -274,7 +288,7 @@ export class Viewer {
       gl.uniform1f(at.width, (line.width * ratio) / 2);
       gl.uniform1f(at.dash, line.dash);
       gl.bindVertexArray(/** @type {any} */ (line).vertexArray);
-      gl.drawArrays(gl.TRIANGLES, 0, line.segments * VERTICES_PER_SEGMENT);
+      gl.drawArrays(gl.TRIANGLES, line.first * VERTICES_PER_SEGMENT, line.segments * VERTICES_PER_SEGMENT);
     }
   }
 

@@ -1,0 +1,111 @@
+"""Camera pictures, a ten-minute run and explained failures, in a real browser."""
+
+import time
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+
+from harness.core.camera import Camera
+from harness.recording.run import CaptureRecord, VideoRecord
+from harness.recording.store import StoredRun
+from harness.reporting.html.page import page_html
+from harness.session import run_case
+from tests.assertions.synthetic_run import lift_run
+
+RED, GREEN = (0, 0, 255), (0, 255, 0)  # BGR
+
+SHOWN = """(index) => {
+  const canvas = document.querySelectorAll('.camera canvas')[index];
+  return [...canvas.getContext('2d').getImageData(5, 5, 1, 1).data].slice(0, 3);
+}"""
+
+UNREACHABLE = """\
+scenario: Too far
+robot: {model: ur3e, base: {xyz: [0, 0, 1.02]}}
+world: lesson_ur
+steps:
+  - move_to: {pose: {frame: base_link, xyz: [0.9, 0, 0.3], quat_wxyz: [1, 0, 0, 0]}}
+"""
+
+
+def flat(colour):
+    is_coded, data = cv2.imencode(".png", np.full((48, 64, 3), colour, np.uint8))
+    assert is_coded
+    return data.tobytes()
+
+
+def video(folder, frames=20, rate=10.0):
+    """Red for its first half, then green."""
+    file = folder / "video.webm"
+    writer = cv2.VideoWriter(str(file), cv2.VideoWriter_fourcc(*"VP80"), rate, (64, 48))
+    for number in range(frames):
+        writer.write(np.full((48, 64, 3), RED if number < frames / 2 else GREEN, np.uint8))
+    writer.release()
+    return file.read_bytes()
+
+
+def write(folder, run):
+    file = folder / "report.html"
+    file.write_text(page_html(StoredRun(run, (), "passed", "0" * 64, {})), encoding="utf-8")
+    return file
+
+
+def test_pictures_and_videos_follow_the_clock(visit, tmp_path):
+    captures = (
+        CaptureRecord("wrist", 0.5, 50, "look", files={"color": "a.png"}),
+        CaptureRecord("wrist", 1.5, 150, "look again", files={"color": "b.png"}),
+    )
+    times = tuple(0.1 * number for number in range(20))
+    run = replace(
+        lift_run(),
+        cameras=(Camera("wrist", "palm"), Camera("room", "world")),
+        captures=captures,
+        videos=(VideoRecord("room", "c.webm", times, 10.0, 64, 48, "rays"),),
+        files={"a.png": flat(RED), "b.png": flat(GREEN), "c.webm": video(tmp_path)},
+    )
+    page = visit(write(tmp_path, run)).page
+    captions = page.locator(".camera figcaption")
+    assert captions.count() == 2
+    for moment, colour, label in ((0.7, 0, "wrist · look"), (1.7, 1, "wrist · look again")):
+        page.evaluate(f"location.hash = '#t={moment}'")
+        for number in (0, 1):
+            page.wait_for_function(f"({SHOWN})({number})[{colour}] > 180")
+            shown = page.evaluate(SHOWN, number)
+            assert shown[1 - colour] < 90, (moment, number, shown)
+        assert captions.nth(1).inner_text() == label
+    page.click("#tool-cameras")
+    assert not page.locator(".camera").first.is_visible()
+
+
+def test_a_ten_minute_run_opens_and_scrubs(visit, tmp_path):
+    count = 60_001
+    phase = np.linspace(0, 300, count)
+    run = lift_run(count, joint_positions=np.stack([np.sin(phase), np.cos(phase)], axis=1))
+    begin = time.monotonic()
+    opened = visit(write(tmp_path, run))
+    assert time.monotonic() - begin < 30
+    page = opened.page
+    box = page.locator("#track").bounding_box()
+    for share in (0.2, 0.5, 0.9):
+        page.mouse.click(box["x"] + share * box["width"], box["y"] + 5)
+        assert opened.time() == pytest.approx(600 * share, abs=3)
+    shown = float(page.locator(".legend output").first.inner_text())
+    expected = np.rad2deg(np.sin(300 * opened.time() / 600))
+    assert shown == pytest.approx(expected, abs=0.2)
+
+
+def test_a_failure_shows_its_stages_and_the_nearest_state(visit, tmp_path):
+    file = tmp_path / "far.scenario.yaml"
+    file.write_text(UNREACHABLE)
+    result = run_case(file, report_dir=tmp_path / "run", stills=False)
+    assert result.outcome == "failed"
+    page = visit(result.page, "#tab=planner").page
+    assert page.locator(".stages li").count() == 5
+    assert page.locator(".stages .bad b").first.inner_text() == "reach"
+    assert "What to do" in page.inner_text("#panel-planner")
+    with_state = page.locator("#view canvas").screenshot()
+    page.click("#tool-goal")
+    page.wait_for_timeout(300)
+    assert page.locator("#view canvas").screenshot() != with_state, "the orange robot has gone"
