@@ -1,3 +1,3 @@
 """Fixtures and plugins for every test."""
 
-pytest_plugins = ["pytester"]
+pytest_plugins = ["pytester", "tests.reporting.browser"]

@@ -17,6 +17,10 @@ PICTURE = """() => {
   return [...pen.getImageData(0, 0, 64, 48).data];
 }"""
 
+COUNT_PLOTS = """addEventListener('beforeprint', () => {
+  window.drawn = document.querySelectorAll('#paper-plots img').length;
+})"""
+
 NO_WEBGL = """HTMLCanvasElement.prototype.getContext = ((get) => function (kind, ...rest) {
   return kind === 'webgl2' ? null : get.call(this, kind, ...rest);
 })(HTMLCanvasElement.prototype.getContext);"""
@@ -229,9 +233,13 @@ def test_a_telephone_sees_everything_without_scrolling_sideways(visit, failed_ru
 
 
 def test_it_prints_on_one_or_two_pages(visit, failed_run):
-    pdf = visit(failed_run / "report.html").page.pdf(prefer_css_page_size=True)
+    page = visit(failed_run / "report.html", color_scheme="dark").page
+    page.evaluate(COUNT_PLOTS)
+    pdf = page.pdf(prefer_css_page_size=True)
     pages = len(re.findall(rb"/Type\s*/Page\b(?!s)", pdf))
     assert 1 <= pages <= 2
+    assert page.evaluate("window.drawn") == 4, "plots on paper"
+    assert page.evaluate("document.documentElement.dataset.theme") is None, "dark again"
 
 
 def test_a_browser_without_webgl_still_shows_the_rest(failed_run, visit):

@@ -43,6 +43,7 @@ def summary_html(stored: StoredRun, pictures: Sequence[Picture]) -> str:
             _facts(stored),
             _early_end(stored),
             _pictures(pictures),
+            '<div id="paper-plots"></div>',
             _verdicts(stored.verdicts),
             _steps(stored),
             _findings(stored),
@@ -107,7 +108,7 @@ def _verdicts(verdicts: Sequence[Verdict]) -> str:
         )
         for number, verdict in enumerate(verdicts, start=1)
     ]  # fmt: skip
-    head = ("", "expectation", "verdict", "allowance used", "line")
+    head = ("", "expectation", "verdict", "used", "line")
     return _table("Expectations", head, rows) if rows else ""
 
 

@@ -8,6 +8,7 @@ import { listenToKeys } from "./keys.js";
 import { Marks } from "./marks.js";
 import { Orbit } from "./orbit.js";
 import { indexAt, unpack, valueAt } from "./payload.js";
+import { putPlotsOnPaper } from "./paper.js";
 import { makePictures } from "./pictures.js";
 import { plannerView } from "./planner.js";
 import { Plots } from "./plots.js";
@@ -147,6 +148,7 @@ async function start() {
     requestAnimationFrame(loop);
   };
   requestAnimationFrame(loop);
+  window.readyAfter = performance.now(); // [ms] since the page was asked for
   document.documentElement.dataset.ready = "yes";
 }
 
@@ -252,6 +254,7 @@ function makeControls({ clock, scene, plots, drawFilm, hasPictures }) {
     drawFilm();
   });
   dark.addEventListener("change", paint);
+  putPlotsOnPaper(plots, paint);
   paint();
 }
 

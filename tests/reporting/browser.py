@@ -1,0 +1,70 @@
+"""A real browser for report pages: Debian's chromium, drawn in software, without a network."""
+
+import os
+import shutil
+from pathlib import Path
+
+import pytest
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+SOFTWARE_GL = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """Debian's chromium, drawn in software, without a network."""
+    found = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if found is None:
+        if os.environ.get("CI") == "true":
+            pytest.fail("no chromium is installed, and CI must open the pages in one")
+        pytest.skip("no chromium is installed: apt-get install chromium")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=found, args=list(SOFTWARE_GL))
+        yield browser
+        browser.close()
+
+
+class Visit:
+    """An open page, and everything that went wrong or went out."""
+
+    def __init__(self, page):
+        self.page = page
+        self.complaints = []
+        self.requests = []
+        page.on("console", lambda m: m.type == "error" and self.complaints.append(m.text))
+        page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        page.on("request", lambda request: self.requests.append(request.url))
+
+    def time(self):
+        return float(self.page.get_attribute("#track", "aria-valuenow"))
+
+    def text(self, selector):
+        return self.page.inner_text(selector)
+
+
+@pytest.fixture(scope="module")
+def visit(browser):
+    """Opens a page from disk and waits for it; at the end nothing may have gone wrong."""
+    opened = []
+
+    def open_page(file, place="", **options):
+        size = {"width": options.pop("width", 1100), "height": options.pop("height", 720)}
+        scripts = options.pop("scripts", True)
+        context = browser.new_context(
+            viewport=size, java_script_enabled=scripts, offline=True, **options
+        )
+        visit = Visit(context.new_page())
+        opened.append((context, visit))
+        visit.page.goto(f"{Path(file).as_uri()}{place}")
+        if scripts:
+            visit.page.wait_for_function("document.documentElement.dataset.ready === 'yes'")
+        return visit
+
+    yield open_page
+    for context, visit in opened:
+        context.close()
+        assert visit.complaints == []
+        asked = [url for url in visit.requests if not url.startswith(("file:", "data:", "blob:"))]
+        assert asked == [], "the page asked the network for something"
