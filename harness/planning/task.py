@@ -80,8 +80,12 @@ class PlanningTask:
         waypoints: Sequence[FloatArray] | FloatArray,
         raw: FloatArray | None = None,
     ) -> dict[str, Any]:
-        """Numbers of a plan for the record: checks, lengths before and after shortening, time."""
+        """Numbers of a plan for the record: checks, lengths before and after shortening, time.
+
+        Of a path that was shortened, `raw_path` holds the waypoints before.
+        """
         length = _length(np.asarray(waypoints))
+        before = {} if raw is None else {"raw_path": np.asarray(raw).tolist()}
         return {
             "planner_id": planner_id,
             "state_checks": self.checker.checks,
@@ -89,6 +93,7 @@ class PlanningTask:
             "path_length": length,
             "raw_path_length": length if raw is None else _length(raw),
             "duration": trajectory.duration,
+            **before,
         }
 
 

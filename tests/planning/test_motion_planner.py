@@ -116,6 +116,10 @@ def test_another_seed_gives_another_path():
             ARM, cell.state, JointGoal(cell.named("up")), PlanningOptions(seed=seed)
         )
         lengths.add(plan.statistics["raw_path_length"])
+        raw = np.array(plan.statistics["raw_path"])
+        assert np.linalg.norm(np.diff(raw, axis=0), axis=1).sum() == pytest.approx(
+            plan.statistics["raw_path_length"]
+        )
     assert len(lengths) > 1
 
 

@@ -50,11 +50,11 @@ def _planned_poses(run: Run, step: StepRecord) -> FloatArray | None:
 def _raw_poses(run: Run, step: StepRecord) -> FloatArray | None:
     """Along the path as the search found it, in straight lines between its waypoints."""
     raw = step.planner.get("raw_path")
-    if not isinstance(raw, list | tuple) or len(cast("Sequence[Any]", raw)) < 2:
+    if raw is None or step.trajectory is None:
         return None
-    names = run.robot.groups.get(run.robot.arm_group, ())
+    names = cast("Sequence[str]", step.trajectory["joint_names"])
     waypoints = np.asarray(raw, dtype=float)
-    if waypoints.ndim != 2 or waypoints.shape[1] != len(names):
+    if waypoints.ndim != 2 or len(waypoints) < 2 or waypoints.shape[1] != len(names):
         return None
     places = np.linspace(0, len(waypoints) - 1, PLAN_POINTS)
     before = np.minimum(places.astype(int), len(waypoints) - 2)
