@@ -78,6 +78,7 @@ def _parser() -> argparse.ArgumentParser:
     _compare_options(command("compare", "tell what changed from one saved run to another"))
     _new_options(command("new", "write a commented scenario that passes"))
     _import_options(command("import", "write files of other programs as ours", module="importing"))
+    _bench_options(command("bench", "compare planners on the motions of scenarios"))
     _schema_options(command("schema", "print the JSON Schema of scenario files"))
     return parser
 
@@ -128,6 +129,25 @@ def _check_options(check: argparse.ArgumentParser) -> None:
     check.add_argument("--json", action="store_true", help="one JSON document on stdout")
 
 
+def _bench_options(bench: argparse.ArgumentParser) -> None:
+    _paths(bench)
+    bench.add_argument(
+        "--planners",
+        metavar="A,B",
+        type=_names,
+        default=[],
+        help="planner ids to compare (default: all that `harness list planners` names)",
+    )
+    bench.add_argument(
+        "--seeds", metavar="N", type=_count, default=5, help="plan with seeds 1 to N (default: 5)"
+    )
+    bench.add_argument(
+        "--report-dir", metavar="DIR", default="reports", help="files go to DIR/bench"
+    )
+    bench.add_argument("--no-report", action="store_true", help="write no files")
+    bench.add_argument("--json", action="store_true", help="one JSON document on stdout")
+
+
 def _list_options(listing: argparse.ArgumentParser) -> None:
     listing.add_argument("kind", choices=LISTS)
 
@@ -171,6 +191,12 @@ def _schema_options(schema: argparse.ArgumentParser) -> None:
 
 
 def _file_options(command: argparse.ArgumentParser) -> None:
+    _paths(command)
+    command.add_argument("--seed", metavar="N", type=int, default=None,
+                         help="in place of the file's")  # fmt: skip
+
+
+def _paths(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "paths",
         metavar="PATH",
@@ -186,8 +212,6 @@ def _file_options(command: argparse.ArgumentParser) -> None:
         default=[],
         help="change a value of the file: --set robot.model=ur5e",
     )
-    command.add_argument("--seed", metavar="N", type=int, default=None,
-                         help="in place of the file's")  # fmt: skip
 
 
 def _override(text: str) -> tuple[str, str]:
@@ -195,6 +219,13 @@ def _override(text: str) -> tuple[str, str]:
     if not equals or not path.strip():
         raise argparse.ArgumentTypeError(f"'{text}' is not PATH=VALUE, as in robot.model=ur5e")
     return path.strip(), value
+
+
+def _names(text: str) -> list[str]:
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    if not names:
+        raise argparse.ArgumentTypeError("no planner is named")
+    return list(dict.fromkeys(names))
 
 
 def _count(text: str) -> int:

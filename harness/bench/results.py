@@ -1,0 +1,77 @@
+"""A comparison as files: `results.json` and `benchmark.svg`."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from harness.bench.collect import Motion
+from harness.bench.plot import plot
+from harness.bench.trial import Trial
+from harness.core.errors import HarnessError
+from harness.reporting.json_text import json_text
+
+FORMAT = "armharness-bench/1"
+RESULTS, PICTURE = "results.json", "benchmark.svg"
+
+
+def document(
+    motions: Sequence[Motion], planners: Sequence[str], seeds: Sequence[int]
+) -> dict[str, Any]:
+    """Everything measured as plain data; the same for the same files, but for `wall_times`.
+
+    `wall_times` has the planning times [s], for each motion those of its trials in order.
+    """
+    return {
+        "format": FORMAT,
+        "planners": list(planners),
+        "seeds": list(seeds),
+        "motions": [
+            {
+                "file": motion.file,
+                "step": motion.step,
+                "summary": motion.summary,
+                "line": motion.line,
+                "is_searched": motion.is_searched,
+                "trials": [_without_time(trial) for trial in motion.trials],
+            }
+            for motion in motions
+        ],
+        "wall_times": [[trial.planning_time for trial in motion.trials] for motion in motions],
+    }
+
+
+def write_results(
+    folder: Path, motions: Sequence[Motion], planners: Sequence[str], seeds: Sequence[int]
+) -> None:
+    """Write both files into a folder, each whole or not at all.
+
+    Raises:
+        HarnessError: They cannot be written there.
+    """
+    searched = sum(motion.is_searched for motion in motions)
+    title = f"{searched} searched motions, {len(seeds)} seeds"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        _write(folder / RESULTS, json_text(document(motions, planners, seeds)))
+        _write(folder / PICTURE, plot(motions, planners, title))
+    except OSError as error:
+        raise HarnessError(
+            f"the comparison cannot be written to {folder}: {error.strerror or error};"
+            " choose another place with --report-dir"
+        ) from error
+
+
+def _write(file: Path, text: str) -> None:
+    temporary = file.with_name(f".{file.name}.{os.getpid()}")
+    temporary.write_text(text, encoding="utf-8")
+    temporary.replace(file)
+
+
+def _without_time(trial: Trial) -> dict[str, Any]:
+    plain = {each.name: getattr(trial, each.name) for each in dataclasses.fields(trial)}
+    del plain["planning_time"]
+    return plain

@@ -1,0 +1,89 @@
+"""Planners beside each other: medians of what they came to, as rows of a table."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.bench.collect import Motion
+from harness.bench.trial import Trial
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Something that is compared.
+
+    Attributes:
+        key: In results.json.
+        name: For people, with its unit.
+        value: Of a trial, in that unit; NaN where there is none.
+        digits: Behind the point.
+        solved_only: Whether failed trials have none.
+        may_be_log: Whether a picture may give it a logarithmic axis.
+    """
+
+    key: str
+    name: str
+    value: Callable[[Trial], float]
+    digits: int
+    solved_only: bool = True
+    may_be_log: bool = False
+
+
+QUANTITIES = (
+    Quantity("state_checks", "state checks", lambda t: float(t.state_checks), 0, False, True),
+    Quantity("planning_time", "planning time [ms]", lambda t: 1e3 * t.planning_time, 1, True, True),
+    Quantity("path_length", "path length [rad]", lambda t: t.path_length, 2),
+    Quantity("smoothness", "smoothness [rad²]", lambda t: t.smoothness, 4),
+    Quantity("clearance", "clearance [mm]", lambda t: 1e3 * t.clearance, 1),
+)
+"""Of each the median is told; the less the better, but for the clearance."""
+
+
+def values(quantity: Quantity, trials: Sequence[Trial]) -> list[float]:
+    """A quantity of the trials that have it."""
+    found = [quantity.value(t) for t in trials if t.is_solved or not quantity.solved_only]
+    return [value for value in found if np.isfinite(value)]
+
+
+def of_planner(motions: Sequence[Motion], planner: str) -> list[Trial]:
+    """A planner's trials on the motions that are searched."""
+    return [
+        trial
+        for motion in motions
+        if motion.is_searched
+        for trial in motion.trials
+        if trial.planner == planner
+    ]
+
+
+def table(motions: Sequence[Motion], planners: Sequence[str]) -> str:
+    """A row for each planner: success, then the medians."""
+    rows = [["planner", "success", *(quantity.name for quantity in QUANTITIES)]]
+    for planner in planners:
+        trials = of_planner(motions, planner)
+        solved = sum(trial.is_solved for trial in trials)
+        row = [planner, f"{solved}/{len(trials)}"]
+        for quantity in QUANTITIES:
+            found = values(quantity, trials)
+            row.append(f"{np.median(found):.{quantity.digits}f}" if found else "-")
+        rows.append(row)
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return "\n".join(
+        "  ".join(
+            cell.ljust(width) if place == 0 else cell.rjust(width)
+            for place, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in rows
+    )
+
+
+def motion_line(motion: Motion) -> str:
+    """A motion in one line: where it is, and how many of its trials succeeded."""
+    place = f"{motion.file}:{motion.line}"
+    if not motion.is_searched:
+        return f"{place}: {motion.summary}: the straight way is free, nothing to search"
+    solved = sum(trial.is_solved for trial in motion.trials)
+    return f"{place}: {motion.summary}: {solved} of {len(motion.trials)} plans found"

@@ -1,0 +1,151 @@
+"""One plan for one motion by one planner from one seed, and what it is worth."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from harness.core.errors import PlanningFailed
+from harness.core.types import FloatArray
+from harness.planning.scene import CoalScene
+from harness.ports import AnyGoal, Goal, MotionPlanner, PlanningOptions
+
+SPACING = 0.05
+"""Joint-space distance between the states that smoothness and clearance are measured at [rad]."""
+
+STRAIGHT_TURN = 1e-6
+"""A turn that rounding makes of none [rad]."""
+
+STRAIGHT = "straight line"
+"""What a plan's statistics say in place of a planner when the straight way was free."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What came of a plan.
+
+    Attributes:
+        planner: Its `planner_id`.
+        seed: Of the scenario; `harness run --seed` plans the same.
+        error_code: Why it failed; empty when it succeeded.
+        state_checks: States checked for collision, those of shortening and verification included.
+        path_length: Joint-space length of the motion [rad]; NaN when there is none.
+        duration: Of the motion [s].
+        smoothness: Mean of (2 turn)^2 [rad^2], the turn between steps of `SPACING`; 0 is straight.
+        clearance: Smallest distance of the robot and what it holds to any object [m].
+        mean_clearance: Mean of that distance along the motion [m].
+        planning_time: CPU time of the process [s]; never judged. NaN when it failed.
+        is_straight: Whether no search was needed.
+    """
+
+    planner: str
+    seed: int
+    error_code: str
+    state_checks: int
+    path_length: float = float("nan")
+    duration: float = float("nan")
+    smoothness: float = float("nan")
+    clearance: float = float("nan")
+    mean_clearance: float = float("nan")
+    planning_time: float = field(default=float("nan"), compare=False)
+    is_straight: bool = False
+
+    @property
+    def is_solved(self) -> bool:
+        """Whether there is a motion."""
+        return not self.error_code
+
+
+def try_plan(
+    planner: MotionPlanner,
+    scene: CoalScene,
+    group: str,
+    start: FloatArray,
+    goal: Goal | AnyGoal,
+    options: PlanningOptions,
+    seed: int,
+) -> Trial:
+    """Plan once, and measure.
+
+    Args:
+        planner: Plans in `scene`.
+        scene: As it is when the motion is wanted.
+        group: The planning group.
+        start: Description order.
+        goal: Of the motion.
+        options: With the planner and the step's seed.
+        seed: Of the scenario, for the record.
+    """
+    begin = time.process_time()
+    try:
+        plan = planner.plan(group, start, goal, options)
+    except PlanningFailed as failure:
+        checks = int(failure.facts.get("state_checks", 0))
+        return Trial(options.planner_id, seed, failure.code, checks)
+    spent = time.process_time() - begin
+    path = even(plan.trajectory.positions)
+    nearest = _clearances(scene, group, start, path)
+    statistics: Mapping[str, Any] = plan.statistics
+    return Trial(
+        options.planner_id,
+        seed,
+        "",
+        int(statistics["state_checks"]),
+        path_length=length(plan.trajectory.positions),
+        duration=plan.trajectory.duration,
+        smoothness=smoothness(path),
+        clearance=float(nearest.min()) if len(nearest) else float("nan"),
+        mean_clearance=float(nearest.mean()) if len(nearest) else float("nan"),
+        planning_time=spent,
+        is_straight=statistics["planner_id"] == STRAIGHT,
+    )
+
+
+def length(positions: FloatArray) -> float:
+    """Joint-space length of a path through rows (N, dof) [rad]."""
+    return float(np.linalg.norm(np.diff(positions, axis=0), axis=1).sum())
+
+
+def even(positions: FloatArray) -> FloatArray:
+    """Rows at even joint-space distances of about `SPACING` along a path, its ends included."""
+    steps = np.linalg.norm(np.diff(positions, axis=0), axis=1)
+    moving = np.concatenate([[True], steps > 1e-12])
+    travelled = np.concatenate([[0.0], np.cumsum(steps)])
+    count = max(1, round(float(travelled[-1]) / SPACING))
+    places = np.linspace(0.0, travelled[-1], count + 1)
+    return np.column_stack(
+        [np.interp(places, travelled[moving], column[moving]) for column in positions.T]
+    )
+
+
+def smoothness(path: FloatArray) -> float:
+    """Mean of (2 turn)^2 over the inner rows of an even path [rad^2]; moveit_ros_benchmarks' sum.
+
+    MoveIt divides by the number of waypoints too; here they are made even first, so that the number
+    does not depend on how a planner spaces them.
+    """
+    steps = np.diff(path, axis=0)
+    norms = np.linalg.norm(steps, axis=1)
+    if len(steps) < 2 or np.any(norms < 1e-12):
+        return 0.0
+    cosines = np.sum(steps[1:] * steps[:-1], axis=1) / (norms[1:] * norms[:-1])
+    turns = np.arccos(np.clip(cosines, -1.0, 1.0))
+    turns[turns < STRAIGHT_TURN] = 0.0
+    return float(np.mean((2 * turns) ** 2))
+
+
+def _clearances(scene: CoalScene, group: str, start: FloatArray, path: FloatArray) -> FloatArray:
+    """Smallest distance to an object at every row of a path; empty without objects."""
+    state = np.array(start, dtype=float)
+    indices = list(scene.description.group_indices(group))
+    nearest: list[float] = []
+    for positions in path:
+        state[indices] = positions
+        whole = scene.description.with_mimics(state)
+        found = [touch.distance for touch, pair in scene.distances(whole) if pair.keeps_padding]
+        nearest += found[:1]
+    return np.array(nearest)

@@ -1,0 +1,69 @@
+"""`harness bench`: planners compared on the motions of scenarios."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from harness.cli.output import complain, guarded, only_json_on_stdout, say
+from harness.core.errors import SpecError
+from harness.suite.discovery import UsageError, discover
+from harness.suite.outcome import EXIT_CODES
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Plan every free motion with every planner and seed; print, plot, and keep the numbers."""
+    return guarded(lambda: _run(arguments))
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    from harness.planning.planner_names import planner_names, resolve_planner_id
+
+    planners = arguments.planners or list(planner_names())
+    for planner in planners:
+        try:
+            resolve_planner_id(planner)
+        except ValueError as error:
+            raise UsageError(f"--planners: {error}") from error
+    files = discover(arguments.paths)
+    if arguments.json:
+        with only_json_on_stdout() as write_json:
+            code, found = _bench(arguments, files, planners)
+            write_json(found)
+        return code
+    return _bench(arguments, files, planners)[0]
+
+
+def _bench(
+    arguments: argparse.Namespace, files: list[Path], planners: list[str]
+) -> tuple[int, object]:
+    from harness.bench.collect import Motion, collect
+    from harness.bench.results import PICTURE, document, write_results
+    from harness.bench.summary import motion_line, table
+
+    seeds = list(range(1, arguments.seeds + 1))
+    motions: list[Motion] = []
+    code = 0
+    for file in files:
+        try:
+            motions += collect(
+                file,
+                planners,
+                seeds,
+                lambda motion: say(motion_line(motion)),
+                overrides=dict(arguments.overrides),
+            )
+        except SpecError as error:
+            complain(str(error))
+            code = EXIT_CODES["invalid"]
+    searched = sum(motion.is_searched for motion in motions)
+    if not searched:
+        say(f"nothing to compare: {len(motions)} motions by `move_to`, none of them searched")
+        return code, document(motions, planners, seeds)
+    say(f"\n{searched} of {len(motions)} motions are searched, {len(seeds)} seeds; medians:")
+    say(table(motions, planners))
+    if not arguments.no_report:
+        folder = Path(arguments.report_dir) / "bench"
+        write_results(folder, motions, planners, seeds)
+        say(f"picture: {folder / PICTURE}\nnumbers: {folder / 'results.json'}")
+    return code, document(motions, planners, seeds)
