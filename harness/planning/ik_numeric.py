@@ -14,8 +14,14 @@ from harness.ports import PoseGoal, PositionGoal
 
 LinkGoal = PoseGoal | PositionGoal
 
-_CONVERGED = 1e-9
-_LEAST_HORIZONTAL = 0.05  # pitch rows are divided by no less: pitch is singular where x is vertical
+RESTARTS, MOST_RESTARTS = 24, 64
+"""Searches from random positions beside the one from the seed, and while nothing is found. What
+they find of random reachable goals of every bundled arm is in robots/INVERSE_KINEMATICS.md."""
+
+_CONVERGED = 1e-9  # [m, rad] least squares end there
+_FOUND = 1e-8  # [m, rad] a solution misses its goal by less
+_NO_HEADING = 1e-9  # [1] an x axis with a shorter horizontal part is vertical, and heads nowhere
+_VERTICAL = 1e-6  # [1] a pitch with a smaller cosine is a quarter turn
 
 
 def pitch_of(rotation: FloatArray) -> float:
@@ -76,11 +82,13 @@ class LinkTask:
             return shift, jacobian[:3]
         x_axis = rotation[:, 0]
         turned = np.cross(jacobian[3:].T, x_axis).T  # change of the x axis, (3, dof)
-        if abs(np.cos(goal.pitch)) < 1e-3:
+        if abs(np.cos(goal.pitch)) < _VERTICAL:
             return np.concatenate([shift, -x_axis[:2]]), np.vstack([jacobian[:3], turned[:2]])
-        horizontal = max(float(np.hypot(x_axis[0], x_axis[1])), _LEAST_HORIZONTAL)
-        error = np.append(shift, goal.pitch - pitch_of(rotation))
-        return error, np.vstack([jacobian[:3], -turned[2] / horizontal])
+        horizontal = float(np.hypot(x_axis[0], x_axis[1]))
+        ahead = x_axis[:2] / horizontal if horizontal > _NO_HEADING else np.array([1.0, 0.0])
+        slope = x_axis[2] * (ahead @ turned[:2]) - horizontal * turned[2]
+        wanted = float(np.arcsin(np.clip(np.sin(goal.pitch), -1.0, 1.0)))
+        return np.append(shift, wanted - pitch_of(rotation)), np.vstack([jacobian[:3], slope])
 
     def polish(self, positions: FloatArray, iterations: int = 8) -> tuple[FloatArray, float]:
         """Newton steps on a near solution; returns positions and the error's norm left."""
@@ -150,7 +158,14 @@ def random_positions(space: GroupSpace, rng: np.random.Generator) -> FloatArray:
 
 
 def solve_numeric(
-    space: GroupSpace, goal: LinkGoal, seed_positions: FloatArray, seed: int, *, restarts: int = 24
+    space: GroupSpace,
+    goal: LinkGoal,
+    seed_positions: FloatArray,
+    seed: int,
+    *,
+    restarts: int = RESTARTS,
+    most_restarts: int = MOST_RESTARTS,
+    enough: int = 1000,
 ) -> list[FloatArray]:
     """Find joint positions that bring a link to its goal, from the seed and from random restarts.
 
@@ -160,6 +175,8 @@ def solve_numeric(
         seed_positions: Where the first search starts, shape (dof,).
         seed: Of the restarts; the same seed gives the same answers.
         restarts: Searches from random positions after the first.
+        most_restarts: Searches while nothing is found.
+        enough: How many solutions end the search.
 
     Returns:
         Distinct solutions in order of finding, exact to 1e-9, inside the limits; may be empty.
@@ -167,10 +184,12 @@ def solve_numeric(
     task = LinkTask(space, goal)
     rng = np.random.default_rng(seed)
     found: list[FloatArray] = []
-    starts = [np.asarray(seed_positions, dtype=float)]
-    starts += [random_positions(space, rng) for _ in range(restarts)]
-    for start in starts:
+    start = np.asarray(seed_positions, dtype=float)
+    for number in range(1 + max(restarts, most_restarts)):
+        if len(found) >= enough or (found and number > restarts):
+            break
         positions, error = task.least_squares(start)
-        if error < 1e-8 and all(space.distance(positions, other) > 1e-4 for other in found):
+        if error < _FOUND and all(space.distance(positions, other) > 1e-4 for other in found):
             found.append(positions)
+        start = random_positions(space, rng)
     return found
