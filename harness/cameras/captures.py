@@ -26,6 +26,13 @@ from harness.recording.run import CaptureRecord, Run
 from harness.robot.description import RobotDescription
 
 FOLDER = "cameras"
+SUFFIXES = {
+    "color": ".color.png",
+    "depth": ".depth.npz",
+    "depth_preview": ".depth.png",
+    "segmentation": ".labels.png",
+    "segmentation_preview": ".segmentation.png",
+}
 
 
 def take_pictures(
@@ -66,8 +73,10 @@ def take_pictures(
         time = float(run.signals.times[look.sample])
         stem = f"{folders[camera.name]}/{time:08.3f}s-{slug(look.step) if look.step else 'look'}"
         taken = _Shot(scene, camera, view, renderer, run.seed, look)
-        names = {kind: stem + suffix for kind, suffix in taken.suffixes().items()}
-        files |= {names[kind]: content for kind, content in taken.encoded().items()}
+        encoded = taken.encoded()
+        suffixes = SUFFIXES if look.step else {**SUFFIXES, "color": ".color.jpg"}
+        names = {kind: stem + suffixes[kind] for kind in encoded}
+        files |= {names[kind]: content for kind, content in encoded.items()}
         captures.append(
             CaptureRecord(
                 camera=camera.name,
@@ -99,24 +108,12 @@ class _Shot:
         self._scene, self._camera, self._view = scene, camera, view
         self._renderer, self._seed, self._look = renderer, seed, look
 
-    def suffixes(self) -> dict[str, str]:
-        """How the file of each kind ends."""
-        every = {
-            "color": {"color": ".color.png" if self._look.step else ".color.jpg"},
-            "depth": {"depth": ".depth.npz", "depth_preview": ".depth.png"},
-            "segmentation": {
-                "segmentation": ".labels.png",
-                "segmentation_preview": ".segmentation.png",
-            },
-        }
-        return {name: end for kind in self._look.kinds for name, end in every[kind].items()}
-
     @cached_property
     def _measured(self) -> tuple[np.ndarray, np.ndarray]:
         return self._renderer.measure(self._view)
 
     def encoded(self) -> dict[str, bytes]:
-        """The content of each file."""
+        """The content of each file by kind; previews are for what people took."""
         content: dict[str, bytes] = {}
         kinds, camera = self._look.kinds, self._camera
         if "color" in kinds:
@@ -126,12 +123,14 @@ class _Shot:
         if "depth" in kinds:
             depth, _ = self._measured
             content["depth"] = npz(depth)
-            content["depth_preview"] = png(depth_colours(depth))
+            if self._look.step:
+                content["depth_preview"] = png(depth_colours(depth))
         if "segmentation" in kinds:
             _, geoms = self._measured
             labels = np.where(geoms >= 0, self._scene.geom_labels[geoms], 0).astype(np.uint16)
             content["segmentation"] = png(labels)
-            content["segmentation_preview"] = png(label_colours(labels))
+            if self._look.step:
+                content["segmentation_preview"] = png(label_colours(labels))
         return content
 
     def outlines(self, poses: Mapping[str, SE3]) -> dict[str, int]:

@@ -17,14 +17,14 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run(arguments: argparse.Namespace) -> int:
     files = discover(arguments.paths)
-    from harness import session
     from harness.reporting.terminal import Style
+    from harness.session.check import check_file
 
     style = Style.of(sys.stdout)
     code = 0
     documents: list[object] = []
     for file in files:
-        found = session.check_file(file, overrides=dict(arguments.overrides), seed=arguments.seed)
+        found = check_file(file, overrides=dict(arguments.overrides), seed=arguments.seed)
         outcome = "invalid" if found.problems else "failed" if found.predicted else "passed"
         code = max(code, EXIT_CODES[outcome])
         documents.append({"file": str(file), "outcome": outcome, "problems": found.problems,

@@ -15,9 +15,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run(arguments: argparse.Namespace) -> int:
     files = discover(arguments.paths)
-    from harness import session
+    from harness.session.check import explain_file
 
     for file in files:
         overrides = dict(arguments.overrides)
-        say(session.explain_file(file, overrides=overrides, seed=arguments.seed).rstrip())
+        say(explain_file(file, overrides=overrides, seed=arguments.seed).rstrip())
     return 0

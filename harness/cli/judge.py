@@ -20,13 +20,13 @@ def _run(arguments: argparse.Namespace) -> int:
     folder = Path(arguments.folder)
     if not (folder / "run.json").is_file():
         raise UsageError(f"'{folder}' is no run's folder: it has no run.json")
-    from harness import session
     from harness.reporting.terminal import Style, measure_text, verdict_line
+    from harness.session.rejudge import judge_run
 
     with_file = Path(arguments.with_file) if arguments.with_file else None
     if with_file and not with_file.is_file():
         raise UsageError(f"no such file: '{with_file}'")
-    verdicts = session.judge_run(folder, with_file)
+    verdicts = judge_run(folder, with_file)
     has_passed = bool(verdicts) and all(verdict.status == "passed" for verdict in verdicts)
     code = 0 if has_passed else EXIT_CODES["failed"]
     if arguments.json:

@@ -298,7 +298,7 @@ class CaptureRecord:
         files: Path in `Run.files` by kind: `color` (PNG or JPEG, with the camera's noise), `depth`
             (.npz, array `depth` of float32 metres along the optical axis, shape (height, width),
             inf where nothing is within the clip distances), `segmentation` (PNG of `labels`), and
-            `depth_preview`, `segmentation_preview` (PNG in colours, for people).
+            of what a `capture` step took `depth_preview` and `segmentation_preview` (PNG).
         pose: T_world_optical (xyz, quat wxyz): z forward, x right, y down.
         labels: Pixel value in `segmentation` of every link and object; 0 is none of them.
         outlines: Pixels that each object would have if nothing hid it and the picture had no edge;

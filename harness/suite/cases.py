@@ -54,7 +54,7 @@ def nobody_watches(_index: int, _event: ProgressEvent) -> None:
 def run_case(job: CaseJob, notify: Callable[[ProgressEvent], None]) -> CaseResult:
     """Run a case in this process."""
     use_one_thread()
-    from harness import session
+    from harness.session import run_case as session
 
     return session.run_case(
         job.file,

@@ -23,7 +23,7 @@ from harness.suite.environment import use_one_thread
 from harness.suite.server import receive, send
 
 RUN_MODULES = (
-    "harness.session",
+    "harness.session.run_case",
     "harness.session.timed_simulator",
     "harness.planning.clearance",
     "harness.cameras.stills",

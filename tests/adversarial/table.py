@@ -6,7 +6,7 @@ import tempfile
 from pathlib import Path
 
 from harness.recording.store import read_run
-from harness.session import run_case
+from harness.session.run_case import run_case
 from tests.adversarial.scenes import SCENES, WEIGHTLESS
 
 PAGE = Path(__file__).parents[2] / "scenarios" / "VERDICTS.md"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from harness.core.resources import data_folder
-from harness.session import run_case
+from harness.session.run_case import run_case
 from harness.simulation import mujoco_simulator
 from harness.simulation.recording import Recording
 

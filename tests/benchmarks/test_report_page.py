@@ -9,7 +9,7 @@ import pytest
 from harness.core.resources import data_folder
 from harness.recording.store import StoredRun, read_run
 from harness.reporting.html.write import write_page
-from harness.session import run_case
+from harness.session.run_case import run_case
 from tests.assertions.synthetic_run import lift_run
 
 FLAGSHIP = data_folder("scenarios") / "lessons/03_ur_sixteen_steps.scenario.yaml"

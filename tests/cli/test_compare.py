@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from harness import session
 from harness.cli.main import main
+from harness.session.run_case import run_case
 
 PICK = Path(__file__).parents[2] / "scenarios/lessons/04_ur_pick_by_friction.scenario.yaml"
 
@@ -21,7 +21,7 @@ def runs(tmp_path_factory):
         ("lower", {"expect.0.lifted.above": "2 m"}),
         ("faster", {"planning.max_velocity_scaling_factor": "0.2"}),
     ):
-        session.run_case(PICK, overrides=overrides, report_dir=folder / name, stills=False)
+        run_case(PICK, overrides=overrides, report_dir=folder / name, stills=False)
     return folder
 
 

@@ -2,8 +2,9 @@
 
 import textwrap
 
-from harness import session
 from harness.recording.store import read_run
+from harness.session.check import check_file
+from harness.session.run_case import run_case
 
 UR = "{model: ur3e, gripper: rh_p12_rn_a, base: {xyz: [0, 0, 1.02]}}"
 TABLE_TOP = 1.015
@@ -21,14 +22,14 @@ def file_of(folder, steps, *, robot=UR, world="empty", rest=""):
 def run(folder, steps, **words):
     """The case's result, and the run as it was saved."""
     path = file_of(folder, steps, **words)
-    result = session.run_case(path, report_dir=folder / "report", stills=False)
+    result = run_case(path, report_dir=folder / "report", stills=False)
     assert result.outcome in ("passed", "failed"), (result.problems, result.message)
     return result, read_run(folder / "report").run
 
 
 def check(folder, steps, **words):
     """What a check finds."""
-    return session.check_file(file_of(folder, steps, **words))
+    return check_file(file_of(folder, steps, **words))
 
 
 def problems(folder, steps, **words):

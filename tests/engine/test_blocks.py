@@ -4,8 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from harness import session
 from harness.recording.store import read_run
+from harness.session.check import check_file
+from harness.session.rejudge import judge_run
+from harness.session.run_case import run_case
 from tests.engine.front_door import file_of, problems, run
 
 BLOCKS = Path(__file__).parents[2] / "scenarios/blocks/repeat_parallel_include.scenario.yaml"
@@ -15,7 +17,7 @@ UP = "move_relative: {direction: {xyz: [0, 0, 1]}, distance: 0.02}"
 @pytest.fixture(scope="module")
 def blocks(tmp_path_factory):
     folder = tmp_path_factory.mktemp("blocks")
-    result = session.run_case(BLOCKS, report_dir=folder / "run", stills=False)
+    result = run_case(BLOCKS, report_dir=folder / "run", stills=False)
     return folder, result, read_run(folder / "run").run
 
 
@@ -45,8 +47,8 @@ def test_the_resolved_file_holds_the_included_steps_and_runs_to_the_same_digest(
     folder, result, _ = blocks
     resolved = folder / "run/scenario.resolved.yaml"
     assert "include" not in resolved.read_text(encoding="utf-8").partition("steps:")[2]
-    assert session.run_case(resolved).digest == result.digest
-    judged = session.judge_run(folder / "run")
+    assert run_case(resolved).digest == result.digest
+    judged = judge_run(folder / "run")
     assert [(v.step, v.status, v.margin) for v in judged] == [
         (v.step, v.status, v.margin) for v in result.verdicts
     ]
@@ -57,7 +59,7 @@ def test_what_is_wrong_in_an_included_file_is_told_there(tmp_path):
         "params: {a: 1}\nsteps:\n  - move_two: home\n  - wait: ${b}\n", encoding="utf-8"
     )
     path = file_of(tmp_path, "- include: {file: part.steps.yaml, params: {c: 2}}")
-    found = session.check_file(path).problems
+    found = check_file(path).problems
     assert [(Path(p.path).name, p.line, p.message) for p in found] == [
         ("part.steps.yaml", 3, "no verb is called `move_two`"),
         ("part.steps.yaml", 4, "no parameter is called `b`"),

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from harness import session
 from harness.cli.main import main
 from harness.core.errors import SpecError
 from harness.recording.store import read_run
 from harness.robot.mesh_file import hull_points
 from harness.session.prepare import prepare
+from harness.session.run_case import run_case
 from harness.spec.load import parse_scenario
 from tests.importers.sdf_files import ASCII_STL, COLLADA, CRATE, load, text_with, write
 
@@ -56,12 +56,12 @@ def cell(tmp_path):
 
 def test_a_cylinder_is_picked_up_in_an_sdf_world_and_the_report_tells_what_is_left_out(cell):
     report = cell.parent / "report"
-    result = session.run_case(cell, report_dir=report, stills=False)
+    result = run_case(cell, report_dir=report, stills=False)
     assert result.outcome == "passed", result
     found = [item.message for item in read_run(report).run.findings if item.kind == "note"]
     left_out = f"{cell.parent / 'cell.sdf'}:5: <real_time_factor> of <physics> is left out: there"
     assert [message.startswith(left_out) for message in found] == [True]
-    again = session.run_case(report / "scenario.resolved.yaml", stills=False)
+    again = run_case(report / "scenario.resolved.yaml", stills=False)
     assert again.digest == result.digest
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from harness.session import run_case
+from harness.session.run_case import run_case
 
 HOSTILE = """\
 scenario: "<script>document.title = 'taken over'</script> & <b>bold</b>"

@@ -11,7 +11,7 @@ from harness.core.camera import Camera
 from harness.recording.run import CaptureRecord, VideoRecord
 from harness.recording.store import StoredRun
 from harness.reporting.html.page import page_html
-from harness.session import run_case
+from harness.session.run_case import run_case
 from tests.assertions.synthetic_run import lift_run
 
 RED, GREEN = (0, 0, 255), (0, 255, 0)  # BGR

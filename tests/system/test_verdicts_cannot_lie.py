@@ -4,7 +4,7 @@ import textwrap
 
 import pytest
 
-from harness.session import run_case
+from harness.session.run_case import run_case
 
 PICK = """
 scenario: A pick that looks like one
