@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from harness import session
 from harness.recording.store import read_run
+from harness.session.run_case import run_case
 from tests.engine.front_door import run
 
 ROOT = Path(__file__).parents[2]
@@ -19,7 +19,7 @@ def findings(saved, kind):
 def weak_grip(tmp_path_factory):
     folder = tmp_path_factory.mktemp("weak") / "r"
     path = ROOT / "scenarios/faults/weak_grip.scenario.yaml"
-    session.run_case(path, report_dir=folder, stills=False)
+    run_case(path, report_dir=folder, stills=False)
     return read_run(folder).run
 
 

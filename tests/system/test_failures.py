@@ -6,12 +6,13 @@ from pathlib import Path
 import cv2
 import pytest
 
-from harness import session
 from harness.core.resources import data_folder
 from harness.recording.explanation import STAGES, stages_of
 from harness.recording.store import read_run
 from harness.reporting.explanation import explanation_lines
 from harness.reporting.terminal import failure
+from harness.session.check import check_file
+from harness.session.run_case import run_case
 
 FAILURES = data_folder("scenarios") / "failures"
 FILES = sorted(FAILURES.glob("*.scenario.yaml"))
@@ -100,7 +101,7 @@ TOLD = {
 def failed(request, tmp_path_factory):
     """A bundled failure's result and saved run, with pictures."""
     folder = tmp_path_factory.mktemp("failures") / "report"
-    result = session.run_case(request.param, report_dir=folder)
+    result = run_case(request.param, report_dir=folder)
     assert result.outcome == "passed", failure(result)
     return request.param, read_run(folder).run, folder
 
@@ -167,7 +168,7 @@ def test_every_code_of_a_file_name_is_what_the_file_expects():
 )
 def test_without_the_expectation_the_run_fails_and_the_terminal_explains(tmp_path, name, step):
     file = unexpected(FAILURES / f"{name}.scenario.yaml", tmp_path, step)
-    result = session.run_case(file, stills=False)
+    result = run_case(file, stills=False)
     assert result.outcome == "failed"
     told = iter(failure(result).splitlines())
     for pattern in TOLD[step]:
@@ -187,8 +188,8 @@ def test_without_the_expectation_the_run_fails_and_the_terminal_explains(tmp_pat
 )
 def test_a_check_finds_the_static_ones_and_explains_them(tmp_path, name, step):
     file = FAILURES / f"{name}.scenario.yaml"
-    assert not session.check_file(file).predicted
-    found = session.check_file(unexpected(file, tmp_path, step))
+    assert not check_file(file).predicted
+    found = check_file(unexpected(file, tmp_path, step))
     [problem], [lines] = found.predicted, found.explanations
     told = iter([problem.message, *lines])
     for pattern in TOLD[step]:

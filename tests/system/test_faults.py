@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from harness import session
 from harness.recording.store import read_run
+from harness.session.run_case import run_case
 from tests.engine.front_door import problems, run
 
 ROOT = Path(__file__).parents[2]
@@ -23,7 +23,7 @@ def receipts(saved):
 @pytest.mark.parametrize("name", ["weak_grip", "stalled_joint", "bumped_box"])
 def test_a_bundled_fault_lands_and_its_scenario_passes(name, tmp_path):
     path = ROOT / f"scenarios/faults/{name}.scenario.yaml"
-    result = session.run_case(path, report_dir=tmp_path / "r", stills=False)
+    result = run_case(path, report_dir=tmp_path / "r", stills=False)
     assert result.outcome == "passed", result.verdicts
     saved = read_run(tmp_path / "r").run
     assert {receipt for receipt, _ in receipts(saved).values()} == {"landed"}
