@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
 import numpy as np
 
 from harness.assertions.contacts import attached, in_hand
 from harness.assertions.registry import Evidence, MarginSignal, signal
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, NotReached, Window, object_record
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, IntArray
 from harness.recording.run import Measure, Run
 from harness.spec.checks import Clearance
 
@@ -17,48 +20,117 @@ Key = tuple[str, str]
 
 @signal.handles(Clearance)
 def clearance(check: Clearance, window: Window) -> MarginSignal:
-    """The smallest distance less what is asked for [m], wherever both bodies are there.
+    """What is left of the distance, and of its loss against the plan [m], where both are there.
 
     `any` is every object but what the robot holds at that sample. Distances are recorded up to a
-    cutoff; one at the cutoff is at least as much.
+    cutoff; one at the cutoff is at least as much. The loss is how much less a distance is than it
+    would be with the arm at its commands and what is attached where the planner carries it.
 
     Raises:
         NotReached: The two were never there together.
         NotObservable: The distance was not recorded, or its cutoff is below what is asked for.
     """
-    run = window.run
-    rows = {
-        key: window.cut(values) for key, values in recorded_distances(run, *check.between).items()
-    }
-    keys = list(rows)
-    stack = np.stack([np.nan_to_num(rows[key], nan=np.inf) for key in keys])
-    nearest = stack.argmin(axis=0)
-    distance = stack.min(axis=0)
-    there = np.isfinite(distance)
+    distance = _smallest(window, recorded_distances(window.run, *check.between))
+    there = np.isfinite(distance.values)
     if not there.any():
         raise NotReached(f"{check.between[0]} and {check.between[1]} were never there together")
-    cutoff = run.signals.clearance_cutoff
-    if check.at_least > cutoff and float(distance.min()) >= cutoff:
-        raise NotObservable(
-            f"distances were recorded up to {amount(cutoff, 'm')} only;"
-            f" {amount(check.at_least, 'm')} are asked for"
-        )
+    judged: list[_Judged] = []
+    if check.at_least is not None:
+        _refuse_beyond_cutoff(window.run, check.at_least, distance)
+        judged.append(_Judged(distance.values - check.at_least, _least(check, window, distance)))
+    if check.max_below_plan is not None:
+        loss = _largest_loss(window, check)
+        judged.append(_Judged(check.max_below_plan - loss.values, _below(check, window, loss)))
+    rows = np.stack([each.margins for each in judged])
 
     def evidence(index: int) -> Evidence:
-        key, value = keys[int(nearest[index])], float(distance[index])
-        who = _nearest_link(window, key, index) or key[0]
-        about = "at least " if value >= cutoff else ""
-        text = (
-            f"{about}{amount(value, 'm')} between {who} and {key[1]},"
-            f" {amount(check.at_least, 'm')} asked for"
+        return judged[int(rows[:, index].argmin())].evidence(index)
+
+    values = np.where(there, rows.min(axis=0), np.nan)
+    return MarginSignal(values, "m", evidence, applies=there)
+
+
+@dataclass(frozen=True, eq=False)
+class _Judged:
+    """Margins [m], shape (n,), and what a sample shows of them."""
+
+    margins: FloatArray
+    evidence: Callable[[int], Evidence]
+
+
+@dataclass(frozen=True, eq=False)
+class _Worst:
+    """The worst of several pairs at each sample, shape (n,), and which one it is."""
+
+    values: FloatArray
+    which: IntArray
+    keys: list[Key]
+
+
+def _smallest(window: Window, rows: Mapping[Key, FloatArray]) -> _Worst:
+    stack = np.stack([np.nan_to_num(window.cut(values), nan=np.inf) for values in rows.values()])
+    return _Worst(stack.min(axis=0), stack.argmin(axis=0), list(rows))
+
+
+def _largest_loss(window: Window, check: Clearance) -> _Worst:
+    """Planned less actual distance, the largest of all pairs [m]; unknown where one of both is."""
+    run = window.run
+    actual = recorded_distances(run, *check.between)
+    planned = run.signals.planned_clearances
+    missing = [key for key in actual if key not in planned]
+    if missing:
+        raise NotObservable(f"planned distances of {' and '.join(missing[0])} were not recorded")
+    stack = np.stack([window.cut(planned[key] - values) for key, values in actual.items()])
+    absent = np.stack([window.cut(np.isnan(values)) for values in actual.values()])
+    ranked = np.where(absent, -np.inf, np.nan_to_num(stack, nan=np.inf))
+    return _Worst(ranked.max(axis=0), ranked.argmax(axis=0), list(actual))
+
+
+def _refuse_beyond_cutoff(run: Run, at_least: float, distance: _Worst) -> None:
+    cutoff = run.signals.clearance_cutoff
+    if at_least > cutoff and float(distance.values.min()) >= cutoff:
+        raise NotObservable(
+            f"distances were recorded up to {amount(cutoff, 'm')} only;"
+            f" {amount(at_least, 'm')} are asked for"
         )
-        time = window.time(index)
-        detail = f"{who} and {key[1]}"
-        measure = Measure("clearance", value, check.at_least, ">=", "m", time, detail)
+
+
+def _least(check: Clearance, window: Window, distance: _Worst) -> Callable[[int], Evidence]:
+    limit = check.at_least or 0.0
+
+    def evidence(index: int) -> Evidence:
+        key, value = distance.keys[int(distance.which[index])], float(distance.values[index])
+        who = _nearest_link(window, key, index) or key[0]
+        about = "at least " if value >= window.run.signals.clearance_cutoff else ""
+        pair = f"{who} and {_itself(key)}"
+        text = f"{about}{amount(value, 'm')} between {pair}, {amount(limit, 'm')} asked for"
+        measure = Measure("clearance", value, limit, ">=", "m", window.time(index), pair)
         return Evidence(text, (measure,))
 
-    values = np.where(there, distance - check.at_least, np.nan)
-    return MarginSignal(values, "m", evidence, applies=there)
+    return evidence
+
+
+def _below(check: Clearance, window: Window, loss: _Worst) -> Callable[[int], Evidence]:
+    limit = check.max_below_plan or 0.0
+
+    def evidence(index: int) -> Evidence:
+        key, value = loss.keys[int(loss.which[index])], float(loss.values[index])
+        sample = window.start + index
+        actual = float(window.run.signals.clearances[key][sample])
+        planned = float(window.run.signals.planned_clearances[key][sample])
+        pair = f"{key[0]} and {_itself(key)}"
+        text = (
+            f"{amount(actual, 'm')} between {pair}, planned {amount(planned, 'm')};"
+            f" {amount(limit, 'm')} less allowed"
+        )
+        measure = Measure("clearance below plan", value, limit, "<=", "m", window.time(index), pair)
+        return Evidence(text, (measure,))
+
+    return evidence
+
+
+def _itself(key: Key) -> str:
+    return "itself" if key[0] == key[1] else key[1]
 
 
 def recorded_distances(run: Run, first: str, second: str) -> dict[Key, FloatArray]:

@@ -1,7 +1,8 @@
 """collision: contacts that nothing excuses.
 
 A contact of two bodies is no collision where
-- the pair is allowed for the run, or by the `allow_collisions` step it happens in;
+- the pair is allowed for the run, or by the `allow_collisions` step it happens in, unless
+  `count_allowed` says that it counts;
 - a link that cannot move stands on an object that cannot;
 - the fingers of the gripper meet, closing on nothing;
 - fingers or palm grip an object: see `_gripping`;
@@ -52,7 +53,8 @@ def collision(check: Collision, window: Window) -> MarginSignal:
     """
     run = window.run
     pairs = _pairs(run, check)
-    guilty = {pair: window.cut(colliding(run, pair)) for pair in pairs}
+    allowed_too = check.count_allowed
+    guilty = {pair: window.cut(colliding(run, pair, allowed_too)) for pair in pairs}
     unknown = np.zeros(len(window.times), dtype=bool)
     for pair in pairs:
         unknown |= np.isnan(window.cut(run.signals.contact_forces[pair]))
@@ -154,10 +156,11 @@ def _distance(window: Window, check: Collision, pairs: list[Pair]) -> tuple[Floa
     return best, name
 
 
-def colliding(run: Run, pair: Pair) -> BoolArray:
+def colliding(run: Run, pair: Pair, count_allowed: bool = False) -> BoolArray:
     """Samples at which the contact of two bodies is a collision, shape (N,)."""
     touching = run.signals.contact_forces[pair] > 0
-    touching &= ~_allowed(run, pair)
+    if not count_allowed:
+        touching &= ~_allowed(run, pair)
     links = frozenset(run.robot.link_names)
     moving = [name for name in pair if name in links]
     if len(moving) == 2:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from harness.assertions.contacts import TOUCH_FORCE, finger_links, force_between
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
 from harness.assertions.text import amount
@@ -32,6 +34,12 @@ def bodies(run: Run, word: str) -> frozenset[str]:
             raise NotObservable(f"there is no body '{word}' in this run")
 
 
+def sample_time(run: Run) -> float:
+    """Between two samples of a run [s]; 0 when it has one."""
+    times = run.signals.times
+    return float(np.median(np.diff(times))) if len(times) > 1 else 0.0
+
+
 @signal.handles(InContact)
 def in_contact(check: InContact, window: Window) -> MarginSignal:
     """Force between the two bodies [N], sample by sample."""
@@ -41,7 +49,14 @@ def in_contact(check: InContact, window: Window) -> MarginSignal:
     limit = max(check.min_force, TOUCH_FORCE)
     part = Part("contact force", force, limit, ">=", "N", detail=f"{first} and {second}")
 
+    touching = np.flatnonzero(force >= TOUCH_FORCE)
+
     def text(_: int, measure: Measure) -> str:
-        return f"{first} and {second} touch with {amount(measure.value, 'N')}"
+        said = f"{first} and {second} touch with {amount(measure.value, 'N')}"
+        if not len(touching):
+            return said
+        begun, seconds = window.time(int(touching[0])), len(touching) * sample_time(run)
+        peak = amount(float(force.max()), "N")
+        return f"{said} (first at t={begun:.3f} s, {amount(seconds, 's')} in all, up to {peak})"
 
     return all_of(window, [part], text)

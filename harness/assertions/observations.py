@@ -32,16 +32,18 @@ class Observations:
         frames: Names of frames whose poses are needed: links, but objects and `world` too, which
             are recorded anyway; sorted.
         clearance_cutoff: Distances up to here must be exact [m].
+        planned_clearances: Whether distances are needed with the arm at its commands, too.
     """
 
     frames: tuple[str, ...]
     clearance_cutoff: float
+    planned_clearances: bool = False
 
 
 def observations(expectations: Iterable[AnyExpectation]) -> Observations:
     """Frames and distances that expectations speak of."""
     frames: set[str] = set()
-    cutoff = CLEARANCE_CUTOFF
+    cutoff, is_planned = CLEARANCE_CUTOFF, False
     for spec in expectations:
         for model in (spec, getattr(spec, "predicate", None), getattr(spec, "until", None)):
             match model:
@@ -49,8 +51,9 @@ def observations(expectations: Iterable[AnyExpectation]) -> Observations:
                     frames |= {pose.frame} | ({link} if link is not None else set())
                 case Placed(pose=pose) if pose is not None:
                     frames.add(pose.frame)
-                case Clearance(at_least=at_least):
-                    cutoff = max(cutoff, at_least + CLEARANCE_ROOM)
+                case Clearance():
+                    cutoff = max(cutoff, (model.at_least or 0.0) + CLEARANCE_ROOM)
+                    is_planned |= model.max_below_plan is not None
                 case TcpPath():
                     frames |= {pose.frame for _, pose in model.corners()}
                 case Formula(formula=text):
@@ -59,7 +62,7 @@ def observations(expectations: Iterable[AnyExpectation]) -> Observations:
                     cutoff = max(cutoff, _furthest(root))
                 case _:
                     pass
-    return Observations(tuple(sorted(frames - {"world"})), cutoff)
+    return Observations(tuple(sorted(frames - {"world"})), cutoff, is_planned)
 
 
 def _furthest(root: Node) -> float:

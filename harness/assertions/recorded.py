@@ -16,6 +16,7 @@ WORDS = {
     "contact_forces": "contacts",
     "grip_forces": "the directions in which the fingers press",
     "clearances": "distances",
+    "planned_clearances": "planned distances",
 }
 
 

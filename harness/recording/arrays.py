@@ -2,7 +2,7 @@
 
 `times`, `tcp_pose` ... as they are; those of a mapping as `frames/<link>`, `object_poses/<object>`,
 `contact_forces/<body>|<body>`, `grip_forces/<link>|<object>`, `clearances/<a>|<b>`,
-`clearance_links/<a>|<b>`.
+`clearance_links/<a>|<b>`, `planned_clearances/<a>|<b>`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from harness.recording.run import Pair, Signals
 
 Array = np.ndarray[Any, Any]
 BY_NAME = ("frames", "object_poses")
-BY_PAIR = ("contact_forces", "grip_forces", "clearances", "clearance_links")
+BY_PAIR = ("contact_forces", "grip_forces", "clearances", "clearance_links", "planned_clearances")
 COMPRESSION = 1
 """Deflate level: 6 takes three times as long and saves a tenth on recorded doubles."""
 

@@ -15,7 +15,7 @@ from harness.recording.store import StoredRun
 
 NONE = "-"
 
-DERIVED = "clearance"
+DERIVED = ("clearance", "planned_clearances")
 """Distances are measured at some samples and drawn between: they part a little too early."""
 
 

@@ -368,6 +368,8 @@ class Signals:
             `clearance_cutoff`: a value there means "at least that far".
         clearance_links: Which robot link was nearest, index into the robot's link_names, (N,) each,
             for keys of `clearances` that start with `robot`; -1 where none.
+        planned_clearances: As `clearances`, had the arm been at its commands; recorded when an
+            expectation asks for them.
     """
 
     times: FloatArray
@@ -388,6 +390,9 @@ class Signals:
     clearances: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
     clearance_links: Mapping[Pair, IntArray] = field(
         default_factory=dict[tuple[str, str], np.ndarray]
+    )
+    planned_clearances: Mapping[Pair, FloatArray] = field(
+        default_factory=dict[tuple[str, str], FloatArray]
     )
     clearance_cutoff: float = 0.15
 

@@ -9,9 +9,12 @@ import numpy as np
 
 from harness.assertions.contacts import held_by_fingers
 from harness.assertions.grasp import drift_in_hand
+from harness.assertions.limits import gripper_joints
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, NotReached
+from harness.core.pose_arrays import compose
 from harness.core.types import FloatArray, IntArray
+from harness.ports import Kinematics
 from harness.recording.run import AttachmentRecord, Finding, Pair, Run, Signals, StepRecord
 
 LOST = 0.003
@@ -26,15 +29,37 @@ DIFFERENT = 1e-3
 Distances = Callable[[Signals], Mapping[Pair, FloatArray]]
 
 
-def plan_against_physics(run: Run, distances: Distances) -> tuple[Finding, ...]:
+def plan_against_physics(run: Run, planned: Signals, distances: Distances) -> tuple[Finding, ...]:
     """What differed between belief and physics, and by how much, in every run.
 
     Args:
         run: With clearances observed.
+        planned: The run's signals `as_commanded`.
         distances: Measures clearances at every sample it is given.
     """
     held = [found for record in run.attachments if (found := _held(run, record)) is not None]
-    return (*held, *_tracking(run), *_clearances(run, distances), *_allowed_contacts(run))
+    near = _clearances(run, planned, distances)
+    return (*held, *_tracking(run), *near, *_allowed_contacts(run))
+
+
+def as_commanded(run: Run, kinematics: Kinematics) -> Signals:
+    """The recording had the arm been at its commands, with what is attached where it is carried.
+
+    Fingers stay where they were: one that presses is meant to stay behind its command.
+    """
+    signals, joints = run.signals, run.robot.joints
+    hand = gripper_joints(run)
+    follows = np.array([joint.name not in hand for joint in joints])
+    is_told = np.isfinite(signals.joint_commands) & follows
+    positions = np.where(is_told, signals.joint_commands, signals.joint_positions)
+    poses = dict(signals.object_poses)
+    for record in run.attachments:
+        held = (signals.times >= record.start_time) & (signals.times <= record.end_time)
+        if record.object in poses and held.any():
+            carrier = kinematics.link_poses(positions[held], [record.link])[:, 0]
+            poses[record.object] = poses[record.object].copy()
+            poses[record.object][held] = compose(carrier, np.array(record.pose_in_link))
+    return replace(signals, joint_positions=positions, object_poses=poses)
 
 
 def _held(run: Run, record: AttachmentRecord) -> Finding | None:
@@ -84,9 +109,9 @@ def _tracking(run: Run) -> tuple[Finding, ...]:
     signals = run.signals
     errors = np.abs(signals.joint_positions - signals.joint_commands)
     errors = np.where(np.isfinite(errors), errors, 0.0)
-    gripper = run.robot.gripper
+    hand = gripper_joints(run)
     for column, joint in enumerate(run.robot.joints):
-        if gripper is not None and joint.name in (gripper.joint, *run.robot.groups[gripper.group]):
+        if joint.name in hand:
             errors[:, column] = 0.0  # a gripper that presses is meant to stay behind its command
     row, column = (int(place) for place in np.unravel_index(int(np.argmax(errors)), errors.shape))
     worst = float(errors[row, column])
@@ -102,7 +127,7 @@ def _tracking(run: Run) -> tuple[Finding, ...]:
     )
 
 
-def _clearances(run: Run, distances: Distances) -> tuple[Finding, ...]:
+def _clearances(run: Run, planned: Signals, distances: Distances) -> tuple[Finding, ...]:
     """Clearance where the arm came nearest in each motion, against that of the set points there."""
     signals = run.signals
     near = {pair: values for pair, values in signals.clearances.items() if pair[0] == "robot"}
@@ -110,12 +135,12 @@ def _clearances(run: Run, distances: Distances) -> tuple[Finding, ...]:
     if not moves:
         return ()
     rows = np.array([row for _, (row, _) in moves], dtype=np.int64)
-    planned = distances(_commanded(signals, rows))
+    expectations = distances(_rows_of(planned, rows))
     found: list[Finding] = []
     compared: list[tuple[float, Finding]] = []
     for place, (step, (row, pair)) in enumerate(moves):
         actual = float(near[pair][row])
-        expected = float(planned.get(pair, np.full(len(rows), np.nan))[place])
+        expected = float(expectations.get(pair, np.full(len(rows), np.nan))[place])
         if not np.isfinite(expected):
             continue
         finding = Finding(
@@ -153,14 +178,12 @@ def _nearest(step: StepRecord, near: Mapping[Pair, FloatArray]) -> tuple[int, Pa
     return None if best is None else (best[1], best[2])
 
 
-def _commanded(signals: Signals, rows: IntArray) -> Signals:
-    """A few samples with the joints where they were told to be; fingers where they were."""
-    commands = signals.joint_commands[rows]
-    measured = signals.joint_positions[rows]
+def _rows_of(signals: Signals, rows: IntArray) -> Signals:
+    """A few samples."""
     return replace(
         signals,
         times=signals.times[rows],
-        joint_positions=np.where(np.isfinite(commands), commands, measured),
+        joint_positions=signals.joint_positions[rows],
         object_poses={name: poses[rows] for name, poses in signals.object_poses.items()},
     )
 

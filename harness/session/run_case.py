@@ -20,7 +20,7 @@ from harness.recording.run import Outcome, Run, Signals, StepRecord, Verdict
 from harness.recording.store import PAGE, StoredRun, write_run
 from harness.reporting.explanation import explanation_lines
 from harness.reporting.result import CaseResult, ProgressEvent, StepLine
-from harness.session.agreement import plan_against_physics
+from harness.session.agreement import as_commanded, plan_against_physics
 from harness.session.beliefs import believed_poses
 from harness.session.camera_pictures import with_camera_pictures
 from harness.session.failure_pictures import draw_pictures, with_pictures
@@ -175,10 +175,11 @@ def _execute(
         notes=prepared.notes,
     )
     with clock.part("judge"):
-        return _compared_with_plan(prepared, run)
+        return _compared_with_plan(prepared, run, is_recorded=needed.planned_clearances)
 
 
-def _compared_with_plan(prepared: Prepared, run: Run) -> Run:
+def _compared_with_plan(prepared: Prepared, run: Run, *, is_recorded: bool) -> Run:
+    """The run with what planner and physics disagreed on; distances as planned where asked for."""
     from harness.planning.clearance import CoalClearance
 
     observer = CoalClearance(prepared.program.description)
@@ -187,7 +188,13 @@ def _compared_with_plan(prepared: Prepared, run: Run) -> Run:
     def distances(signals: Signals) -> Mapping[tuple[str, str], FloatArray]:
         return observer.distances(signals, run.objects, run.attachments, cutoff)
 
-    return replace(run, findings=(*run.findings, *plan_against_physics(run, distances)))
+    planned = as_commanded(run, prepared.kinematics)
+    findings = plan_against_physics(run, planned, distances)
+    signals = run.signals
+    if is_recorded:
+        observed = observer.observe(planned, run.objects, run.attachments, cutoff)
+        signals = replace(signals, planned_clearances=observed.clearances)
+    return replace(run, signals=signals, findings=(*run.findings, *findings))
 
 
 def _observe(prepared: Prepared, signals: Signals, execution: Execution, cutoff: float) -> Signals:

@@ -189,10 +189,13 @@ class Collision(CheckFields):
     between: tuple[Name, Name] | None = Field(
         default=None, description="Default: the robot and anything, what it holds and anything."
     )
+    count_allowed: Flag = Field(
+        default=False, description="Pairs that the SRDF or `allow_collisions` permits count too."
+    )
 
 
 class Clearance(CheckFields):
-    """The distance between the two bodies is at least so much."""
+    """The distance between the two bodies is at least so much, or little less than planned."""
 
     short = "at_least"
 
@@ -201,7 +204,19 @@ class Clearance(CheckFields):
     between: tuple[Name, Name] = Field(
         default=("robot", "any"), description="`robot`, a held object's name, an object, `any`."
     )
-    at_least: NonNegativeLength = Field(description="Smallest distance allowed [m].")
+    at_least: NonNegativeLength | None = Field(
+        default=None, description="Smallest distance allowed [m]."
+    )
+    max_below_plan: PositiveLength | None = Field(
+        default=None,
+        description="How much nearer it may come than with the arm at its commands [m].",
+    )
+
+    @model_validator(mode="after")
+    def _one(self) -> Clearance:
+        if self.at_least is None and self.max_below_plan is None:
+            raise ValueError("`at_least`, `max_below_plan`, or both")
+        return self
 
 
 class TcpPose(CheckFields):

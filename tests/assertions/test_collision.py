@@ -115,6 +115,9 @@ def test_allow_collisions_holds_for_its_steps_only():
     )
     assert not collides(touching("arm_link", "wall", (60, 90), steps=steps))
     assert collides(touching("arm_link", "wall", (90, 105), steps=steps))
+    strict = Never(predicate=Collision(count_allowed=True))
+    assert collides(touching("arm_link", "wall", (60, 90), steps=steps), strict)
+    assert not collides(lift_run(), strict), "a grasp stays one"
 
 
 def test_a_pick_and_a_lift_are_no_collision():

@@ -76,7 +76,8 @@ pytestmark = pytest.mark.mutation
 N = 200
 SHIFTS = (0.02, 0.3, 3.0, 30.0)
 MOMENTS = range(0, N, 10)
-MAPPINGS = ("frames", "object_poses", "contact_forces", "grip_forces", "clearances")
+FORCES_AND_DISTANCES = ("contact_forces", "grip_forces", "clearances", "planned_clearances")
+MAPPINGS = ("frames", "object_poses", *FORCES_AND_DISTANCES)
 SHOWN_ONLY = {
     ("collision", "clearances"): "contacts decide; how near it came is the margin of what did not"
 }
@@ -176,6 +177,14 @@ CASES = [
     (
         Clearance(between=("robot", "box"), at_least=0.01),
         late(clearances={("robot", "box"): DISTANT}),
+        "late",
+    ),
+    (
+        Clearance(between=("robot", "box"), max_below_plan=0.01),
+        late(
+            clearances={("robot", "box"): DISTANT},
+            planned_clearances={("robot", "box"): np.full(N, 0.055)},
+        ),
         "late",
     ),
     (
@@ -329,7 +338,7 @@ def frozen(run, place, _):
 
 def dropped(run, place, _):
     field, key = place
-    if key is None or field in ("contact_forces", "grip_forces", "clearances"):
+    if key is None or field in FORCES_AND_DISTANCES:
         empty = {} if key is not None else np.full_like(array_of(run.signals, place), np.nan)
         lost = replace(run.signals, **{field: empty})
         yield replace(run, signals=lost, unrecorded=(field,))

@@ -380,6 +380,7 @@ def test_contact_counts_from_the_asked_force_on():
     spec = InContact(between=("box", "gripper"), min_force=2.0)
     answer = verdict(run, spec)
     assert (answer.status, answer.margin, answer.time) == ("passed", 0.0, pytest.approx(0.3))
+    assert answer.reason.endswith("(first at t=0.300 s, 0.1 s in all, up to 2.0 N) at t=0.300 s")
     weaker = InContact(between=("box", "robot"), min_force=2.1)
     assert verdict(run, weaker).margin == pytest.approx(-0.1)
     assert verdict(run, Never(predicate=InContact(between=("box", "any")))).status == "failed"
@@ -406,6 +407,27 @@ def test_clearance_names_the_nearest_link_and_the_moment():
     assert answer.reason == "12.0 mm between arm_link and box, 10.0 mm asked for at t=0.700 s"
     nearer = Clearance(between=("box", "robot"), at_least=0.0121)
     assert verdict(clearance_run(distance), nearer).status == "failed"
+
+
+def test_a_distance_may_be_little_less_than_with_the_arm_at_its_commands():
+    planned, actual = np.full(200, 0.02), np.full(200, 0.02)
+    actual[90] = 0.0175
+    run = clearance_run(actual)
+    spec = Clearance(between=("robot", "box"), max_below_plan=0.003)
+    assert verdict(run, spec).status == "not observable", "nobody recorded what was planned"
+    run = changed(run, planned_clearances={("robot", "box"): planned})
+    assert verdict(run, spec).margin == pytest.approx(0.0005)
+    answer = verdict(run, Clearance(between=("robot", "box"), max_below_plan=0.002))
+    assert (answer.status, answer.margin) == ("failed", pytest.approx(-0.0005))
+    assert answer.reason == (
+        "17.5 mm between robot and box, planned 20.0 mm; 2.0 mm less allowed at t=0.900 s"
+    )
+    both = Clearance(between=("robot", "box"), at_least=0.018, max_below_plan=0.003)
+    assert verdict(run, both).reason.startswith("17.5 mm between arm_link and box, 18.0 mm asked")
+    gone = changed(run, clearances={("robot", "box"): np.full(200, np.nan)})
+    assert verdict(gone, spec).status == "not reached"
+    unknown = changed(run, planned_clearances={("robot", "box"): np.full(200, np.nan)})
+    assert verdict(unknown, spec).status == "failed"
 
 
 def test_clearance_is_judged_while_the_object_is_there():

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from harness.recording.store import read_run
@@ -37,6 +38,52 @@ def test_planned_clearance_stands_beside_the_actual_one(weak_grip):
     row = round(found.time / weak_grip.timestep)
     assert found.values["actual"] == weak_grip.signals.clearances[pair][row]
     assert found.values["planned"] == pytest.approx(found.values["actual"], abs=5e-4)
+
+
+def test_coming_nearer_than_planned_can_be_forbidden_and_is_measured_against_the_plan(tmp_path):
+    result, saved = run(
+        tmp_path,
+        """
+        - move_to: mogi_home
+        - inject: {command_latency: 60 ms}
+        - ptp: {joints: {shoulder_pan_joint: -2}}
+          id: swing
+        """,
+        rest="""
+        objects:
+          - {name: post, box: {size: [0.06, 0.06, 0.9]}, static: true,
+             pose: {frame: base_link, xyz: [0.517, 0.188, 0.45]}}
+        expect:
+          - clearance: {between: [robot, post], max_below_plan: 1 mm, during: swing}
+          - clearance: {between: [robot, post], max_below_plan: 5 cm, during: swing}
+        """,
+    )
+    tight, loose = result.verdicts
+    assert (tight.status, loose.status) == ("failed", "passed"), result.verdicts
+    assert "planned" in tight.reason
+    actual, planned = saved.signals.clearances, saved.signals.planned_clearances
+    loss = planned["robot", "post"] - actual["robot", "post"]
+    assert tight.measures[0].value == pytest.approx(np.nanmax(loss))
+    lag = np.nanmax(np.abs(saved.signals.joint_commands - saved.signals.joint_positions))
+    assert 0.1 * lag < np.nanmax(loss) < lag, "the arm reaches half a metre"
+
+
+def test_pressing_fingers_are_not_planned_to_be_inside_of_what_they_press(tmp_path):
+    result, saved = run(
+        tmp_path,
+        """
+        - move_to: mogi_home
+        - pick: green_cylinder
+        """,
+        world="lesson_ur",
+        rest="""
+        expect:
+          - clearance: {max_below_plan: 2 mm}
+          - clearance: {between: [green_cylinder, any], max_below_plan: 3 mm}
+        """,
+    )
+    assert [verdict.status for verdict in result.verdicts] == ["passed"] * 2, result.verdicts
+    assert {key for key in saved.signals.planned_clearances if key[0] == "green_cylinder"}
 
 
 def test_the_worst_joint_is_told_with_its_lag(tmp_path):
