@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from harness import __version__
+from harness.cli.robot_options import ROBOT, add_robot_options
 
 EPILOG = """exit codes: 0 passed, 1 failed, 2 invalid file or wrong usage, 3 error, 130 Ctrl-C"""
 BROKEN_PIPE_EXIT_CODE = 141  # as a shell shows SIGPIPE
@@ -78,6 +79,7 @@ def _parser() -> argparse.ArgumentParser:
     _compare_options(command("compare", "tell what changed from one saved run to another"))
     _new_options(command("new", "write a commented scenario that passes"))
     _import_options(command("import", "write files of other programs as ours", module="importing"))
+    _robot_options(command("robot", "look a robot over, or draw it"))
     _bench_options(command("bench", "compare planners on the motions of scenarios"))
     _schema_options(command("schema", "print the JSON Schema of scenario files"))
     return parser
@@ -184,6 +186,29 @@ def _import_options(importing: argparse.ArgumentParser) -> None:
     importing.add_argument("--model-path", metavar="DIR", action="append", default=[],
                            help="look models up here before GZ_SIM_RESOURCE_PATH")  # fmt: skip
     importing.add_argument("--force", action="store_true", help="overwrite what is there")
+
+
+def _robot_options(robot: argparse.ArgumentParser) -> None:
+    actions = robot.add_subparsers(dest="action", metavar="ACTION", required=True)
+    check = actions.add_parser(
+        "check",
+        help="limits, masses, kinematics, self-collisions, reach",
+        description="Look a robot over; exit code 1 when something is wrong.",
+    )
+    show = actions.add_parser("show", help="draw it", description="Draw a robot.")
+    for action in (check, show):
+        action.add_argument("robot", metavar="ROBOT", help=f"{ROBOT}; or a scenario")
+        add_robot_options(action)
+        action.add_argument("--state", metavar="NAME", default="",
+                            help="for the picture: a named state (default: the start)")  # fmt: skip
+        action.add_argument("--image", metavar="FILE", default="", help="a picture, PNG or JPEG")
+    check.add_argument("--samples", metavar="N", type=_count, default=None,
+                       help="random configurations (default: 2000; for an SRDF 10000)")  # fmt: skip
+    check.add_argument("--seed", metavar="N", type=int, default=0, help="of them (default: 0)")
+    check.add_argument("--write-srdf", metavar="FILE", default="",
+                       help="write an SRDF with the pairs that need not be checked")  # fmt: skip
+    check.add_argument("--force", action="store_true", help="overwrite that file")
+    check.add_argument("--json", action="store_true", help="one JSON document on stdout")
 
 
 def _schema_options(schema: argparse.ArgumentParser) -> None:

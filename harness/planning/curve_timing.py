@@ -155,4 +155,5 @@ def _link_rates(
     frame = robot.frame_id(link)
     pin.updateFramePlacement(model, data, frame)
     jacobian = pin.getFrameJacobian(model, data, frame, pin.LOCAL_WORLD_ALIGNED)
+    jacobian = jacobian.reshape(6, -1)  # of one joint it comes with one axis
     return jacobian[:, robot.velocity_columns] @ (space.matrix @ rates)

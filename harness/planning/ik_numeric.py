@@ -66,6 +66,7 @@ class LinkTask:
         pin.computeJointJacobians(model, data, configuration)
         placement = pin.updateFramePlacement(model, data, self._frame)
         whole = pin.getFrameJacobian(model, data, self._frame, pin.LOCAL_WORLD_ALIGNED)
+        whole = whole.reshape(6, -1)  # of one joint it comes with one axis
         jacobian = whole[:, self._columns] @ self.space.matrix
         rotation = placement.rotation
         goal = self.goal

@@ -20,6 +20,9 @@ DEFAULT_RGBA: Rgba = (0.6, 0.6, 0.6, 1.0)
 SMALLEST_RADIUS = 0.005
 """Radius of the solid sphere that a link's inertia is no less than [m]."""
 
+NO_BODY = "no body has the principal moments of inertia"
+"""Begins the note on a tensor that was not taken as written."""
+
 
 @dataclass(frozen=True, eq=False)
 class LinkReader:
@@ -94,7 +97,7 @@ class LinkReader:
         if np.array_equal(raised, moments):
             return inertia
         self.notes.append(
-            f"link '{link}': no body has the principal moments of inertia "
+            f"link '{link}': {NO_BODY} "
             f"{', '.join(f'{value:.3g}' for value in moments)} kg m^2; taken as "
             f"{', '.join(f'{value:.3g}' for value in raised)}"
         )

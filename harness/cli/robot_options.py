@@ -1,0 +1,47 @@
+"""Options that say which robot a command is about."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from harness.session.robot_source import RobotSource
+
+ROBOT = "a bundled name; a URDF, xacro or MJCF file, also as package://name/path; a robot's folder"
+
+
+def add_robot_options(command: argparse.ArgumentParser) -> None:
+    """Add what goes with a robot's file."""
+    add = command.add_argument
+    add("--srdf", metavar="FILE", default="", help="groups, states, allowed pairs")
+    add("--package-path", metavar="DIR", action="append", default=[],
+        help="where package:// is looked up and meshes may be read")  # fmt: skip
+    add("--gripper", metavar="NAME", default="",
+        help="a bundled one to be mounted, or the SRDF group of the arm's own")  # fmt: skip
+    add("--args", metavar="NAME=VALUE", action="append", type=_argument, default=[],
+        help="of a xacro file")  # fmt: skip
+    add("--group", metavar="NAME", default="", help="the arm's SRDF group")
+    add("--tcp-link", metavar="LINK", default="", help="the link at the tool's centre")
+
+
+def source_of(arguments: argparse.Namespace) -> RobotSource:
+    """Which robot the options say."""
+    from harness.session.robot_source import RobotSource
+
+    return RobotSource(
+        arguments.robot,
+        srdf=arguments.srdf,
+        packages=tuple(arguments.package_path),
+        gripper=arguments.gripper,
+        args=dict(arguments.args),
+        tcp_link=arguments.tcp_link,
+        group=arguments.group,
+    )
+
+
+def _argument(text: str) -> tuple[str, str]:
+    name, equals, value = text.partition("=")
+    if not equals or not name.strip():
+        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=VALUE, as in ur_type=ur5e")
+    return name.strip(), value

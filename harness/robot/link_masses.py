@@ -1,0 +1,113 @@
+"""Whether a robot's masses and inertias are those of bodies."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+
+from harness.robot.description import Inertial, Link, RobotDescription
+from harness.robot.urdf_links import NO_BODY
+
+TRIANGLE_SLACK = 1e-3
+"""Part by which rounding may break the triangle inequality: files have four digits and more."""
+
+LONGEST_GYRATION = 2.0
+"""Radius of gyration that no link of an arm exceeds [m]."""
+
+MANY = 3
+
+FEATHER = 1e-3
+"""Links of less than this are frames that were given a mass for a library's sake [kg]."""
+
+
+def mass_problems(description: RobotDescription) -> list[str]:
+    """What no rigid body can have, a line a link; of links that weigh anything."""
+    heavy = [
+        link.name for link in description.links if link.inertial and link.inertial.mass > FEATHER
+    ]
+    mended = [
+        note
+        for note in description.notes
+        if NO_BODY in note and any(note.startswith(f"link '{name}':") for name in heavy)
+    ]
+    return mended + [
+        f"link '{link.name}': {problem}"
+        for link in description.links
+        if link.inertial is not None
+        for problem in _impossible(link.inertial)
+    ]
+
+
+def mass_notes(description: RobotDescription) -> list[str]:
+    """What looks like a placeholder, or cannot be right for a link of an arm."""
+    moving = [link for link in description.links if link.name not in description.static_links]
+    known = [link for link in moving if link.inertial is not None]
+    notes = [
+        f"link '{link.name}': {note}"
+        for link in known
+        if link.inertial is not None
+        for note in _doubtful(link.inertial)
+    ]
+    return notes + _same_for_many(known)
+
+
+def principal_moments(inertial: Inertial) -> tuple[float, float, float]:
+    """Smallest to largest [kg m^2]."""
+    least, middle, most = (float(value) for value in np.linalg.eigvalsh(inertial.inertia))
+    return least, middle, most
+
+
+def _impossible(inertial: Inertial) -> list[str]:
+    if not np.isfinite(inertial.mass) or inertial.mass < 0:
+        return [f"a mass of {inertial.mass:g} kg"]
+    if inertial.mass == 0:
+        return [] if not inertial.inertia.any() else ["inertia without mass"]
+    least, middle, most = principal_moments(inertial)
+    if least < 0:
+        return [f"a principal moment of inertia below 0: {least:.3g} kg m^2"]
+    if most > (least + middle) * (1 + TRIANGLE_SLACK):
+        return [
+            f"principal moments {least:.3g}, {middle:.3g}, {most:.3g} kg m^2: none may be more"
+            " than the sum of the others"
+        ]
+    return []
+
+
+def _doubtful(inertial: Inertial) -> list[str]:
+    if inertial.mass == 0:
+        return []
+    _, _, most = principal_moments(inertial)
+    notes: list[str] = []
+    if np.allclose(inertial.inertia, np.eye(3)):
+        notes.append("the inertia is the unit tensor, a placeholder")
+    elif most == 0:
+        notes.append(f"{inertial.mass:g} kg without inertia: a point")
+    elif np.sqrt(most / inertial.mass) > LONGEST_GYRATION:
+        gyration = np.sqrt(most / inertial.mass)
+        notes.append(f"its mass would be {gyration:.2g} m from its centre")
+    return notes
+
+
+def _same_for_many(links: Sequence[Link]) -> list[str]:
+    """Links of several shapes that weigh and turn exactly alike."""
+    counts = Counter(
+        (link.inertial.mass, tuple(link.inertial.inertia.ravel()))
+        for link in links
+        if link.inertial is not None
+    )
+    notes: list[str] = []
+    for (mass, tensor), count in counts.items():
+        same = [
+            link.name
+            for link in links
+            if link.inertial is not None
+            and (link.inertial.mass, tuple(link.inertial.inertia.ravel())) == (mass, tensor)
+        ]
+        if count >= MANY:
+            notes.append(
+                f"{count} links have the same {mass:g} kg and the same inertia, a placeholder:"
+                f" {', '.join(same)}"
+            )
+    return notes

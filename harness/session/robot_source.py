@@ -1,0 +1,112 @@
+"""Which robot a person means: a bundled name, a robot's file or folder, or a scenario's robot."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from harness.core.errors import RobotError
+from harness.core.types import FloatArray
+from harness.robot.description import RobotDescription
+from harness.robot.load import load_robot
+from harness.spec.load import load_scenario
+from harness.spec.mistakes import did_you_mean
+from harness.spec.scenario import RobotSpec
+from harness.spec.xml_file import read_xml
+
+ROBOT_YAML = "robot.yaml"
+KINDS = {".urdf": "urdf", ".xacro": "xacro", ".xml": "mjcf", ".mjcf": "mjcf"}
+
+
+@dataclass(frozen=True)
+class RobotSource:
+    """A robot as the command line says it.
+
+    Attributes:
+        word: A name, a file, a robot's folder or the robot.yaml in it, or `package://name/path`.
+        srdf: With a robot's file; empty for none.
+        packages: Folders where package:// is looked up.
+        gripper: A bundled gripper to be mounted; empty for none.
+        args: Of a xacro file.
+        tcp_link: Instead of the arm group's tip; empty for that.
+        group: The arm's; empty for the one of most joints.
+    """
+
+    word: str
+    srdf: str = ""
+    packages: Sequence[str] = ()
+    gripper: str = ""
+    args: Mapping[str, str] = field(default_factory=dict[str, str])
+    tcp_link: str = ""
+    group: str = ""
+
+    @property
+    def kind(self) -> str:
+        """`urdf`, `xacro`, `mjcf`, `scenario` or `model`."""
+        path = Path(self.word)
+        if path.name == ROBOT_YAML:
+            return "model"
+        if path.suffix.lower() in (".yaml", ".yml"):
+            return "scenario"
+        if path.suffix.lower() == ".xml" and path.is_file():
+            return "urdf" if read_xml(path).tag == "robot" else "mjcf"
+        return KINDS.get(path.suffix.lower(), "model")
+
+    @property
+    def has_no_srdf(self) -> bool:
+        """Whether it is a robot's file with no SRDF beside it."""
+        return self.kind in KINDS.values() and not self.srdf
+
+    @property
+    def own_name(self) -> str:
+        """What a URDF file that can be read calls its robot; else empty."""
+        path = Path(self.word)
+        return read_xml(path).get("name") if self.kind == "urdf" and path.is_file() else ""
+
+
+def load(source: RobotSource) -> RobotDescription:
+    """The robot, composed.
+
+    Raises:
+        SpecError: A file says what cannot be meant.
+        RobotError: The robot is not known, or its files cannot be used.
+    """
+    if source.kind == "scenario":
+        path = Path(source.word)
+        return load_robot(load_scenario(path).scenario.robot, path.parent)
+    path = Path(source.word)
+    word = str(path.parent) if path.name == ROBOT_YAML else source.word
+    words: dict[str, Any] = {source.kind: word}
+    words |= {
+        key: getattr(source, key)
+        for key in ("srdf", "gripper", "tcp_link", "group")
+        if getattr(source, key)
+    }
+    if source.packages:
+        words["packages"] = tuple(source.packages)
+    if source.args:
+        words["args"] = dict(source.args)
+    return load_robot(RobotSpec.model_validate(words))
+
+
+def positions_of(description: RobotDescription, state: str) -> FloatArray:
+    """Joint positions of a named state, in description order; where it starts for none.
+
+    Raises:
+        RobotError: It has no such state.
+    """
+    start = description.start_positions()
+    if not state:
+        return start
+    found = [each for each in description.named_states if each.name == state]
+    if not found:
+        names = [each.name for each in description.named_states]
+        raise RobotError(f"there is no state '{state}'; {did_you_mean(state, names, 'states')}")
+    given = dict(zip(description.joint_names, start, strict=True))
+    for each in found:
+        given |= each.positions
+    return description.with_mimics(np.array([given[name] for name in description.joint_names]))

@@ -1,0 +1,255 @@
+"""`harness robot check|show`: what it says of good robots, and of bad ones."""
+
+import json
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+
+from harness.cli.main import main
+from harness.core.spatial import SE3
+from harness.planning.kinematics import PinocchioKinematics
+from harness.planning.pair_statistics import random_positions, self_touches
+from harness.robot.description import Inertial
+from harness.robot.srdf import parse_srdf
+from harness.session import robot_findings
+from tests.robot.arm_files import INERTIAL, LIMIT, SHAPE, SRDF, URDF, load_arm, write_arm
+from tests.robot.models import Arm, robot
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_arm(tmp_path)
+    return tmp_path
+
+
+def check(capsys, *arguments):
+    """Exit code and page of `robot check`, with few samples unless told."""
+    code = main(["robot", "check", "--samples", "100", *arguments])
+    out, err = capsys.readouterr()
+    return code, out + err
+
+
+def test_a_bundled_robot_is_told_on_one_page(capsys):
+    code, page = check(capsys, "ur3e", "--gripper", "rh_p12_rn_a", "--samples", "300")
+    assert code == 0
+    assert len(page.splitlines()) < 50
+    for line in (
+        "wrist_3_joint        revolute  -6.133  6.133     6.283             5",
+        "follows rh_r1_joint times 1",
+        "ur_manipulator (the arm): 6 joints, base_link to end_effector_link",
+        "      states: home, up, test_configuration, mogi_home, mogi_down",
+        "rh_p12_rn_l1 and rh_p12_rn_l2, 107 mm apart, at most 9.69 N m",
+        "✓ masses: 11.21 kg, 9.214 kg of it moving",
+        "✓ named states: 7 and the start are free",
+        "✓ inverse kinematics: ur solves 100 of 100 poses that can be taken",
+    ):
+        assert line in page
+    assert "✗" not in page
+
+
+@pytest.mark.parametrize("name", ["open_manipulator_x", "rh_p12_rn_a"])
+def test_other_bundled_robots_are_good_too(name, capsys):
+    assert check(capsys, name)[0] == 0
+
+
+def test_the_same_seed_says_the_same_and_another_differs(capsys):
+    first, again, other = (check(capsys, "ur3e", "--seed", seed) for seed in ("3", "3", "4"))
+    assert first == again
+    assert first != other
+
+
+def test_rates_are_those_that_another_checker_finds():
+    ours = robot(model="ur5e")
+    theirs = Arm(ours)
+    positions = random_positions(ours, 200, np.random.default_rng(5))
+    touching = [
+        theirs.touching(dict(zip(ours.joint_names, row, strict=True))) is not None
+        for row in positions
+    ]
+    assert self_touches(ours, positions).is_free.tolist() == [not each for each in touching]
+    assert 10 < sum(touching) < 100
+
+
+def test_one_json_document_has_the_numbers(capsys):
+    assert main(["robot", "check", "arm.urdf", "--srdf", "arm.srdf", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert (told["format"], told["exit_code"]) == ("armharness-robot/1", 0)
+    values = {each["about"]: each["values"] for each in told["robot"]["findings"]}
+    assert values["masses"] == {"mass": 4.0, "moving_mass": 3.0, "problems": 0}
+    assert values["forward kinematics"]["position_error"] < 1e-9
+    assert values["forward kinematics"]["mass_in_physics"] == pytest.approx(4.0, abs=1e-9)
+    assert values["inverse kinematics"]["solver"] == "numeric"
+    # upright and drawn out: 0.2 m to the wrist, 0.2 m of travel, 0.2 m to the tool, 0.3 m below
+    assert 0.85 < values["reach"]["reach"] <= 0.9
+
+
+AT = '<origin xyz="0 0 0.2"/>'
+LYING = INERTIAL.replace('izz="0.002"', 'izz="0.05"')
+UNIT = INERTIAL.replace('ixx="0.01" iyy="0.01" izz="0.002"', 'ixx="1" iyy="1" izz="1"')
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        (f'"lower">{INERTIAL}', f'"lower">{LYING}',
+         "✗ masses: 4 kg, 3 kg of it moving\n      link 'lower': no body has the principal moments"
+         " of inertia 0.01, 0.01, 0.05 kg m^2"),
+        (f"{AT}<axis xyz=\"0 0 1\"/>", f"{AT.replace('0.2', '-0.3')}<axis xyz=\"0 0 1\"/>",
+         "✗ named states: 2 of 2 cannot be taken\n      the start: upper touches wrist"),
+    ],
+    ids=["triangle", "states"],
+)  # fmt: skip
+def test_what_is_wrong_is_exit_code_1_and_told(old, new, said, folder, capsys):
+    assert old in URDF
+    write_arm(folder, URDF.replace(old, new), SRDF.replace('link2="wrist"', 'link2="tool"'))
+    code, page = check(capsys, "arm.urdf", "--srdf", "arm.srdf")
+    assert code == 1
+    assert said in page
+
+
+@pytest.mark.parametrize(
+    ("urdf", "said"),
+    [
+        (URDF.replace(f'"wrist">{INERTIAL}', f'"wrist">{UNIT}'),
+         "link 'wrist': the inertia is the unit tensor, a placeholder"),
+        (URDF.replace('effort="80"', 'effort="1000"'), "reach: an effort of 1000 is a placeholder"),
+        (URDF, "3 links have the same 1 kg and the same inertia, a placeholder: upper, lower"),
+        (URDF.replace("</robot>", "<transmission name='t'/></robot>"), "left out or assumed\n"),
+        (URDF.replace('"tool"/>', f'"tool">{SHAPE}</link>', 1), "no <inertial>: tool"),
+    ],
+)  # fmt: skip
+def test_what_looks_doubtful_is_told_and_is_no_failure(urdf, said, folder, capsys):
+    write_arm(folder, urdf)
+    code, page = check(capsys, "arm.urdf", "--srdf", "arm.srdf")
+    assert code == 0
+    assert said in page
+
+
+def test_a_model_that_differs_in_physics_would_be_found(folder):
+    ours = load_arm(folder)
+    shifted = tuple(
+        replace(joint, pose=joint.pose @ SE3(np.eye(3), np.array([0.0, 0.0, 1e-6])))
+        if joint.name == "bend"
+        else joint
+        for joint in ours.joints
+    )
+    heavier = tuple(
+        replace(link, inertial=Inertial(2.0, np.zeros(3), 0.01 * np.eye(3)))
+        if link.name == "tool"
+        else link
+        for link in ours.links
+    )
+    rows = random_positions(ours, 5, np.random.default_rng(1))
+    kinematics = PinocchioKinematics(ours)
+    assert robot_findings.forward_kinematics(ours, kinematics, rows).is_good
+    moved = robot_findings.forward_kinematics(replace(ours, joints=shifted), kinematics, rows)
+    assert not moved.is_good
+    assert moved.details[0] in ("most at lower", "most at wrist", "most at tool")
+    assert moved.values["position_error"] == pytest.approx(1e-6)
+    # the physics of one robot against what another says it weighs
+    theirs = robot_findings.masses(replace(ours, links=heavier)).values["mass"]
+    assert theirs == pytest.approx(6.0)
+
+
+def test_an_arm_of_one_joint_is_looked_over(folder, capsys):
+    one = f"""<robot name="one"><link name="a"/><link name="b">{INERTIAL}{SHAPE}</link>
+    <joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 1 0"/>{LIMIT}
+    </joint></robot>"""
+    (folder / "one.xml").write_text(one)  # a URDF by its content
+    code, page = check(capsys, "one.xml")
+    assert code == 0
+    assert "numeric solves 100 of 100 poses" in page
+
+
+def test_without_srdf_pairs_are_proposed_and_written(folder, capsys):
+    code, page = check(capsys, "arm.urdf", "--write-srdf", "out/arm.srdf", "--samples", "500")
+    assert code == 0
+    assert "  adjacent: 2: lower - upper, lower - wrist" in page
+    assert "  never: 1: upper - wrist" in page
+    assert page.endswith("wrote out/arm.srdf\n")
+    written = (folder / "out/arm.srdf").read_bytes()
+    assert parse_srdf(written, "arm.srdf").disabled == {
+        ("lower", "upper"): "Adjacent",
+        ("lower", "wrist"): "Adjacent",
+        ("upper", "wrist"): "Never",
+    }
+    with_it = check(capsys, "arm.urdf", "--srdf", "out/arm.srdf")[1]
+    assert "3 pairs are allowed" in with_it
+    assert "proposed" not in with_it
+    assert "no SRDF" not in with_it
+
+
+def test_links_that_touch_always_or_at_the_start_are_told_apart(folder, capsys):
+    box = '<collision><origin xyz="{}"/><geometry><box size="{}"/></geometry></collision>'
+    base = f'"base_link">{INERTIAL}'
+    above = base + box.format("0 0 0.42", "0.05 0.05 0.05")
+    write_arm(folder, URDF.replace(base, above))
+    page = check(capsys, "arm.urdf", "--samples", "400")[1]
+    assert "  default: 1: base_link - lower" in page
+    assert "  never: 2: base_link - wrist, upper - wrist" in page
+    walls = [box.format(f"{side}0.54 0 0.3", "1 2 2") for side in ("", "-")]
+    walls += [box.format(f"0 {side}0.54 0.3", "2 1 2") for side in ("", "-")]
+    write_arm(folder, URDF.replace(base, base + "".join(walls)))
+    page = check(capsys, "arm.urdf", "--samples", "400")[1]
+    assert "  always: 2: base_link - lower, base_link - wrist" in page
+    assert "default" not in page
+
+
+def test_pairs_of_a_universal_robot_are_those_that_moveit_has(folder):
+    """Adjacent ones all; of the rest, ur_description's own come out as never touching."""
+    assert main(["robot", "check", "ur5e", "--write-srdf", "ur.srdf", "--samples", "3000"]) == 0
+    ours = parse_srdf((folder / "ur.srdf").read_bytes(), "ur.srdf").disabled
+    theirs = robot(model="ur5e").allowed_collisions
+    frames = {"base_link", "tool0"}  # without shapes: nothing to propose
+    known = {pair: why for pair, why in theirs.items() if not set(pair) & frames}
+    assert {pair: why for pair, why in ours.items() if pair in known} == known
+    assert set(ours.values()) == {"Adjacent", "Never"}
+
+
+def test_a_picture_is_drawn_on_request(folder, capsys):
+    assert main(["robot", "show", "arm.urdf", "--srdf", "arm.srdf", "--state", "home"]) == 0
+    assert capsys.readouterr().out == "wrote arm.png\n"
+    assert check(capsys, "arm.urdf", "--image", "pictures/start.jpg")[0] == 0
+    bent, start = (cv2.imread(str(folder / name)) for name in ("arm.png", "pictures/start.jpg"))
+    assert bent.shape == start.shape == (800, 800, 3)
+    assert np.abs(bent.astype(int) - start).max() > 60
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["check", "ur3f"], "robot.model: 'ur3f' is not known; did you mean 'ur3'? known are"),
+        (["check", "harm.urdf"], "there is no file harm.urdf; did you mean 'arm.urdf'?"),
+        (["check", "arm.urdf", "--srdf", "a.srdf"], "robot.srdf: there is no file a.srdf"),
+        (["check", "ur3e", "--srdf", "arm.srdf"], "robot.srdf goes with a robot's file"),
+        (["check", "arm.urdf", "--write-srdf", "arm.srdf"], "'arm.srdf' is there already; --force"),
+        (["check", "arm.urdf", "--image", "arm.gif"], "in .png or .jpg or .jpeg, not 'arm.gif'"),
+        (["show", "arm.urdf", "--state", "hom"], "there is no state 'hom'; there are no states"),
+        (["show", "arm.urdf", "--srdf", "arm.srdf", "--state", "hom"], "did you mean `home`?"),
+        (["check", "arm.urdf", "--package-path", "no"], "robot.packages: there is no folder no"),
+    ],
+)  # fmt: skip
+def test_wrong_words_are_exit_code_2_and_write_nothing(arguments, said, folder, capsys):
+    before = sorted(folder.iterdir())
+    assert main(["robot", *arguments]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert said in err
+    assert sorted(folder.iterdir()) == before
+
+
+def test_a_scenario_and_a_folder_name_a_robot_too(folder, capsys):
+    (folder / "a.scenario.yaml").write_text(
+        "scenario: a\nrobot: {urdf: arm.urdf, srdf: arm.srdf}\nsteps: [{wait: 1 s}]\n"
+    )
+    (folder / "robot.yaml").write_text(
+        "robot: three\nkind: arm\nurdf: arm.urdf\nsrdf: arm.srdf\narm_group: manipulator\n"
+        "tcp_link: tool\n"
+    )
+    for word in ("a.scenario.yaml", "robot.yaml", str(folder)):
+        code, page = check(capsys, word)
+        assert code == 0
+        assert "manipulator (the arm): 3 joints, base_link to tool" in page
