@@ -14,7 +14,7 @@ from harness.recording.run import JointRecord, Measure, Run
 from harness.spec.checks import Effort, TrackingError, WithinLimits
 
 STOP_SOFTNESS = 0.02
-"""Share of its range by which a gripper's joint may sink into its stop: it rests there."""
+"""Share of its range by which a joint that rests on its stop may sink into it."""
 ROUNDING = 1e-9
 """Share of a limit that is rounding: an effort that saturates is at its limit, not beyond."""
 
@@ -28,14 +28,25 @@ def gripper_joints(run: Run) -> frozenset[str]:
     return frozenset(run.robot.groups.get(hand.group, ())) | {hand.joint} | mimics
 
 
+def resting_joints(run: Run) -> frozenset[str]:
+    """Joints that may lean on their stops: the gripper's, followers, and idle ones off the arm."""
+    names = {joint.name for joint in run.robot.joints if joint.is_mimic}
+    arm = run.robot.groups.get(run.robot.arm_group, ())
+    for column, joint in enumerate(run.robot.joints):
+        commands = run.signals.joint_commands[:, column]
+        if joint.name not in arm and commands.size and (commands == commands[0]).all():
+            names.add(joint.name)
+    return gripper_joints(run) | names
+
+
 @signal.handles(WithinLimits)
 def within_limits(check: WithinLimits, window: Window) -> MarginSignal:
     """Measured positions, velocities, efforts and commanded accelerations, as shares of limits."""
     parts: list[Part] = []
-    hand = gripper_joints(window.run)
+    hand, resting = gripper_joints(window.run), resting_joints(window.run)
     for column, joint in enumerate(window.run.robot.joints):
         if check.position:
-            parts += _position_parts(window, column, joint, joint.name in hand)
+            parts += _position_parts(window, column, joint, joint.name in resting)
         if check.velocity:
             parts += _rate_part(window, column, joint, "velocity")
         if check.effort:
@@ -52,13 +63,11 @@ def within_limits(check: WithinLimits, window: Window) -> MarginSignal:
     return all_of(window, parts, text, shown=3)
 
 
-def _position_parts(
-    window: Window, column: int, joint: JointRecord, is_gripper: bool
-) -> list[Part]:
+def _position_parts(window: Window, column: int, joint: JointRecord, may_rest: bool) -> list[Part]:
     if not (math.isfinite(joint.lower) and math.isfinite(joint.upper)):
         return []
     values = window.cut(window.run.signals.joint_positions)[:, column]
-    softness = STOP_SOFTNESS * (joint.upper - joint.lower) if is_gripper else 0.0
+    softness = STOP_SOFTNESS * (joint.upper - joint.lower) if may_rest else 0.0
     scale = 0.5 * (joint.upper - joint.lower) or 1.0
     unit = unit_of(joint)
     lower, upper = joint.lower - softness, joint.upper + softness

@@ -734,6 +734,16 @@ def test_a_gripper_may_rest_on_its_stop_and_an_arm_may_not():
     assert verdict(make_run(joint_positions=positions(1.0005)), WithinLimits()).status == "failed"
 
 
+def test_an_idle_joint_off_the_arm_may_rest_on_its_stop_too():
+    run = make_run(joint_positions=positions(0, -0.0005))
+    bare = replace(run, robot=replace(run.robot, gripper=None))
+    assert verdict(bare, WithinLimits()).status == "passed"
+    commands = positions(0.0)
+    commands[100:, 1] = 0.01
+    driven = changed(bare, joint_commands=commands)
+    assert verdict(driven, WithinLimits()).status == "failed"
+
+
 def test_acceleration_is_that_of_the_commands():
     velocities = positions(0.0)
     velocities[100:, 0] = 0.051  # in one sample: 5.1 rad/s^2
