@@ -13,6 +13,7 @@ import numpy as np
 from harness.core.camera import Camera
 from harness.core.errors import RobotError
 from harness.core.spatial import SE3
+from harness.robot.default_pairs import adjacent_pairs
 from harness.robot.description import (
     Gripper,
     Joint,
@@ -23,7 +24,7 @@ from harness.robot.description import (
 )
 from harness.robot.groups import planning_groups
 from harness.robot.robot_yaml import GripperFacts, Mount, RobotYaml
-from harness.robot.srdf import EndEffector, Srdf, link_pair, write_srdf
+from harness.robot.srdf import EndEffector, Srdf, write_srdf
 from harness.robot.tree import in_tree_order
 from harness.robot.urdf import Urdf
 from harness.robot.write_urdf import write_urdf
@@ -178,21 +179,15 @@ def _refuse_clashes(links: list[Link], joints: list[Joint], source: str) -> None
 def _allowed(
     srdf: Srdf, links: tuple[Link, ...], joints: tuple[Joint, ...], source: str
 ) -> dict[tuple[str, str], str]:
-    """The SRDF's pairs, and every link with the nearest one before it that has a shape."""
-    shaped = {link.name for link in links if link.collisions}
+    """The SRDF's pairs, and neighbours."""
     names = {link.name for link in links}
-    before = {joint.child: joint.parent for joint in joints}
     allowed = dict(srdf.disabled)
     for pair in allowed:
         for name in pair:
             if name not in names:
                 raise RobotError(f"{source}: disable_collisions names the unknown link '{name}'")
-    for name in (link.name for link in links if link.name in shaped):
-        parent = before.get(name)
-        while parent is not None and parent not in shaped:
-            parent = before.get(parent)
-        if parent is not None:
-            allowed.setdefault(link_pair(name, parent), "Adjacent")
+    for pair in adjacent_pairs(links, joints):
+        allowed.setdefault(pair, "Adjacent")
     return allowed
 
 

@@ -1,15 +1,16 @@
-"""Link pairs that touch where a robot starts: allowed where no SRDF says which are."""
+"""Link pairs that may touch where no SRDF says: neighbours, and what touches at the start."""
 
 # pyright: reportAttributeAccessIssue=false
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 
 from harness.core.spatial import SE3
+from harness.robot.description import Joint, Link
 from harness.robot.solids import coal_geometry
 from harness.robot.srdf import link_pair
 from harness.robot.tree import carriers
@@ -20,7 +21,7 @@ NEARNESS = 0.001
 
 
 def touching_pairs(urdf: Urdf, positions: Mapping[str, float]) -> tuple[tuple[str, str], ...]:
-    """Pairs of links that touch at joint positions: not of one rigid piece, nor at one joint.
+    """Pairs of links that touch at joint positions: neither neighbours nor of one rigid piece.
 
     Args:
         urdf: The robot.
@@ -32,9 +33,7 @@ def touching_pairs(urdf: Urdf, positions: Mapping[str, float]) -> tuple[tuple[st
     request.security_margin = NEARNESS
     poses = link_poses(urdf, positions)
     carrier = carriers(urdf.joints, urdf.root)
-    joined = [
-        {carrier[joint.parent], carrier[joint.child]} for joint in urdf.joints if joint.is_movable
-    ]
+    neighbours = adjacent_pairs(urdf.links, urdf.joints)
     solids = [
         (link.name, shape, coal_geometry(shape)) for link in urdf.links for shape in link.collisions
     ]
@@ -43,8 +42,7 @@ def touching_pairs(urdf: Urdf, positions: Mapping[str, float]) -> tuple[tuple[st
         T_second = coal_transform(poses[second] @ shape.pose)
         for first, other_shape, other in solids[:later]:
             pair = link_pair(first, second)
-            pieces = carrier[first], carrier[second]
-            if pieces[0] == pieces[1] or set(pieces) in joined or pair in found:
+            if carrier[first] == carrier[second] or pair in neighbours or pair in found:
                 continue
             T_first = coal_transform(poses[first] @ other_shape.pose)
             result = coal.CollisionResult()
@@ -52,6 +50,20 @@ def touching_pairs(urdf: Urdf, positions: Mapping[str, float]) -> tuple[tuple[st
             if result.isCollision():
                 found[pair] = None
     return tuple(found)
+
+
+def adjacent_pairs(links: Iterable[Link], joints: Iterable[Joint]) -> dict[tuple[str, str], None]:
+    """Every link that has a shape with the nearest one before it that has one, in link order."""
+    shaped = dict.fromkeys(link.name for link in links if link.collisions)
+    before = {joint.child: joint.parent for joint in joints}
+    found: dict[tuple[str, str], None] = {}
+    for name in shaped:
+        parent = before.get(name)
+        while parent is not None and parent not in shaped:
+            parent = before.get(parent)
+        if parent is not None:
+            found[link_pair(name, parent)] = None
+    return found
 
 
 def link_poses(urdf: Urdf, positions: Mapping[str, float]) -> dict[str, SE3]:
