@@ -91,7 +91,11 @@ def parse_srdf(text: str | bytes, source: str) -> Srdf:
             NamedState(
                 item.need("name"),
                 item.get("group"),
-                {joint.need("name"): number(joint, "value") for joint in item.findall("joint")},
+                {
+                    joint.need("name"): number(joint, "value")
+                    for joint in item.findall("joint")
+                    if not has_several_values(joint)
+                },
             )
             for item in root.findall("group_state")
         ),
@@ -124,6 +128,11 @@ def parse_srdf(text: str | bytes, source: str) -> Srdf:
         ),
         root,
     )
+
+
+def has_several_values(joint: XmlElement) -> bool:
+    """Whether a state places a joint of several axes, as a floating or planar one."""
+    return len(joint.need("value").split()) > 1
 
 
 def _group(item: XmlElement) -> SrdfGroup:

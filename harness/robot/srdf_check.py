@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from harness.robot.description import Joint, NamedState, PlanningGroup
 from harness.robot.groups import planning_groups
-from harness.robot.srdf import Srdf, SrdfGroup
+from harness.robot.srdf import Srdf, SrdfGroup, has_several_values
 from harness.robot.urdf import Urdf
 
 DEFAULT_GROUP = "arm"
@@ -40,6 +40,10 @@ def checked_srdf(srdf: Srdf, urdf: Urdf, source: str) -> Srdf:
                 continue
             if name not in joints:
                 each.refuse(*_unknown(what, "joint", name, joints), at="name")
+            if has_several_values(each):
+                if joints[name].is_movable:
+                    each.refuse(f"{what}: joint '{name}' has one position", at="value")
+                notes.append(f"SRDF: {what} places '{name}', which is fixed: ignored")
     for item in root.findall("end_effector"):
         what = f"end effector '{item.get('name')}'"
         for key, known in (("parent_link", links), ("group", groups), ("parent_group", groups)):

@@ -75,6 +75,8 @@ def parse_urdf(
     elements = _by_name(root)
     links = [reader.link(item) for item in root.findall("link")]
     joints = [read_joint(item, notes) for item in root.findall("joint")]
+    if not links:
+        root.refuse("there is no <link> in it: this describes no robot")
     if len(links) > MOST_LINKS:
         root.refuse(f"{len(links)} links; at most {MOST_LINKS} are read")
     joints = resolved_mimics(joints, elements)

@@ -4,9 +4,9 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from harness.core.errors import RobotError
+from harness.core.errors import RobotError, SpecError
 from harness.robot.urdf import parse_urdf
-from tests.robot.arm_files import SRDF, URDF, load_arm, write_arm
+from tests.robot.arm_files import INERTIAL, SHAPE, SRDF, URDF, load_arm, write_arm
 
 
 def test_urdf_and_srdf_make_a_robot(tmp_path):
@@ -60,6 +60,17 @@ def test_what_is_ignored_or_assumed_is_noted(tmp_path):
     )
 
 
+def test_a_state_may_place_joints_of_several_axes_that_stand_still_here(tmp_path):
+    several = '<joint name="held" value="0 0 1"/><joint name="tip" value="0 0 0 0 0 0 1"/>'
+    write_arm(tmp_path, srdf=SRDF.replace("</group_state>", f"{several}</group_state>"))
+    arm = load_arm(tmp_path)
+    assert arm.states_of("manipulator")["home"].positions["bend"] == 0.7
+    assert "SRDF: state 'home' places 'tip', which is fixed: ignored" in arm.notes
+    write_arm(tmp_path, srdf=SRDF.replace('value="0.7"', 'value="0.7 0"'))
+    with pytest.raises(SpecError, match=r"arm.srdf:6:31: state 'home': joint 'bend' has one"):
+        load_arm(tmp_path)
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [
@@ -85,6 +96,18 @@ def test_links_in_each_other_at_the_start_are_allowed_where_no_srdf_says(tmp_pat
     arm = load_arm(tmp_path, srdf=None)
     assert arm.allowed_collisions["upper", "wrist"] == "Default"
     assert any("touch at the start are: upper - wrist" in note for note in arm.notes)
+
+
+def test_pieces_at_one_joint_that_touch_at_the_start_are_allowed_too(tmp_path):
+    cover = f'<link name="cover">{INERTIAL}{SHAPE}</link><joint name="screw" type="fixed">'
+    cover += '<parent link="upper"/><child link="cover"/></joint>'
+    joint = '<joint name="bend"'
+    wide = URDF.replace('radius="0.03" length="0.14"', 'radius="0.03" length="0.3"')
+    assert joint in wide
+    write_arm(tmp_path, wide.replace(joint, cover + joint))
+    arm = load_arm(tmp_path, srdf=None)
+    assert arm.allowed_collisions["lower", "upper"] == "Adjacent"
+    assert arm.allowed_collisions["cover", "lower"] == "Default"
 
 
 @pytest.mark.parametrize(("effort", "least", "most"), [(30, 5.0, 5.0), (7, 0.5, 4.5)])

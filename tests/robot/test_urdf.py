@@ -32,7 +32,7 @@ def read(text):
         ("<robot", ["not well-formed"]),
         ('<!DOCTYPE robot [<!ENTITY x "y">]><robot name="&x;"/>', ["arm.urdf:1:17", "DOCTYPE"]),
         ("<sdf/>", ["<sdf>", "<robot>"]),
-        ('<robot name="a"/>', ["one root link", "none"]),
+        ('<robot name="a"/>', ["arm.urdf:1:2", "no <link>"]),
         ('<robot name="a"><link name="b"/><link name="c"/></robot>', ["one root link", "b, c"]),
         (ARM.format(limit=""), ["'ab'", "no <limit>"]),
         (ARM.format(limit=LIMIT).replace('child link="b"', 'child link="z"'), ["'ab'", "'z'"]),
