@@ -1,0 +1,72 @@
+"""The page on robots of other packages. Run as a script, it tries all of them and writes it."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+from tests.packages.arms import ARMS, OTHERS, PACKAGES, PackageArm
+from tests.packages.trial import Trial, try_arm
+
+PAGE = Path(__file__).parents[2] / "robots" / "PACKAGES.md"
+RENEW = "python -m tests.packages.page"
+
+HEAD = """# Robots of other packages
+
+Every arm with a fixed base in three packages of the Python registry, as a scenario names it:
+
+```yaml
+robot:
+  urdf: package://example-robot-data/robots/panda_description/urdf/panda.urdf
+  srdf: package://example-robot-data/robots/panda_description/srdf/panda.srdf
+```
+
+Each is loaded with the SRDF that it brings, where that fits it. Positions of all links at random
+joint positions, and masses, agree between MuJoCo and Pinocchio's own reading of the file to
+1e-9 m and 1e-9 kg. Then one `move_to` to a random state that touches nothing is planned and
+executed within limits; *moved* says which of at most ten such states was the first to be reached
+(not every one can be: at joints of two turns, parts of what is free are cut off).
+
+```sh
+pip install 'armharness[packages]'
+python -m pytest -m packages          # tries all, and holds this page to it
+python -m tests.packages.page         # tries all, and writes this page
+```
+"""
+
+
+def row(arm: PackageArm, trial: Trial) -> str:
+    """The arm's line of the table."""
+    mass = "" if trial.mass != trial.mass else f"{trial.mass:.3f}"
+    joints = trial.joints or ""
+    moved = {0: "no", 1: "to the 1st", 2: "to the 2nd", 3: "to the 3rd"}.get(
+        trial.moved, f"to the {trial.moved}th"
+    )
+    reason = trial.reason.replace("|", "/")
+    srdf = trial.srdf.replace("|", "/")
+    cells = f"`{arm.file}`", joints, mass, srdf, moved, reason
+    return "| " + " | ".join(str(cell) for cell in cells) + " |"
+
+
+def page(rows: dict[str, str]) -> str:
+    """The page, from each arm's line."""
+    parts = [HEAD]
+    for name, package in PACKAGES.items():
+        parts.append(f"## {name}\n\n[{package.source}]({package.source}); {package.licence}.\n")
+        parts.append("| robot | joints | mass [kg] | SRDF | moved | why not |")
+        parts.append("| --- | --- | --- | --- | --- | --- |")
+        parts += [rows[arm.name] for arm in ARMS if arm.package == name]
+        others = "; ".join(
+            f"{what}: {', '.join(f'`{path}`' for path in paths.split())}"
+            for what, paths in OTHERS[name].items()
+        )
+        parts.append(f"\nNo arm with a fixed base: {others}.\n")
+    return "\n".join(parts)
+
+
+if __name__ == "__main__":
+    found: dict[str, str] = {}
+    for arm in ARMS:
+        with tempfile.TemporaryDirectory() as folder:
+            found[arm.name] = row(arm, try_arm(arm, Path(folder)))
+    PAGE.write_text(page(found), encoding="utf-8")

@@ -1,0 +1,49 @@
+"""Robots of packages that anyone can install; their page is what is found here."""
+
+import sysconfig
+from pathlib import Path
+
+import pytest
+
+from tests.packages.arms import ARMS, OTHERS, PACKAGES
+from tests.packages.page import PAGE, RENEW, page, row
+from tests.packages.trial import try_arm
+
+pytestmark = pytest.mark.packages
+SUFFIXES = (".urdf", ".xacro", ".sdf")
+AGREEMENT = 1e-9  # [m], [kg]
+
+
+@pytest.mark.parametrize("arm", ARMS, ids=lambda arm: arm.name)
+def test_an_arm_does_what_its_line_of_the_page_says(arm, tmp_path):
+    trial = try_arm(arm, tmp_path)
+    if trial.joints:
+        assert trial.position_difference < AGREEMENT
+        assert trial.mass_difference < AGREEMENT
+    assert trial.moved or trial.reason
+    said = PAGE.read_text(encoding="utf-8")
+    assert row(arm, trial) in said.splitlines(), f"renew the page: {RENEW}"
+
+
+def test_the_page_has_a_line_for_every_arm_and_no_other():
+    said = PAGE.read_text(encoding="utf-8").splitlines()
+    rows = iter([line for line in said if line.startswith("| `")])
+    assert page({arm.name: next(rows) for arm in ARMS}).splitlines() == said
+    assert not list(rows)
+
+
+@pytest.mark.parametrize("name", PACKAGES)
+def test_every_description_in_a_package_is_an_arm_or_said_to_be_none(name):
+    folder = Path(sysconfig.get_path("purelib")) / PACKAGES[name].folder
+    files = {
+        path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.suffix in SUFFIXES
+    }
+    others = tuple(" ".join(OTHERS[name].values()).split())
+    arms = {arm.file for arm in ARMS if arm.package == name}
+    assert arms <= files
+    assert {file for file in files if not file.startswith(others)} == arms
+
+
+def test_most_arms_move():
+    moved = [line for line in PAGE.read_text(encoding="utf-8").splitlines() if "| to the " in line]
+    assert len(moved) >= len(ARMS) - 4
