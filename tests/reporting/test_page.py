@@ -143,6 +143,14 @@ def test_a_deep_link_opens_a_moment_and_an_expectation(visit, failed_run):
     assert opened.page.locator("#panel-source").is_visible()
 
 
+def test_without_a_place_in_the_address_a_failure_is_shown(visit, failed_run):
+    stored = read_run(failed_run)
+    first = next(i for i, each in enumerate(stored.verdicts) if each.status != "passed")
+    opened = visit(failed_run / "report.html")
+    assert opened.page.locator(f"[data-verdict='{first}'][aria-current]").count() == 1
+    assert opened.time() == pytest.approx(stored.verdicts[first].time, abs=2e-3)
+
+
 def test_dragging_in_a_plot_zooms_all_of_them_and_a_click_seeks(opened):
     page = opened.page
     canvas = page.locator(".plot canvas").first
@@ -174,6 +182,16 @@ def test_every_signal_can_be_plotted_with_its_value_at_the_cursor(opened):
         shown = page.locator(".plot").first.locator(".legend output").all_inner_texts()
         assert shown, name
         assert any(re.match(r"^-?\d", text) for text in shown), (name, shown)
+
+
+def test_keys_zoom_the_plots(opened):
+    page = opened.page
+    page.locator(".plot canvas").nth(1).focus()
+    page.keyboard.press("+")
+    assert page.locator("#plots.zoomed").count() == 1
+    assert opened.time() == 0, "the key is the plot's"
+    page.keyboard.press("0")
+    assert page.locator("#plots.zoomed").count() == 0
 
 
 def test_a_legend_hides_a_line_everywhere(opened):
@@ -220,6 +238,7 @@ def test_without_scripts_the_summary_is_there_to_read(visit, failed_run):
     text = opened.text("#summary")
     for said in ("FAILED", "ptp", "duration", "failed by", "seed", "digest", "tracking_error"):
         assert said in text
+    assert "- duration: {at_most: 0.2}" in text, "the line of the file that does not hold"
     assert opened.page.locator("#summary .pictures img").count() >= 2
 
 

@@ -75,6 +75,9 @@ def test_pictures_and_videos_follow_the_clock(visit, tmp_path):
             shown = page.evaluate(SHOWN, number)
             assert shown[1 - colour] < 90, (moment, number, shown)
         assert captions.nth(1).inner_text() == label
+    width = page.locator(".camera").first.bounding_box()["width"]
+    page.locator(".camera button").first.press("Enter")
+    assert page.locator(".camera").first.bounding_box()["width"] > 1.5 * width, "enlarged"
     page.click("#tool-cameras")
     assert not page.locator(".camera").first.is_visible()
 
@@ -94,6 +97,14 @@ def test_a_ten_minute_run_opens_and_scrubs(visit, tmp_path):
     shown = float(page.locator(".legend output").first.inner_text())
     expected = np.rad2deg(np.sin(300 * opened.time() / 600))
     assert shown == pytest.approx(expected, abs=0.2)
+
+
+def test_a_run_without_duration_says_so_where_plots_would_be(visit, tmp_path):
+    page = visit(write(tmp_path, lift_run(1))).page
+    assert "no simulated time" in page.inner_text("#plots")
+    assert page.locator("#plots canvas").count() == 0
+    page.click("#play")
+    page.keyboard.press("End")
 
 
 def test_a_failure_shows_its_stages_and_the_nearest_state(visit, tmp_path):

@@ -18,6 +18,13 @@ from harness.reporting.html.packing import Packer
 
 MOST_SERIES = 10
 STRETCHES_PER_SECOND, FEWEST_STRETCHES, MOST_STRETCHES = 40, 600, 3000
+LEAST = {
+    "position": 1.0, "velocity": 1.0, "effort": 1.0, "gripper_effort": 1.0, "tracking": 0.02,
+    "gripper": 1.0, "clearance": 1.0, "contact": 0.1, "slip": 0.1, "tcp": 1.0, "tcp_speed": 1.0,
+    "height": 1.0, "displacement": 1.0, "command": 1.0, "plain_velocity": 0.1,
+    "plain_effort": 0.01,
+}  # fmt: skip
+"""Group -> smallest range of values that its plot shows, in its unit: less is noise."""
 NEAR_LIMIT = 0.4
 """Share of a limit that is used before the plot makes room to show it."""
 
@@ -61,6 +68,7 @@ def pack_groups(run: Run, verdicts: Sequence[Verdict], packer: Packer) -> list[d
                 "id": group.id,
                 "title": group.title,
                 "unit": group.unit,
+                "least": LEAST[group.id],
                 "points": thinned.values.shape[1],
                 "bin": thinned.bin,
                 "timestep": timestep,

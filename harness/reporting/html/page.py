@@ -39,12 +39,17 @@ def page_html(stored: StoredRun, pictures: Sequence[Picture] = ()) -> str:
         pill=outcome_pill(stored),
         name=escape(stored.run.scenario),
         facts="".join(
-            f"<span>{escape(name)} <b>{escape(value)}</b></span>"
+            f'<span title="{escape(value)}">{escape(name)} <b>{escape(_short(value))}</b></span>'
             for name, value in header_facts(stored)
             if value
         ),
         data=_data(stored),
     )
+
+
+def _short(value: str) -> str:
+    """A path's last part, or the value."""
+    return value.replace("\\", "/").rstrip("/").rpartition("/")[2] or value
 
 
 def _data(stored: StoredRun) -> str:

@@ -32,6 +32,7 @@ STILL = 1e-5
 FULL = 32700
 NEARBY = 1.3  # [m] from the base: what the first view holds
 LARGE = 0.6  # [m]: a table does not widen the first view
+THICKNESS = 0.1  # [m] by which a link reaches beyond its origin and the next one's
 
 MeshKey = tuple[Path, tuple[float, float, float]]
 
@@ -164,7 +165,7 @@ def _views(run: Run, poses: Mapping[str, FloatArray]) -> tuple[dict[str, Any], d
         if reach < LARGE and np.linalg.norm(centres - base, axis=1).min(initial=np.inf) < NEARBY:
             near.append(corners)
         wide.append(np.clip(corners, base - 2.5, base + 2.5))
-    inner = _sphere(near)
+    inner = _sphere(near, THICKNESS)
     return inner, _sphere([*near, *wide])
 
 
@@ -178,10 +179,10 @@ def _extent(run: Run, obj: ObjectRecord) -> tuple[FloatArray, float]:
     return np.clip(centres, -FARTHEST, FARTHEST), reach if np.isfinite(reach) else 0.3
 
 
-def _sphere(clouds: Sequence[FloatArray]) -> dict[str, Any]:
+def _sphere(clouds: Sequence[FloatArray], room: float = 0.0) -> dict[str, Any]:
     points = np.concatenate([cloud for cloud in clouds if len(cloud)] or [np.zeros((1, 3))])
     low, high = points.min(axis=0), points.max(axis=0)
-    radius = max(0.15, 0.5 * float(np.linalg.norm(high - low)))
+    radius = max(0.15, 0.5 * float(np.linalg.norm(high - low)) + room)
     return {"center": _rounded((low + high) / 2), "radius": round(radius, 4)}
 
 

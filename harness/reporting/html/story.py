@@ -171,6 +171,7 @@ def environment(stored: StoredRun) -> list[tuple[str, str]]:
         ("robot", run.robot.name),
         ("gripper group", run.robot.gripper.group if run.robot.gripper else ""),
         ("tool frame", run.robot.tcp_link),
+        ("planners", ", ".join(_planners(run))),
         ("physics step", f"{1e3 * run.timestep:g} ms"),
         ("gravity", f"{', '.join(f'{value:g}' for value in run.gravity)} m/s²"),
         ("samples", f"{len(run.signals.times)}"),
@@ -179,6 +180,11 @@ def environment(stored: StoredRun) -> list[tuple[str, str]]:
         *((f"{name}, wall time", f"{value:.2f} s") for name, value in stored.wall_times.items()),
     ]
     return [(name, value) for name, value in rows if value]
+
+
+def _planners(run: Run) -> list[str]:
+    ids = (str(step.planner.get("planner_id", "")) for step in run.steps)
+    return list(dict.fromkeys(planner for planner in ids if planner))
 
 
 def last_line(source: str, line: int) -> int:

@@ -44,7 +44,7 @@ def summary_html(stored: StoredRun, pictures: Sequence[Picture]) -> str:
             _early_end(stored),
             _pictures(pictures),
             '<div id="paper-plots"></div>',
-            _verdicts(stored.verdicts),
+            _verdicts(stored),
             _steps(stored),
             _findings(stored),
             _environment(stored),
@@ -62,12 +62,10 @@ def outcome_pill(stored: StoredRun) -> str:
 def header_facts(stored: StoredRun) -> list[tuple[str, str]]:
     """What stands beside the title."""
     run = stored.run
-    held = sum(verdict.status == "passed" for verdict in stored.verdicts)
     return [
         ("robot", run.robot.name),
         ("seed", str(run.seed)),
         ("simulated", f"{float(run.signals.times[-1]):.1f} s"),
-        ("expectations", f"{held}/{len(stored.verdicts)}"),
         ("physics", f"MuJoCo {run.versions['mujoco']}" if "mujoco" in run.versions else ""),
         ("digest", stored.digest[:12]),
         ("file", run.file),
@@ -76,10 +74,10 @@ def header_facts(stored: StoredRun) -> list[tuple[str, str]]:
 
 
 def _facts(stored: StoredRun) -> str:
+    held = sum(verdict.status == "passed" for verdict in stored.verdicts)
+    facts = [*header_facts(stored), ("expectations that hold", f"{held} of {len(stored.verdicts)}")]
     cells = "".join(
-        f"<span>{escape(name)} <b>{escape(value)}</b></span> "
-        for name, value in header_facts(stored)
-        if value
+        f"<span>{escape(name)} <b>{escape(value)}</b></span> " for name, value in facts if value
     )
     return f'<p class="facts">{cells}</p>'
 
@@ -99,14 +97,21 @@ def _pictures(pictures: Sequence[Picture]) -> str:
     return f'<div class="pictures">{"".join(figures)}</div>' if figures else ""
 
 
-def _verdicts(verdicts: Sequence[Verdict]) -> str:
+def _verdicts(stored: StoredRun) -> str:
+    source = stored.run.source.splitlines()
+
+    def said(verdict: Verdict) -> str:
+        """The line of the file that does not hold."""
+        is_known = verdict.status != "passed" and 0 < verdict.line <= len(source)
+        return f"<code>{escape(source[verdict.line - 1].strip())}</code>" if is_known else ""
+
     rows = [
         _row(
             "good" if verdict.status == "passed" else "bad",
             str(number), verdict.expectation, verdict_line(verdict), _used(verdict.measures[:1]),
-            str(verdict.line or ""),
+            str(verdict.line or ""), below=said(verdict),
         )
-        for number, verdict in enumerate(verdicts, start=1)
+        for number, verdict in enumerate(stored.verdicts, start=1)
     ]  # fmt: skip
     head = ("", "expectation", "verdict", "used", "line")
     return _table("Expectations", head, rows) if rows else ""
@@ -163,5 +168,8 @@ def _table(title: str, head: Sequence[str], rows: Sequence[str]) -> str:
     )
 
 
-def _row(tone: str, *cells: str) -> str:
-    return f'<tr class="{tone}">{"".join(f"<td>{escape(cell)}</td>" for cell in cells)}</tr>'
+def _row(tone: str, *cells: str, below: str = "") -> str:
+    """A row of texts, and perhaps one of markup below it."""
+    row = f'<tr class="{tone}">{"".join(f"<td>{escape(cell)}</td>" for cell in cells)}</tr>'
+    more = f'<tr class="{tone}"><td></td><td colspan="{len(cells) - 1}">{below}</td></tr>'
+    return f"{row}{more}" if below else row

@@ -44,8 +44,12 @@ def _pictures(folder: Path, stored: StoredRun) -> list[Picture]:
     there = [number for number in sorted(stills) if number < len(executed)]
     failed = [number for number in there if executed[number].status == "failed"]
     moving = [n for n in there if executed[n].end_time > executed[n].start_time]
-    rest = [number for number in moving or there if number not in failed]
-    chosen = sorted({*failed[:PICTURES], *_spread(rest, PICTURES - len(failed))})
+    ends = {executed[number].end_time: number for number in moving or there}
+    rest = [number for _, number in sorted(ends.items()) if number not in failed]
+    chosen = sorted(
+        {*failed[:PICTURES], *_spread(rest, PICTURES - len(failed))},
+        key=lambda number: (executed[number].end_time, number),
+    )
     told = [(stills[n], f"{executed[n].summary}, t = {executed[n].end_time:.2f} s") for n in chosen]
     told += [
         (folder / step.explanation["picture"], f"why: {step.summary}")

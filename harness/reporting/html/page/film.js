@@ -21,8 +21,9 @@ export function makeFilm(clock, draw) {
   let request = 0;
   const fill = () => {
     const number = ++request;
-    const count = Math.max(1, Math.min(MOST, Math.floor(strip.clientWidth / WIDTH)));
-    const width = strip.clientWidth / count;
+    const most = clock.duration > 0 ? Math.min(MOST, Math.floor(strip.clientWidth / WIDTH)) : 1;
+    const count = Math.max(1, most);
+    const width = Math.min(strip.clientWidth / count, 2 * WIDTH);
     const pictures = Array.from({ length: count }, () =>
       element("canvas", { width: Math.round(width * SHARPNESS), height: Math.round(strip.clientHeight * SHARPNESS) }),
     );

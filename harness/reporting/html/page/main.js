@@ -17,7 +17,6 @@ import { makeSteps } from "./steps.js";
 import { findingList, jointTable, markLines, pairTable, sourceView } from "./tables.js";
 import { makeTabs } from "./tabs.js";
 import { makeTimeline, stepAt } from "./timeline.js";
-import { number } from "./units.js";
 import { verdictList } from "./verdicts.js";
 import { Viewer } from "./viewer.js";
 
@@ -38,7 +37,7 @@ async function start() {
   const verdicts = verdictList(payload, selectVerdict);
   const passed = run.verdicts.filter(({ status }) => status === "passed").length;
   const showTab = makeTabs([
-    { id: "expect", title: "Expectations", badge: `${passed}/${run.verdicts.length}`, content: verdicts },
+    { id: "expect", title: "Verdicts", badge: run.verdicts.length ? `${passed}/${run.verdicts.length}` : "", content: verdicts },
     { id: "planner", title: "Planner", content: plannerView(payload, selectStep) },
     { id: "findings", title: "Findings", badge: String(run.findings.length || ""), content: findingList(payload, (time) => clock.seek(time)) },
     { id: "source", title: "Source", content: source },
@@ -71,7 +70,7 @@ async function start() {
       const data = plots.panelData(id);
       if (!data) return [];
       const worst = Math.max(...data.series.map((series) => Math.abs(valueAt(series, time)) || 0));
-      return [`${id} ${number(worst)} %`];
+      return [`${id} ${worst.toFixed(1)} %`];
     });
     const name = run.steps[step]?.summary ?? "";
     byId("readout").textContent = [`t ${time.toFixed(3)} s  ${name}`, place, loads.join("   ")].filter(Boolean).join("\n");
@@ -130,6 +129,14 @@ async function start() {
     selectVerdict(failures.find((index) => index > shown) ?? failures[0]);
   }
 
+  /** Without a place in the address: where something went wrong, or where it was meant to. */
+  function openAtFailure() {
+    const failed = run.steps.findIndex(({ status, hasChildren }) => status === "failed" && !hasChildren);
+    if (failed >= 0) selectStep(failed);
+    else nextFailure();
+    if (failed >= 0 || (!run.verdicts.length && run.steps.some(({ status }) => status === "expected_error"))) showTab("planner");
+  }
+
   function goTo(hash) {
     const place = readAddress(hash);
     if (place.tab && document.getElementById(`tab-${place.tab}`)) showTab(place.tab);
@@ -141,7 +148,8 @@ async function start() {
   makeControls({ clock, scene, plots, drawFilm, hasPictures });
   listenToKeys(clock, { nextStep, nextFailure });
   addEventListener("hashchange", () => goTo(location.hash));
-  goTo(location.hash);
+  if (location.hash) goTo(location.hash);
+  else openAtFailure();
   const loop = (now) => {
     clock.tick(now);
     scene?.viewer.draw(scene.orbit, clock.isPlaying || scene.orbit.isHeld);

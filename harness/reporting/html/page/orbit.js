@@ -3,7 +3,8 @@
 import { addScaled, lookAt, multiply, perspective } from "./vectors.js";
 
 const FIELD_OF_VIEW = 0.7; // [rad]
-const CLOSENESS = 0.82; // the corners of what is seen may touch the edge
+const CLOSENESS = 0.95; // the corners of what is seen may touch the edge
+const LIFT = 0.07; // of the radius: room for what is written over the picture's top
 const TURN_PER_PIXEL = 0.008; // [rad]
 const STEEPEST = 1.55; // [rad]
 
@@ -17,7 +18,7 @@ export class Orbit {
       azimuth: -0.72,
       elevation: 0.42,
       distance: (CLOSENESS * focus.radius) / Math.sin(FIELD_OF_VIEW / 2),
-      target: /** @type {number[]} */ ([...focus.center]),
+      target: /** @type {number[]} */ ([focus.center[0], focus.center[1], focus.center[2] + LIFT * focus.radius]),
     };
     this.changed = changed;
     this.reset();

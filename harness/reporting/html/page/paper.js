@@ -1,6 +1,11 @@
 // Plots on paper: pictures of them, in light colours, put into the summary while it is printed.
 
 import { byId, element } from "./dom.js";
+import { Plot } from "./plot.js";
+import { short } from "./units.js";
+
+const PAPER = { width: 340, height: 190 }; // of a plot, in CSS pixels
+const SHARPNESS = 3;
 
 /**
  * @param {import("./plots.js").Plots} plots
@@ -14,11 +19,16 @@ export function putPlotsOnPaper(plots, repaint) {
     root.dataset.theme = "light";
     plots.redraw();
     const pictures = plots.panels.map(({ plot, data }) => {
-      const names = data.series.map((series) => series.name).join(", ");
+      const names = data.series.flatMap(({ name }, index) => {
+        if (plot.hidden.has(index)) return [];
+        const swatch = element("i");
+        swatch.style.background = Plot.color(index);
+        return [element("span", {}, swatch, short(name)), " "];
+      });
       return element(
         "figure", {},
-        element("img", { src: plot.canvas.toDataURL(), alt: `${data.title}: ${names}` }),
-        element("figcaption", {}, `${data.title} ${data.unit && `[${data.unit}]`}`),
+        element("img", { src: plot.pictureOf(PAPER.width, PAPER.height, SHARPNESS), alt: plot.canvas.getAttribute("aria-label") }),
+        element("figcaption", {}, element("b", {}, data.unit ? `${data.title} [${data.unit}]` : data.title), " ", ...names),
       );
     });
     byId("paper-plots").replaceChildren(...pictures);

@@ -71,6 +71,7 @@ export function decodeMesh(payload, head) {
  * @property {string} name
  * @property {Float64Array} times
  * @property {Float32Array} values NaN where there is none
+ * @property {number} low the lowest of them @property {number} high the highest
  */
 
 const MISSING = 65535;
@@ -89,7 +90,7 @@ export function decodeGroup(payload, group) {
       const stored = values[at] & 65535;
       decoded[i] = stored === MISSING ? NaN : head.low + (stored / (MISSING - 1)) * head.size;
     }
-    return { name: head.name, times, values: decoded };
+    return { name: head.name, times, values: decoded, low: head.low, high: head.low + head.size };
   });
 }
 

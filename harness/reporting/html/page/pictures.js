@@ -19,6 +19,7 @@ import { indexAt } from "./payload.js";
 export function makePictures(payload, clock) {
   const cameras = payload.run.cameras;
   const place = byId("cameras");
+  place.style.setProperty("--count", String(cameras.length));
   for (const camera of cameras) place.append(cameraView(payload, clock, camera));
   return cameras.length > 0;
 }
@@ -28,7 +29,10 @@ function cameraView(payload, clock, camera) {
   const caption = element("figcaption", {}, camera.name);
   if (camera.video) followVideo(payload, clock, camera.video, canvas);
   else followImages(payload, clock, camera, canvas, caption);
-  return element("figure.camera", { title: camera.note }, canvas, caption);
+  const button = element("button", { type: "button", "aria-pressed": false, title: "Enlarge", "aria-label": `Enlarge camera ${camera.name}` }, canvas);
+  const figure = element("figure.camera", { title: camera.note }, button, caption);
+  button.addEventListener("click", () => button.setAttribute("aria-pressed", String(figure.classList.toggle("large"))));
+  return figure;
 }
 
 /** A video is drawn to a canvas: laid over WebGL it leaves holes where compositing is in software. */

@@ -15,6 +15,7 @@ const ROOM = 0.07; // of the values' range, above and below
  * @property {string} unit
  * @property {import("./payload.js").Series[]} series
  * @property {{value: number, series: number | null, stretches: boolean}[]} limits
+ * @property {number} least range of values that the plot shows: what is smaller is noise
  */
 
 export class Plot {
@@ -40,7 +41,8 @@ export class Plot {
   show(data, hidden = new Set()) {
     this.data = data;
     this.hidden = hidden;
-    this.canvas.setAttribute("aria-label", `Plot of ${data.title} over time`);
+    const ranges = data.series.map(({ name, low, high }) => `${name} from ${number(low)} to ${number(high)}`);
+    this.canvas.setAttribute("aria-label", `Plot over time of ${data.title} in ${data.unit}: ${ranges.join(", ")}`);
     this.draw();
   }
 
@@ -91,6 +93,14 @@ export class Plot {
     this.point(this.cursor);
   }
 
+  /** The plot in another size, without its cursor. @param {number} width @param {number} height in CSS pixels @param {number} ratio pixels in one of them */
+  pictureOf(width, height, ratio) {
+    this.#resize(width, height, ratio);
+    const data = this.picture.toDataURL();
+    this.#layOut();
+    return data;
+  }
+
   get width() {
     return this.canvas.width / this.ratio - MARGIN.left - MARGIN.right;
   }
@@ -100,10 +110,13 @@ export class Plot {
   }
 
   #layOut() {
-    this.ratio = Math.min(devicePixelRatio, 2);
-    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
-    this.canvas.width = Math.round(width * this.ratio);
-    this.canvas.height = Math.round(height * this.ratio);
+    this.#resize(this.canvas.clientWidth, this.canvas.clientHeight, Math.min(devicePixelRatio, 2));
+  }
+
+  #resize(width, height, ratio) {
+    this.ratio = ratio;
+    this.canvas.width = Math.round(width * ratio);
+    this.canvas.height = Math.round(height * ratio);
     this.draw();
   }
 
@@ -133,7 +146,7 @@ export class Plot {
     });
     for (const limit of this.data.limits) if (limit.stretches && this.#isShown(limit)) take(limit.value);
     if (low > high) [low, high] = [0, 1];
-    const least = Math.max(1e-9, 1e-3 * Math.max(Math.abs(low), Math.abs(high)), this.data.least ?? 0);
+    const least = Math.max(1e-9, 1e-3 * Math.max(Math.abs(low), Math.abs(high)), this.data.least);
     if (high - low < least) [low, high] = [(low + high - least) / 2, (low + high + least) / 2];
     const room = ROOM * (high - low);
     this.low = low - room;
@@ -190,7 +203,7 @@ export class Plot {
   #drawSeries(pen, { times, values }, index) {
     const first = Math.max(0, indexAt(times, this.from) - 1);
     const last = indexAt(times, this.to);
-    const perPixel = (last - first) / this.width;
+    const perPixel = (last - first) / (this.width * this.ratio);
     pen.strokeStyle = Plot.color(index);
     pen.lineWidth = 1.5;
     pen.lineJoin = "round";
@@ -207,16 +220,15 @@ export class Plot {
     if (perPixel <= 2) {
       for (let i = first; i <= last; i++) go(this.#x(times[i]), values[i]);
     } else {
-      for (let pixel = 0; pixel < this.width; pixel++) {
+      for (let pixel = 0; pixel < this.width * this.ratio; pixel++) {
         const from = first + Math.floor(pixel * perPixel);
         const to = Math.min(last, first + Math.floor((pixel + 1) * perPixel));
-        let [low, high] = [NaN, NaN];
+        let [low, high] = [from, from];
         for (let i = from; i <= to; i++) {
-          if (!(values[i] >= low)) low = Number.isNaN(values[i]) ? low : values[i];
-          if (!(values[i] <= high)) high = Number.isNaN(values[i]) ? high : values[i];
+          if (!(values[i] >= values[low])) low = Number.isNaN(values[i]) ? low : i;
+          if (!(values[i] <= values[high])) high = Number.isNaN(values[i]) ? high : i;
         }
-        go(MARGIN.left + pixel, low);
-        if (high !== low) go(MARGIN.left + pixel, high);
+        for (const i of new Set([Math.min(low, high), Math.max(low, high)])) go(this.#x(times[i]), values[i]);
       }
     }
     pen.stroke();
@@ -258,6 +270,15 @@ export class Plot {
       start = null;
     });
     canvas.addEventListener("dblclick", onReset);
+    canvas.addEventListener("keydown", (event) => {
+      const share = { "+": 0.25, "=": 0.25, "-": 1 }[event.key];
+      const span = share * (this.to - this.from);
+      if (share) onZoom(this.cursor - span, this.cursor + span);
+      else if (event.key === "0") onReset();
+      else return;
+      event.preventDefault();
+      event.stopPropagation();
+    });
   }
 
   /** The stretch that is being dragged, or the values under the pointer. */
@@ -300,7 +321,12 @@ function line(pen, x0, y0, x1, y1) {
   pen.stroke();
 }
 
-/** Values of all series at a time, as text. @param {PlotData} data @param {number} time */
+/** Values of all series at a time, with as many digits as the plot can show. @param {PlotData} data @param {number} time */
 export function readings(data, time) {
-  return data.series.map((series) => number(valueAt(series, time)));
+  const highest = Math.max(...data.series.map(({ low, high }) => Math.max(Math.abs(low), Math.abs(high))), data.least);
+  const digits = Math.max(0, Math.min(6, 2 - Math.floor(Math.log10(highest || 1))));
+  return data.series.map((series) => {
+    const value = valueAt(series, time);
+    return Number.isNaN(value) ? "–" : value.toFixed(digits).replace(/^-(0(\.0*)?)$/, "$1");
+  });
 }

@@ -3,6 +3,7 @@
 import { byId, element } from "./dom.js";
 import { decodeGroup } from "./payload.js";
 import { Plot, readings } from "./plot.js";
+import { short } from "./units.js";
 
 const PREFERRED = ["position", "velocity", "effort", "tracking"];
 
@@ -19,8 +20,12 @@ export class Plots {
     /** Names of series that are hidden, in every plot. @type {Set<string>} */
     this.hidden = new Set();
     const groups = payload.run.groups;
+    if (clock.duration <= 0) {
+      byId("app").classList.add("at-rest");
+      byId("plots").append(element("p.empty", {}, "The run took no simulated time: there is nothing to plot."));
+    }
     const first = [...PREFERRED.map((id) => groups.find((group) => group.id === id)), ...groups].filter(Boolean);
-    const shown = [...new Set(first)].slice(0, PREFERRED.length);
+    const shown = clock.duration > 0 ? [...new Set(first)].slice(0, PREFERRED.length) : [];
     this.panels = shown.map((group) => this.#panel(group.id, bands));
     byId("plots").append(...this.panels.map((panel) => panel.element));
     this.zoom(0, clock.duration);
@@ -84,7 +89,7 @@ export class Plots {
   #fill(panel, id) {
     panel.choice.value = id;
     panel.data = this.#data(id);
-    panel.values = panel.data.series.map(() => element("output"));
+    panel.values = panel.data.series.map(() => element("output", { "aria-live": "off" }));
     panel.legend.replaceChildren(
       ...panel.data.series.map((series, index) => {
         const swatch = element("i");
@@ -139,8 +144,4 @@ export class Plots {
     const hidden = panel.data.series.flatMap((series, index) => (this.hidden.has(series.name) ? [index] : []));
     panel.plot.show(panel.data, new Set(hidden));
   }
-}
-
-function short(name) {
-  return name.replace(/_joint$/, "").replace(/^rh_p12_rn_/, "");
 }

@@ -39,9 +39,10 @@ function highlighted(text) {
   const pieces = [];
   let rest = code;
   while (rest) {
-    const match = /[\w.]+(?=:(\s|$))/.exec(rest);
+    const match = /"[^"]*"|'[^']*'|[\w.]+(?=:(\s|$))/.exec(rest);
     if (!match) break;
-    pieces.push(rest.slice(0, match.index), element("span.key", {}, match[0]));
+    const isText = /^["']/.test(match[0]);
+    pieces.push(rest.slice(0, match.index), element(isText ? "span.text" : "span.key", {}, match[0]));
     rest = rest.slice(match.index + match[0].length);
   }
   return [...pieces, rest, comment ? element("span.comment", {}, comment) : "", "\n"];

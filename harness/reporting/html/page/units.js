@@ -27,6 +27,11 @@ export function amount(value, unit) {
   return `${number(value * factor)}${gap}${name}`;
 }
 
+/** A joint's or link's name without what all of them have. @param {string} name */
+export function short(name) {
+  return name.replace(/_joint$/, "").replace(/^rh_p12_rn_/, "");
+}
+
 /** @param {number} time [s] */
 export function seconds(time) {
   return `${time.toFixed(2)} s`;

@@ -11,6 +11,7 @@ const WORST_SHOWN = 3;
  * @returns {HTMLElement}
  */
 export function verdictList({ run }, select) {
+  if (!run.verdicts.length) return element("p.empty", {}, "The file expects nothing beyond what its steps say.");
   const order = run.verdicts.map((_, index) => index);
   order.sort((a, b) => Number(run.verdicts[a].status === "passed") - Number(run.verdicts[b].status === "passed"));
   return element(
@@ -52,7 +53,7 @@ function measured({ name, value, limit, comparison, unit, detail }) {
   return element(
     "span.measure", {},
     `${name} `, element("code", {}, amount(value, unit)),
-    limit === null ? "" : ` ${sign} ${amount(limit, unit)}`,
+    limit === null ? "" : ` vs ${sign} ${amount(limit, unit)}`,
     detail && element("em", {}, ` ${detail}`),
   );
 }
