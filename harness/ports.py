@@ -198,7 +198,7 @@ class PlanningOptions:
     """How to plan; every number known.
 
     Attributes:
-        planner_id: OMPL's or MoveIt's name: `RRTConnect`, `RRTConnectkConfigDefault`.
+        planner_id: `auto`, or OMPL's or MoveIt's name: `RRTConnectkConfigDefault` ...
         max_state_checks: Budget of state validity checks for one attempt.
         attempts: Plans tried, each with a seed of its own.
         velocity_scaling: Of the joint velocity limits, (0, 1].
@@ -211,7 +211,7 @@ class PlanningOptions:
         path_only: Leave out the times: the plan jumps from its start to its end.
     """
 
-    planner_id: str = "RRTConnect"
+    planner_id: str = "auto"
     max_state_checks: int = 200_000
     attempts: int = 1
     velocity_scaling: float = 1.0

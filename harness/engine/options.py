@@ -11,7 +11,7 @@ from harness.spec.planning import Planning
 
 DEFAULT_SCALING = 0.3  # of the joint limits: the course's default plan request
 DEFAULT_PADDING = 0.002  # [m]
-DEFAULT_PLANNER = "RRTConnect"
+DEFAULT_PLANNER = "auto"
 DEFAULT_STATE_CHECKS = 200_000
 
 

@@ -11,7 +11,7 @@ from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.checker import describe_touches, touch_facts
-from harness.planning.ompl_planner import search
+from harness.planning.search import search
 from harness.planning.shortening import shorten
 from harness.planning.task import PlanningTask
 from harness.planning.timing import TimingError, time_blended, time_stopping, time_straight
@@ -99,7 +99,7 @@ def _searched(
                 short = shorten(result.waypoints, checker, FINAL_RESOLUTION, seed)
                 timed = _timed(task, short)
                 if isinstance(timed, JointTrajectory):
-                    statistics = task.statistics(options.planner_id, timed, short, result.waypoints)
+                    statistics = task.statistics(result.planner_id, timed, short, result.waypoints)
                     statistics |= {
                         "attempts": attempt + 1,
                         "search_checks": used,

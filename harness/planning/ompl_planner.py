@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import ompl.base as ob
@@ -22,23 +21,6 @@ DEFAULT_RANGE = 1.5
 """Longest edge that a tree grows at once [rad]; OMPL takes a fifth of the space's extent."""
 
 _BEYOND = np.pi  # [rad] how far a continuous joint may leave the range of start and goals
-
-
-@dataclass(frozen=True, eq=False)
-class Search:
-    """What a planner came to.
-
-    Attributes:
-        waypoints: Shape (N, dof), or None when the budget ended first.
-        checks: State checks it used.
-        vertices: Of its trees or graph.
-        gap: Joint-space distance left between its trees, or to the goal [rad]; 0 when solved.
-    """
-
-    waypoints: FloatArray | None
-    checks: int
-    vertices: int
-    gap: float
 
 
 class _EdgeValidator(ob.MotionValidator):
@@ -60,7 +42,7 @@ class _EdgeValidator(ob.MotionValidator):
         )
 
 
-def search(
+def search_ompl(
     planner_id: str,
     checker: MotionChecker,
     start: FloatArray,
@@ -70,8 +52,8 @@ def search(
     max_state_checks: int,
     seed: int,
     parameters: Mapping[str, float],
-) -> Search:
-    """Search a path from the start to any of the goals.
+) -> tuple[FloatArray | None, int, int, float]:
+    """Search as `search` says; returns waypoints or None, checks, vertices, gap.
 
     The same arguments give the same path to the bit: OMPL's generator is seeded before anything
     that draws from it is made, and the budget is counted in state checks.
@@ -106,11 +88,11 @@ def search(
     planner.getPlannerData(data)
     vertices = int(data.numVertices())
     if not definition.hasExactSolution():
-        return Search(None, used, vertices, _gap(data, definition, space))
+        return None, used, vertices, _gap(data, definition, space)
     path = definition.getSolutionPath()
     states = path.getStates()
     waypoints = np.array([[state[index] for index in range(space.dof)] for state in states])
-    return Search(waypoints, used, vertices, 0.0)
+    return waypoints, used, vertices, 0.0
 
 
 def _seed_ompl(seed: int) -> None:

@@ -5,9 +5,13 @@ from __future__ import annotations
 import difflib
 from collections.abc import Mapping
 
-DEFAULT_PLANNER = "RRTConnect"
+DEFAULT_PLANNER = "auto"
+FAST_PLANNER = "BalancedConnect"
+PATIENT_PLANNER = "RRTConnect"
 
 _CLASSES: Mapping[str, str] = {
+    "auto": "auto",
+    FAST_PLANNER: FAST_PLANNER,
     "RRTConnect": "RRTConnect",
     "RRT": "RRT",
     "RRTstar": "RRTstar",
@@ -17,7 +21,7 @@ _CLASSES: Mapping[str, str] = {
     "BKPIECE": "BKPIECE1",
     "LBKPIECE": "LBKPIECE1",
 }
-"""Planner name -> class of the OMPL wheel."""
+"""Planner name -> class of the OMPL wheel; the first two are our own."""
 
 _REFUSED: Mapping[str, str] = {
     "PRM": "it grows its roadmap on two threads, so equal runs differ",
@@ -48,7 +52,7 @@ def planner_names() -> tuple[str, ...]:
 
 
 def resolve_planner_id(name: str) -> str:
-    """The OMPL class that a planner's name means.
+    """The planner that a name means: OMPL's class, or one of our own.
 
     `geometric::RRTConnect` (OMPL), `RRTConnectkConfigDefault` (MoveIt), `RRTConnect` and
     `rrtconnect` are one planner.

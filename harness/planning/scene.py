@@ -66,6 +66,7 @@ class Body:
         name: Of the link or the object.
         joint: Pinocchio's joint it moves with; 0 stands still.
         geometries: Indices into the geometry model.
+        shapes: The same, placed on the joint.
         is_link: A link of the robot.
         is_held: An attached object.
     """
@@ -73,6 +74,7 @@ class Body:
     name: str
     joint: int
     geometries: tuple[int, ...]
+    shapes: tuple[Shape, ...]
     is_link: bool
     is_held: bool
 
@@ -100,6 +102,7 @@ class CollisionModel:
 
     robot: RobotModel
     geometry: pin.GeometryModel
+    bodies: tuple[Body, ...]
     pairs: tuple[BodyPair, ...]
 
 
@@ -267,7 +270,7 @@ class CoalScene:
             for first in bodies[:later]:
                 if self._is_checked(first, second):
                     pairs.append(_add_pair(geometry, first, second))
-        return CollisionModel(self.robot, geometry, tuple(pairs))
+        return CollisionModel(self.robot, geometry, tuple(bodies), tuple(pairs))
 
     def _add_body(
         self,
@@ -288,7 +291,8 @@ class CoalScene:
             )
             for number, shape in enumerate(shapes)
         )
-        return Body(name, joint, indices, is_link, not is_link and link is not None)
+        placed = tuple(replace(shape, pose=T_joint_body @ shape.pose) for shape in shapes)
+        return Body(name, joint, indices, placed, is_link, not is_link and link is not None)
 
     def _is_checked(self, first: Body, second: Body) -> bool:
         if first.joint == second.joint or self.is_allowed(first.name, second.name):

@@ -147,12 +147,12 @@ def _collision(trajectory: JointTrajectory, checker: MotionChecker) -> Defect | 
     dense = np.column_stack(
         [np.interp(places, travelled[moving], column[moving]) for column in positions.T]
     )
-    for place, state in zip(places, dense, strict=True):
-        if not checker.state_free(state):
-            touches = checker.touches(state)
-            time = float(np.interp(place, travelled[moving], trajectory.times[moving]))
-            return Defect(
-                f"at {time:.2f} s it would come too near: {describe_touches(touches)}",
-                {"broken": "collision", "time": time, "touches": touch_facts(touches)},
-            )
-    return None
+    index = checker.first_blocked(dense)
+    if index is None:
+        return None
+    touches = checker.touches(dense[index])
+    time = float(np.interp(places[index], travelled[moving], trajectory.times[moving]))
+    return Defect(
+        f"at {time:.2f} s it would come too near: {describe_touches(touches)}",
+        {"broken": "collision", "time": time, "touches": touch_facts(touches)},
+    )

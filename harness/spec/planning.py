@@ -32,7 +32,9 @@ class Planning(SpecModel):
         description="Only `ompl`, the default; Pilz's planners are the steps `ptp`, `lin`, `circ`.",
     )
     planner_id: Name | None = Field(
-        default=None, description="Default `RRTConnect`; `harness list planners` has the others."
+        default=None,
+        description="Default `auto`: a straight joint motion, else the fast planner, else the "
+        "patient one; `harness list planners` has the others.",
     )
     planning_time: Annotated[Duration, Field(gt=0)] | None = Field(
         default=None, description="Converted to state checks at a fixed rate; never a wall clock."

@@ -74,7 +74,7 @@ def test_the_motions_of_the_lesson_are_planned_and_hold(model):
             shift, angle = goal.pose.distance_to(cell.kinematics.link_pose(end, TCP))
             assert max(shift, angle) < 1e-6
         cell.state = end
-    assert planners["up"] == "RRTConnect"  # the boxes stand in the straight way
+    assert planners["up"] == "BalancedConnect"  # the boxes stand in the straight way
     assert planners["mogi_down"] == "straight line"
 
 

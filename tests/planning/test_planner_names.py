@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from harness.planning.checker import MotionChecker
-from harness.planning.ompl_planner import search
 from harness.planning.planner_names import planner_names, resolve_planner_id
 from harness.planning.robot_model import GroupSpace
+from harness.planning.search import search
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, boxes, ur
 
 

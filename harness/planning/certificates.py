@@ -1,0 +1,332 @@
+"""Lays a group's motion and the scene's covers out in arrays, to certify edges with."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
+import pinocchio as pin
+
+from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Sphere
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray, IntArray
+from harness.planning.covering import Cover, cover_shapes
+from harness.planning.robot_model import GroupSpace
+from harness.planning.scene import Body, BodyPair, CollisionModel
+from harness.robot.description import Joint
+
+BOX, CYLINDER, CAPSULE, SPHERE, PLANE, MESH = range(6)
+"""Kinds of shapes, as the compiled stage knows them."""
+
+ROUNDING = 1e-5
+"""What is left undecided about a margin, for Coal's own tolerance [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class MotionArrays:
+    """What a motion of one group in one scene is checked with; `edge_kernel.certify` explains each.
+
+    Attributes:
+        columns: Of the moving joints, in description order.
+        rows: Of Coal's collision pairs, by check.
+    """
+
+    columns: IntArray
+    nodes: FloatArray
+    skip: IntArray
+    parent: IntArray
+    chain: FloatArray
+    body_poses: FloatArray
+    bodies: IntArray
+    part_data: FloatArray
+    parts: IntArray
+    margins: FloatArray
+    checks: IntArray
+    keys: IntArray
+    joints: IntArray
+    rows: tuple[tuple[int, ...], ...]
+
+    def certify(
+        self, stage: Callable[..., Any], values: FloatArray, straight: bool, found: IntArray
+    ) -> tuple[int, int]:
+        """Call `edge_kernel.certify` on values of the moving joints, shape (N, M)."""
+        return stage(
+            values,
+            straight,
+            self.nodes,
+            self.skip,
+            self.parent,
+            self.chain,
+            self.body_poses,
+            self.bodies,
+            self.part_data,
+            self.parts,
+            self.margins,
+            self.checks,
+            self.keys,
+            self.joints,
+            found,
+        )
+
+
+def motion_arrays(
+    model: CollisionModel, space: GroupSpace, margins: Mapping[tuple[str, str], float]
+) -> MotionArrays:
+    """Arrays of a scene for the motions of a group; pairs that move together are left out."""
+    moving = MovingJoints(space)
+    layout = _Layout(model, moving)
+    checks: list[tuple[int, int, int]] = []
+    limits: list[tuple[float, float]] = []
+    rows: list[tuple[int, ...]] = []
+    for pair in model.pairs:
+        margin = margins[pair.first, pair.second]
+        for body, part, key, pair_rows in layout.checks_of(pair):
+            checks.append((body, part, key))
+            limits.append(
+                (max(margin, 0.0) + ROUNDING, margin - ROUNDING if margin >= 0 else -np.inf)
+            )
+            rows.append(pair_rows)
+    return MotionArrays(
+        columns=moving.columns,
+        nodes=layout.nodes,
+        skip=layout.skip,
+        parent=moving.parent,
+        chain=moving.chain,
+        body_poses=moving.body_poses(model.bodies),
+        bodies=layout.body_rows,
+        part_data=np.array(layout.part_data).reshape(-1, 15),
+        parts=np.array(layout.parts, dtype=np.int64).reshape(-1, 3),
+        margins=np.array(limits).reshape(-1, 2),
+        checks=np.array(checks, dtype=np.int64).reshape(-1, 3),
+        keys=np.array(layout.keys, dtype=np.int64).reshape(-1, 6),
+        joints=np.array(layout.joints or [0], dtype=np.int64),
+        rows=tuple(rows),
+    )
+
+
+class MovingJoints:
+    """The joints that a group's motion turns, those in between taken as fixed.
+
+    Attributes:
+        columns: Their places in description order, shape (M,).
+        parent: The moving joint before each, or -1, shape (M,).
+        chain: Pose on the parent at zero (12), axis (3), 1 if prismatic, shape (M, 16).
+        above: Of each Pinocchio joint, the moving joint that carries it, or -1.
+    """
+
+    def __init__(self, space: GroupSpace) -> None:
+        robot, description = space.robot, space.robot.description
+        pin_model = robot.model
+        at_zero = np.array(space.offset)
+        pin.forwardKinematics(pin_model, robot.data, robot.configuration(at_zero))
+        self._poses = [np.array(pose.homogeneous) for pose in robot.data.oMi]
+        is_moving = np.any(space.matrix != 0, axis=1)
+        index_of = {name: i for i, name in enumerate(description.joint_names)}
+        self.above: list[int] = [-1]
+        self._at: list[int] = []
+        columns: list[int] = []
+        parent: list[int] = []
+        rows: list[FloatArray] = []
+        for joint in range(1, pin_model.njoints):
+            name = pin_model.names[joint]
+            before = self.above[pin_model.parents[joint]]
+            if not is_moving[index_of[name]]:
+                self.above.append(before)
+                continue
+            known = description.joint_by_name[name]
+            turn = float(at_zero[index_of[name]])
+            pose = self._seen(before, joint) @ np.linalg.inv(_joint_motion(known, turn))
+            self.above.append(len(columns))
+            self._at.append(joint)
+            columns.append(index_of[name])
+            parent.append(before)
+            kind = [1.0 if known.kind == "prismatic" else 0.0]
+            rows.append(np.concatenate([_flat(pose), known.axis, kind]))
+        self.columns: IntArray = np.array(columns, dtype=np.int64)
+        self.parent: IntArray = np.array(parent, dtype=np.int64)
+        self.chain: FloatArray = np.array(rows).reshape(-1, 16)
+
+    def _seen(self, moving: int, joint: int) -> FloatArray:
+        """Pose of a Pinocchio joint on a moving joint (-1: in the world), shape (4, 4)."""
+        if moving < 0:
+            return self._poses[joint]
+        return np.linalg.inv(self._poses[self._at[moving]]) @ self._poses[joint]
+
+    def body_poses(self, bodies: tuple[Body, ...]) -> FloatArray:
+        """Poses of bodies on the moving joints that carry them, shape (B, 12)."""
+        rows = [_flat(self._seen(self.above[body.joint], body.joint)) for body in bodies]
+        return np.array(rows).reshape(-1, 12)
+
+    def path(self, joint: int) -> list[int]:
+        """Moving joints from one to the base, tip first."""
+        found = []
+        while joint >= 0:
+            found.append(joint)
+            joint = int(self.parent[joint])
+        return found
+
+
+class _Layout:
+    """Numbers covers, parts and keys as they are needed."""
+
+    def __init__(self, model: CollisionModel, moving: MovingJoints) -> None:
+        self._bodies, self._moving = model.bodies, moving
+        self._geometry = model.geometry
+        self._index = {body.name: number for number, body in enumerate(model.bodies)}
+        self._carrier = [moving.above[body.joint] for body in model.bodies]
+        self._only_solid = [
+            not any(isinstance(shape.geometry, Mesh) for shape in body.shapes)
+            for body in model.bodies
+        ]
+        self._has_plane = [
+            any(isinstance(shape.geometry, Plane) for shape in body.shapes) for body in model.bodies
+        ]
+        covers = _covers(model)
+        needed = [
+            cover
+            if cover is not None and (self._carrier[number] >= 0 or not self._only_solid[number])
+            else None
+            for number, cover in enumerate(covers)
+        ]
+        self._radius = [np.inf if cover is None else float(cover.outer[0]) for cover in needed]
+        self.body_rows, self.nodes, self.skip = self._concatenate(needed)
+        self.parts: list[tuple[int, int, int]] = []
+        self.part_data: list[FloatArray] = []
+        self.keys: list[tuple[int, int, int, int, int, int]] = []
+        self.joints: list[int] = []
+        self._parts_of: dict[int, list[tuple[int, int]]] = {}
+        self._key_of: dict[tuple[int, int], int] = {}
+
+    def _concatenate(self, covers: list[Cover | None]) -> tuple[IntArray, FloatArray, IntArray]:
+        rows, start = [], 0
+        for number, cover in enumerate(covers):
+            size = 0 if cover is None else len(cover.outer)
+            rows.append((self._carrier[number], start, start + size))
+            start += size
+        known = [(cover, row[1]) for cover, row in zip(covers, rows, strict=True) if cover]
+        nodes = [np.column_stack([c.centers, c.outer, c.inner]) for c, _ in known]
+        skips = [c.skip + at for c, at in known]
+        return (
+            np.array(rows, dtype=np.int64).reshape(-1, 3),
+            np.vstack([np.zeros((0, 5)), *nodes]),
+            np.concatenate([np.zeros(0, dtype=np.int64), *skips]),
+        )
+
+    def checks_of(self, pair: BodyPair) -> list[tuple[int, int, int, tuple[int, ...]]]:
+        """Body with the tree, part of the other, key and Coal's rows, for each part."""
+        first, second = self._index[pair.first], self._index[pair.second]
+        if self._carrier[first] == self._carrier[second]:
+            return []
+        body, other = sorted(
+            (first, second),
+            key=lambda b: (self._has_plane[b], self._only_solid[b], self._radius[b]),
+        )
+        by_shape: dict[int, list[int]] = {}
+        mine = set(self._bodies[body].geometries)
+        for row in pair.pairs:
+            ends = self._geometry.collisionPairs[row]
+            theirs = ends.second if ends.first in mine else ends.first
+            by_shape.setdefault(int(theirs), []).append(row)
+        key = self._key(body, other)
+        if not self._only_solid[other]:
+            return [(body, self._tree_part(other), key, tuple(pair.pairs))]
+        return [
+            (body, part, key, tuple(by_shape[geometry]))
+            for part, geometry in self._solid_parts(other)
+        ]
+
+    def _solid_parts(self, body: int) -> list[tuple[int, int]]:
+        """Part and Coal's geometry of each shape of a body."""
+        if body not in self._parts_of:
+            found = []
+            for geometry, shape in zip(
+                self._bodies[body].geometries, self._bodies[body].shapes, strict=True
+            ):
+                kind, size = _kind_and_size(shape.geometry)
+                found.append((len(self.parts), geometry))
+                self.parts.append((body, kind, 0))
+                self.part_data.append(np.concatenate([_flat(_matrix(shape.pose)), size]))
+            self._parts_of[body] = found
+        return self._parts_of[body]
+
+    def _tree_part(self, body: int) -> int:
+        """The part that is a body's whole tree."""
+        if body not in self._parts_of:
+            self._parts_of[body] = [(len(self.parts), -1)]
+            self.parts.append((body, MESH, int(self.body_rows[body, 1])))
+            self.part_data.append(np.concatenate([_flat(np.eye(4)), np.zeros(3)]))
+        return self._parts_of[body][0][0]
+
+    def _key(self, body: int, other: int) -> int:
+        """The joints that move a body against another one's carrier."""
+        carrier = self._carrier[other]
+        if (body, carrier) in self._key_of and carrier < 0:
+            return self._key_of[body, carrier]
+        mine, theirs = self._moving.path(self._carrier[body]), self._moving.path(carrier)
+        own = [joint for joint in mine if joint not in theirs]
+        its = [joint for joint in theirs if joint not in mine]
+        start = len(self.joints)
+        self.joints += own + its
+        middle, end = start + len(own), start + len(own) + len(its)
+        self.keys.append((body if own else -1, other if its else -1, start, middle, middle, end))
+        self._key_of[body, carrier] = len(self.keys) - 1
+        return len(self.keys) - 1
+
+
+_cover_cache: WeakKeyDictionary[CollisionModel, list[Cover | None]] = WeakKeyDictionary()
+
+
+def _covers(model: CollisionModel) -> list[Cover | None]:
+    """Cover of each body on its joint; None for bodies with a plane."""
+    if model not in _cover_cache:
+        _cover_cache[model] = [
+            None
+            if any(isinstance(shape.geometry, Plane) for shape in body.shapes)
+            or (body.joint == 0 and not any(isinstance(s.geometry, Mesh) for s in body.shapes))
+            else cover_shapes(body.shapes)
+            for body in model.bodies
+        ]
+    return _cover_cache[model]
+
+
+def _kind_and_size(geometry: Geometry) -> tuple[int, FloatArray]:
+    match geometry:
+        case Box(size=size):
+            return BOX, 0.5 * np.array(size)
+        case Cylinder(radius=radius, length=length):
+            return CYLINDER, np.array([radius, 0.5 * length, 0.0])
+        case Capsule(radius=radius, length=length):
+            return CAPSULE, np.array([radius, 0.5 * length, 0.0])
+        case Sphere(radius=radius):
+            return SPHERE, np.array([radius, 0.0, 0.0])
+        case Plane():
+            return PLANE, np.zeros(3)
+        case Mesh():
+            raise ValueError("a mesh has no closed-form distance")
+
+
+def _joint_motion(joint: Joint, value: float) -> FloatArray:
+    """What a joint's position does in its own frame, shape (4, 4)."""
+    axis = np.asarray(joint.axis, dtype=float)
+    motion = np.eye(4)
+    if joint.kind == "prismatic":
+        motion[:3, 3] = axis * value
+    else:
+        motion[:3, :3] = pin.exp3(axis * value)
+    return motion
+
+
+def _matrix(pose: SE3) -> FloatArray:
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = pose.rotation, pose.translation
+    return matrix
+
+
+def _flat(matrix: FloatArray) -> FloatArray:
+    """Rotation row by row, then translation, shape (12,)."""
+    return np.concatenate([matrix[:3, :3].reshape(-1), matrix[:3, 3]])
