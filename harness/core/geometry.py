@@ -49,10 +49,15 @@ class Plane:
 
 @dataclass(frozen=True)
 class Mesh:
-    """A triangle mesh file (STL, OBJ, DAE); `scale` multiplies its coordinates to metres."""
+    """A triangle mesh file (STL, OBJ, DAE); `scale` multiplies its coordinates to metres.
+
+    What touches is its convex hull, for planner and physics alike; when `exact`, the planner takes
+    its triangles as they are: a surface.
+    """
 
     path: Path
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    exact: bool = False
 
 
 Geometry = Box | Cylinder | Sphere | Capsule | Plane | Mesh

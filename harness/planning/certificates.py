@@ -15,7 +15,7 @@ import pinocchio as pin
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Sphere
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray, IntArray
-from harness.planning.covering import Cover, cover_shapes
+from harness.planning.covering import cover_shapes
 from harness.planning.robot_model import GroupSpace
 from harness.planning.scene import Body, BodyPair, CollisionModel
 from harness.robot.description import Joint
@@ -171,6 +171,15 @@ class MovingJoints:
         return found
 
 
+@dataclass(frozen=True, eq=False)
+class _Trees:
+    """Spheres of all bodies (K, 5), where their subtrees end (K,), and each body's range (B, 2)."""
+
+    nodes: FloatArray
+    skip: IntArray
+    ranges: IntArray
+
+
 class _Layout:
     """Numbers covers, parts and keys as they are needed."""
 
@@ -186,36 +195,18 @@ class _Layout:
         self._has_plane = [
             any(isinstance(shape.geometry, Plane) for shape in body.shapes) for body in model.bodies
         ]
-        covers = _covers(model)
-        needed = [
-            cover
-            if cover is not None and (self._carrier[number] >= 0 or not self._only_solid[number])
-            else None
-            for number, cover in enumerate(covers)
+        trees = _trees(model)
+        self.nodes, self.skip = trees.nodes, trees.skip
+        self.body_rows: IntArray = np.column_stack([self._carrier, trees.ranges]).astype(np.int64)
+        self._radius = [
+            float(trees.nodes[start, 3]) if start < end else np.inf for start, end in trees.ranges
         ]
-        self._radius = [np.inf if cover is None else float(cover.outer[0]) for cover in needed]
-        self.body_rows, self.nodes, self.skip = self._concatenate(needed)
         self.parts: list[tuple[int, int, int]] = []
         self.part_data: list[FloatArray] = []
         self.keys: list[tuple[int, int, int, int, int, int]] = []
         self.joints: list[int] = []
         self._parts_of: dict[int, list[tuple[int, int]]] = {}
         self._key_of: dict[tuple[int, int], int] = {}
-
-    def _concatenate(self, covers: list[Cover | None]) -> tuple[IntArray, FloatArray, IntArray]:
-        rows, start = [], 0
-        for number, cover in enumerate(covers):
-            size = 0 if cover is None else len(cover.outer)
-            rows.append((self._carrier[number], start, start + size))
-            start += size
-        known = [(cover, row[1]) for cover, row in zip(covers, rows, strict=True) if cover]
-        nodes = [np.column_stack([c.centers, c.outer, c.inner]) for c, _ in known]
-        skips = [c.skip + at for c, at in known]
-        return (
-            np.array(rows, dtype=np.int64).reshape(-1, 3),
-            np.vstack([np.zeros((0, 5)), *nodes]),
-            np.concatenate([np.zeros(0, dtype=np.int64), *skips]),
-        )
 
     def checks_of(self, pair: BodyPair) -> list[tuple[int, int, int, tuple[int, ...]]]:
         """Body with the tree, part of the other, key and Coal's rows, for each part."""
@@ -278,20 +269,29 @@ class _Layout:
         return len(self.keys) - 1
 
 
-_cover_cache: WeakKeyDictionary[CollisionModel, list[Cover | None]] = WeakKeyDictionary()
+_cover_cache: WeakKeyDictionary[CollisionModel, _Trees] = WeakKeyDictionary()
 
 
-def _covers(model: CollisionModel) -> list[Cover | None]:
-    """Cover of each body on its joint; None for bodies with a plane."""
+def _trees(model: CollisionModel) -> _Trees:
+    """The trees of a scene's bodies, one after the other; made once for a scene."""
     if model not in _cover_cache:
-        _cover_cache[model] = [
-            None
-            if any(isinstance(shape.geometry, Plane) for shape in body.shapes)
-            or (body.joint == 0 and not any(isinstance(s.geometry, Mesh) for s in body.shapes))
-            else cover_shapes(body.shapes)
-            for body in model.bodies
-        ]
+        covers = [cover_shapes(body.shapes) if _has_tree(body) else None for body in model.bodies]
+        sizes = [0 if cover is None else len(cover.outer) for cover in covers]
+        ends = np.cumsum([0, *sizes])
+        nodes = [np.column_stack([c.centers, c.outer, c.inner]) for c in covers if c is not None]
+        skips = [c.skip + at for c, at in zip(covers, ends[:-1], strict=True) if c is not None]
+        _cover_cache[model] = _Trees(
+            nodes=np.vstack([np.zeros((0, 5)), *nodes]),
+            skip=np.concatenate([np.zeros(0, dtype=np.int64), *skips]),
+            ranges=np.column_stack([ends[:-1], ends[1:]]),
+        )
     return _cover_cache[model]
+
+
+def _has_tree(body: Body) -> bool:
+    """Whether a body is compared as a tree: whatever moves, and meshes; never planes."""
+    kinds = {type(shape.geometry) for shape in body.shapes}
+    return Plane not in kinds and (body.joint != 0 or Mesh in kinds)
 
 
 def _kind_and_size(geometry: Geometry) -> tuple[int, FloatArray]:

@@ -32,6 +32,8 @@ MOST_OPEN = 4096
 MOST_SINGLE_PAIRS = 12
 """Pairs of shapes of one state that are checked one by one; more go through the broad phase."""
 
+_MEASURED = 1e-4  # [m] beyond a limit, what collision checks find is measured
+
 MARGIN_SLACK = 0.0005
 """A pair that is too near at the start may come this much nearer during the motion [m]."""
 
@@ -75,39 +77,60 @@ class MotionChecker:
         self._geometry = geometry = model.geometry  # kept: the manager below does not keep it
         self._geometry_data = geometry.createData()
         self._margins = self._choose_margins(start)
-        requests = self._geometry_data.collisionRequests
-        for pair in model.pairs:
-            margin = self._margins[pair.first, pair.second]
-            for row in pair.pairs:
-                requests[row].security_margin = margin
+        self._set_margins(0.0)
         self._manager = pin.BroadPhaseManager_DynamicAABBTreeCollisionManager(
             self._robot, geometry, self._geometry_data
         )
 
     def _choose_margins(self, start: FloatArray) -> dict[tuple[str, str], float]:
-        distances = self.scene.distances(self.space.whole(start))
-        deep = [touch for touch, _ in distances if touch.distance < -DEEPEST_START]
+        margins = {
+            (pair.first, pair.second): self.padding if pair.keeps_padding else 0.0
+            for pair in self._pairs
+        }
+        self._margins = margins
+        near = self._near(start, MARGIN_SLACK)
+        deep = [touch for touch in near if touch.distance < -DEEPEST_START]
         if deep:
             raise PlanningFailed(
                 "START_STATE_IN_COLLISION",
                 f"the robot starts in collision: {describe_touches(deep)}",
                 {"touches": touch_facts(deep)},
             )
-        margins: dict[tuple[str, str], float] = {}
-        for touch, pair in distances:
-            margin = self.padding if pair.keeps_padding else 0.0
-            if touch.distance < margin + MARGIN_SLACK:
-                lowered = touch.distance - MARGIN_SLACK
-                self.lowered.append(
-                    {
-                        "pair": [touch.first, touch.second],
-                        "start_distance": touch.distance,
-                        "margin": lowered,
-                    }
-                )
-                margin = lowered
-            margins[touch.first, touch.second] = margin
+        for touch in near:
+            margins[touch.first, touch.second] = lowered = touch.distance - MARGIN_SLACK
+            self.lowered.append(
+                {
+                    "pair": [touch.first, touch.second],
+                    "start_distance": touch.distance,
+                    "margin": lowered,
+                }
+            )
         return margins
+
+    def _set_margins(self, more: float) -> None:
+        requests = self._geometry_data.collisionRequests
+        for pair in self._pairs:
+            margin = self._margins[pair.first, pair.second] + more
+            for row in pair.pairs:
+                requests[row].security_margin = margin
+
+    def _near(self, positions: FloatArray, slack: float) -> list[Touch]:
+        """Pairs nearer than margin and slack, nearest first; only those are measured."""
+        geometry, found = self._geometry, self._geometry_data
+        self._set_margins(slack + _MEASURED)
+        configuration = self.space.robot.configuration(self.space.whole(positions))
+        pin.computeCollisions(self._robot, self._data, geometry, found, configuration, False)
+        results = found.collisionResults
+        near: list[Touch] = []
+        for pair in self._pairs:
+            if any(results[row].isCollision() for row in pair.pairs):
+                distances = (
+                    pin.computeDistance(geometry, found, row).min_distance for row in pair.pairs
+                )
+                touch = Touch(pair.first, pair.second, float(min(distances)))
+                if touch.distance < self._margins[pair.first, pair.second] + slack:
+                    near.append(touch)
+        return sorted(near, key=lambda touch: (touch.distance, touch.first, touch.second))
 
     def state_free(self, positions: FloatArray) -> bool:
         """Whether every pair keeps its margin at group positions."""

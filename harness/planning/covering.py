@@ -1,10 +1,8 @@
 """Covers shapes with trees of spheres: what no sphere reaches, the shape does not reach."""
 
-# pyright: reportAttributeAccessIssue=false
-
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -12,7 +10,7 @@ import numpy as np
 
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Shape, Sphere
 from harness.core.types import FloatArray, IntArray
-from harness.planning.collision_geometry import coal_geometry
+from harness.robot.mesh_file import convex_hull, read_triangles
 
 OVERSHOOT = 0.006
 """How far the smallest spheres reach beyond the shape, where `MOST_SPHERES` allows it [m]."""
@@ -28,7 +26,7 @@ class Cover:
     """A tree of spheres about a shape, in preorder: children follow their parent.
 
     Every point of the shape is in a sphere without children (a leaf), and in all spheres above it.
-    Meshes count as surfaces, as Coal has them, all other shapes as solids.
+    All shapes are solids, meshes by their convex hulls, but for exact meshes: those are surfaces.
 
     Attributes:
         centers: In the frame of the shape or body [m], shape (N, 3).
@@ -92,10 +90,19 @@ def cover(geometry: Geometry) -> Cover:
             np.ones(1, dtype=np.int64),
         )
     if isinstance(geometry, Mesh):
-        return _cover_mesh(geometry)
+        return _cover_surface(geometry) if geometry.exact else _cover_hull(geometry)
     if isinstance(geometry, Capsule):
         return _cover_capsule(geometry)
-    return _cover_solid(geometry)
+    if isinstance(geometry, Box):
+        halves = 0.5 * np.array(geometry.size)
+    else:
+        halves = np.array([geometry.radius, geometry.radius, 0.5 * geometry.length])
+
+    def exact(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        distances = signed_distance(geometry, points)
+        return distances, distances
+
+    return _cover_solid(exact, np.zeros(3), halves)
 
 
 def signed_distance(geometry: Geometry, points: FloatArray) -> FloatArray:
@@ -138,20 +145,46 @@ def _cover_capsule(geometry: Capsule) -> Cover:
     return Cover(centers, outer + _ROUNDING, np.full(count + 3, radius), skip)
 
 
-def _cover_solid(geometry: Box | Cylinder) -> Cover:
+Bounds = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
+"""Least and largest that the signed distance from points to a solid can be; equal inside it."""
+
+
+def _cover_hull(geometry: Mesh) -> Cover:
+    """A cover of a mesh's convex hull, told by its faces' planes and its corners."""
+    hull = convex_hull(geometry)
+    points = np.array(hull.points(), dtype=float).reshape(-1, 3)
+    faces = [hull.polygons(index) for index in range(hull.num_polygons)]
+    corners = points[np.array([[face[0], face[1], face[2]] for face in faces], dtype=np.int64)]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    sizes = np.linalg.norm(normals, axis=1)
+    normals = normals[sizes > 1e-14] / sizes[sizes > 1e-14, None]
+    offsets = np.einsum("ij,ij->i", normals, corners[sizes > 1e-14, 0])
+    inward = normals @ points.mean(axis=0) > offsets
+    normals[inward], offsets[inward] = -normals[inward], -offsets[inward]
+
+    def bounds(places: FloatArray) -> tuple[FloatArray, FloatArray]:
+        beyond = (places @ normals.T - offsets).max(axis=1)
+        outside = np.flatnonzero(beyond > 0)
+        most = beyond.copy()
+        for part in np.array_split(outside, 1 + len(outside) // 1024):
+            away = places[part, None] - points[None]
+            most[part] = np.sqrt(np.einsum("ijk,ijk->ij", away, away).min(axis=1))
+        return beyond, most
+
+    low, high = points.min(axis=0), points.max(axis=0)
+    return _cover_solid(bounds, 0.5 * (low + high), 0.5 * (high - low))
+
+
+def _cover_solid(bounds: Bounds, center: FloatArray, half: FloatArray) -> Cover:
     """Halve the box about the solid until the spheres about the parts barely leave the solid."""
-    if isinstance(geometry, Box):
-        halves = 0.5 * np.array([geometry.size])
-    else:
-        halves = np.array([[geometry.radius, geometry.radius, 0.5 * geometry.length]])
-    centers = np.zeros((1, 3))
+    centers, halves = center[None], half[None]
     levels: list[_Level] = []
     parents = np.full(1, -1, dtype=np.int64)
     while len(centers):
         radii = np.linalg.norm(halves, axis=1)
-        depths = -signed_distance(geometry, centers)
-        small = (radii - depths <= OVERSHOOT) | (2 * len(centers) > MOST_SPHERES)
-        levels.append(_Level(centers, radii + _ROUNDING, depths, parents))
+        least, most = bounds(centers)
+        small = (radii + least <= OVERSHOOT) | (2 * len(centers) > MOST_SPHERES)
+        levels.append(_Level(centers, radii + _ROUNDING, -most, parents))
         split = np.flatnonzero(~small)
         axis = np.argmax(halves[split], axis=1)
         step = np.zeros((len(split), 3))
@@ -159,14 +192,14 @@ def _cover_solid(geometry: Box | Cylinder) -> Cover:
         centers = np.stack([centers[split] - step, centers[split] + step], axis=1).reshape(-1, 3)
         halves = np.repeat(halves[split] - step, 2, axis=0)
         parents = np.repeat(split, 2)
-        touching = signed_distance(geometry, centers) < np.linalg.norm(halves, axis=1)
+        touching = bounds(centers)[0] < np.linalg.norm(halves, axis=1)
         centers, halves, parents = centers[touching], halves[touching], parents[touching]
     return _preorder(levels)
 
 
-def _cover_mesh(geometry: Mesh) -> Cover:
+def _cover_surface(geometry: Mesh) -> Cover:
     """Cut large triangles up, then halve the set of pieces until the spheres are small."""
-    corners = _pieces(_triangles(geometry), OVERSHOOT)  # (K, 3, 3)
+    corners = _pieces(_corners(geometry), OVERSHOOT)  # (K, 3, 3)
     middles = corners.mean(axis=1)
     members = np.arange(len(corners))  # pieces, sorted by node
     starts = np.zeros(1, dtype=np.int64)
@@ -239,12 +272,10 @@ def _preorder(levels: Sequence[_Level]) -> Cover:
     )
 
 
-def _triangles(geometry: Mesh) -> FloatArray:
-    """Corners of a mesh's triangles [m], shape (K, 3, 3), as Coal reads them."""
-    model = coal_geometry(Shape(geometry))
-    vertices = np.array(model.vertices())
-    faces = [model.tri_indices(index) for index in range(model.num_tris)]
-    return vertices[np.array([[face[0], face[1], face[2]] for face in faces], dtype=np.int64)]
+def _corners(geometry: Mesh) -> FloatArray:
+    """Corners of a mesh's triangles [m], shape (K, 3, 3)."""
+    mesh = read_triangles(geometry)
+    return mesh.vertices[mesh.faces]
 
 
 def _pieces(triangles: FloatArray, size: float) -> FloatArray:

@@ -11,15 +11,12 @@ from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.checker import describe_touches, touch_facts
-from harness.planning.search import search
+from harness.planning.path_search import Effort, verified_paths
 from harness.planning.shortening import shorten
 from harness.planning.task import PlanningTask
 from harness.planning.timing import TimingError, time_blended, time_stopping, time_straight
 from harness.planning.verify import FINAL_RESOLUTION, Defect
 from harness.ports import MotionPlan
-
-PLANNING_RESOLUTIONS = (1 / 32, 1 / 64, 1 / 128)
-"""Joint-space distance between checked states while searching [rad]; finer when a path fails."""
 
 BLEND_DEVIATIONS = (0.05, 0.01)
 """How far the timed path may leave a corner of the checked one [rad]; then it stops there."""
@@ -69,48 +66,26 @@ def _searched(
     task: PlanningTask, goals: Sequence[FloatArray], explanation: dict[str, Any]
 ) -> MotionPlan:
     """Search, shorten, time and verify; finer when verification finds something."""
-    options, checker = task.options, task.checker
-    gaps: list[float] = []
-    used = 0
+    effort = Effort()
     defect: Defect | None = None
-    for attempt in range(options.attempts):
-        left = options.max_state_checks
-        for level, resolution in enumerate(PLANNING_RESOLUTIONS):
-            seed = _derived_seed(options.seed, attempt, level)
-            try:
-                result = search(
-                    options.planner_id,
-                    checker,
-                    task.start,
-                    goals,
-                    resolution=resolution,
-                    max_state_checks=left,
-                    seed=seed,
-                    parameters=options.parameters,
-                )
-            except ValueError as problem:
-                raise PlanningFailed("PLANNING_FAILED", str(problem)) from problem
-            used += result.checks
-            left -= result.checks
-            if result.waypoints is None:
-                gaps.append(result.gap)
-                break
-            if checker.path_free(result.waypoints, FINAL_RESOLUTION):
-                short = shorten(result.waypoints, checker, FINAL_RESOLUTION, seed)
-                timed = _timed(task, short)
-                if isinstance(timed, JointTrajectory):
-                    statistics = task.statistics(result.planner_id, timed, short, result.waypoints)
-                    statistics |= {
-                        "attempts": attempt + 1,
-                        "search_checks": used,
-                        "vertices": result.vertices,
-                        "resolution": resolution,
-                    }
-                    return MotionPlan(timed, statistics, _chosen(explanation, short[-1]))
-                defect = timed
-            if left <= 0:
-                break
-    raise _not_found(task, goals, explanation, used, gaps, defect)
+    try:
+        for found in verified_paths(task.checker, task.start, goals, task.options, effort):
+            short = shorten(found.waypoints, task.checker, FINAL_RESOLUTION, found.seed)
+            timed = _timed(task, short)
+            if isinstance(timed, JointTrajectory):
+                planner_id = found.result.planner_id
+                statistics = task.statistics(planner_id, timed, short, found.waypoints)
+                statistics |= {
+                    "attempts": found.attempt + 1,
+                    "search_checks": effort.checks,
+                    "vertices": found.result.vertices,
+                    "resolution": found.resolution,
+                }
+                return MotionPlan(timed, statistics, _chosen(explanation, short[-1]))
+            defect = timed
+    except ValueError as problem:
+        raise PlanningFailed("PLANNING_FAILED", str(problem)) from problem
+    raise _not_found(task, goals, explanation, effort.checks, effort.gaps, defect)
 
 
 def _timed(task: PlanningTask, waypoints: FloatArray) -> JointTrajectory | Defect:
@@ -162,10 +137,6 @@ def _not_found(
             f"{describe_touches(touches)}"
         )
     return PlanningFailed("PLANNING_FAILED", message, facts)
-
-
-def _derived_seed(seed: int, attempt: int, level: int) -> int:
-    return int(np.random.SeedSequence([seed % 2**63, attempt, level]).generate_state(1)[0])
 
 
 def _chosen(explanation: dict[str, Any], end: FloatArray) -> dict[str, Any]:

@@ -54,6 +54,16 @@ def read_triangles(geometry: Mesh) -> Triangles:
     return Triangles(np.array(model.vertices()), faces.reshape(-1, 3))
 
 
+@lru_cache(maxsize=128)
+def exact_surface(geometry: Mesh) -> Any:
+    """All triangles of a file as Coal's: the surface alone.
+
+    Raises:
+        RobotError: As `read_triangles`.
+    """
+    return _load(geometry)
+
+
 @lru_cache(maxsize=512)
 def convex_hull(geometry: Mesh) -> Any:
     """The convex hull of a file's points as Coal's: the solid that touches things.

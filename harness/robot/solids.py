@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
-from harness.robot.mesh_file import convex_hull
+from harness.robot.mesh_file import convex_hull, exact_surface
 
 
 def coal_geometry(shape: Shape) -> Any:
-    """Coal's geometry of a shape, in the shape's own frame; meshes as their convex hulls.
+    """Coal's geometry of a shape in its own frame; a mesh is its convex hull unless it is exact.
 
     The physics touches the same hulls.
 
@@ -34,4 +34,4 @@ def coal_geometry(shape: Shape) -> Any:
         case Plane():
             return coal.Halfspace(np.array([0.0, 0.0, 1.0]), 0.0)
         case Mesh() as mesh:
-            return convex_hull(mesh)
+            return exact_surface(mesh) if mesh.exact else convex_hull(mesh)

@@ -15,6 +15,7 @@ from harness.planning.compiled import use_compiled
 from harness.planning.covering import cover, cover_shapes, signed_distance
 from harness.planning.robot_model import GroupSpace
 from harness.ports import JointGoal, PlanningOptions
+from harness.robot.mesh_file import convex_hull
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, at, boxes, open_manipulator, thing, ur
 
 pytest.importorskip("numba")
@@ -70,8 +71,24 @@ def test_the_ball_inside_every_sphere_of_a_solid_is_inside_the_solid(solid):
     assert np.all(found.inner <= depths + 1e-9)
 
 
-def test_a_mesh_is_covered_and_each_inner_radius_reaches_a_point_of_it(tmp_path):
+def test_a_hull_is_covered_and_the_balls_inside_it_touch_it(tmp_path):
     mesh = Mesh(write_mesh(tmp_path))
+    found = cover(mesh)
+    hull = convex_hull(mesh)
+    corners = np.array(hull.points()).reshape(-1, 3)
+    generator = np.random.default_rng(5)
+    for weights in generator.dirichlet(np.full(len(corners), 0.3), 400):
+        assert reaches_a_leaf(found, weights @ corners)
+    for node in generator.integers(len(found.outer), size=60):
+        ball = coal.Sphere(1e-6)
+        pose = coal.Transform3s(np.eye(3), found.centers[node])
+        result = coal.DistanceResult()
+        away = coal.distance(hull, coal.Transform3s(), ball, pose, coal.DistanceRequest(), result)
+        assert away <= -found.inner[node] + 2e-5
+
+
+def test_a_mesh_is_covered_and_each_inner_radius_reaches_a_point_of_it(tmp_path):
+    mesh = Mesh(write_mesh(tmp_path), exact=True)
     found = cover(mesh)
     generator = np.random.default_rng(4)
     loaded = coal.MeshLoader().load(str(mesh.path), np.ones(3))
@@ -110,11 +127,15 @@ def write_mesh(folder: Path) -> Path:
     return path
 
 
-def meshed(description):
+def meshed(description, *, exact):
     """The robot with the meshes it is drawn with as collision shapes of its last links."""
     links = []
     for link in description.links:
-        meshes = tuple(shape for shape in link.visuals if isinstance(shape.geometry, Mesh))
+        meshes = tuple(
+            replace(shape, geometry=replace(shape.geometry, exact=exact))
+            for shape in link.visuals
+            if isinstance(shape.geometry, Mesh)
+        )
         is_small = link.name in ("wrist_3_link",)
         links.append(replace(link, collisions=meshes) if meshes and is_small else link)
     return replace(description, links=tuple(links))
@@ -124,7 +145,8 @@ def crowded(description, folder):
     """A cell with boxes, a mesh in the way, and something in the hand."""
     cell = Cell(description)
     cell.add(boxes(*FIRST_BOXES))
-    cell.add(thing("bar", at(0.25, -0.35, 1.35, (0.3, 0.5, 0)), Shape(Mesh(write_mesh(folder)))))
+    bar = Mesh(write_mesh(folder), exact=True)
+    cell.add(thing("bar", at(0.25, -0.35, 1.35, (0.3, 0.5, 0)), Shape(bar)))
     tip = cell.kinematics.link_pose(cell.state, description.tcp_link)
     cell.add(thing("held", tip, Shape(Cylinder(0.02, 0.12))))
     gripper = description.gripper
@@ -136,7 +158,8 @@ def crowded(description, folder):
 
 ROBOTS = {
     "ur3e": (lambda: ur("ur3e"), ARM),
-    "ur5e with a mesh": (lambda: meshed(ur("ur5e")), ARM),
+    "ur5e with a mesh": (lambda: meshed(ur("ur5e"), exact=True), ARM),
+    "ur5e with a hull": (lambda: meshed(ur("ur5e"), exact=False), ARM),
     "open_manipulator_x": (open_manipulator, "arm"),
 }
 
@@ -213,6 +236,7 @@ if {hide}: sys.modules["numba"] = None
 from harness.planning import compiled
 from tests.planning.lesson import Cell, ARM, FIRST_BOXES, boxes, ur
 from harness.ports import JointGoal, PlanningOptions
+from harness.robot.mesh_file import convex_hull
 cell = Cell(ur("ur3e"))
 if {hide}: compiled.use_compiled("always")
 plan = cell.planner.plan(ARM, cell.state, JointGoal(cell.named("up")), PlanningOptions())
