@@ -1,0 +1,186 @@
+"""The joints that carry a link, as arithmetic: where the link is, and how far it can come."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.core.errors import RobotError
+from harness.core.spatial import SE3
+from harness.core.types import BoolArray, FloatArray
+from harness.robot.description import Joint, RobotDescription
+
+HOME = "home"
+"""The named state that counterexamples are shrunk towards, where the arm has it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """A planning group's joints from the world to a link; what else moves stands at its start.
+
+    Attributes:
+        description: The robot.
+        link: The one that is placed.
+        joint_names: Of the group, from base to tip.
+        lower: Position limits, shape (dof,) [rad or m]; -pi for a continuous joint.
+        upper: Shape (dof,); pi for a continuous joint.
+        is_turning: False for prismatic joints, shape (dof,).
+        home: Named state `home`, or where runs start, shape (dof,).
+        before: Pose of each joint's frame in the one before it, that joint at zero.
+        axes: Of the joints, in their frames, shape (dof, 3).
+        tip: Pose of the link in the last joint's frame.
+    """
+
+    description: RobotDescription
+    link: str
+    joint_names: tuple[str, ...]
+    lower: FloatArray
+    upper: FloatArray
+    is_turning: BoolArray
+    home: FloatArray
+    before: tuple[SE3, ...]
+    axes: FloatArray
+    tip: SE3
+
+    @classmethod
+    def of(cls, description: RobotDescription, group: str = "", link: str = "") -> Chain:
+        """The chain of a group; by default the arm's, up to its TCP.
+
+        Raises:
+            RobotError: There is no such group or link, or the group does not carry the link.
+        """
+        group, link = group or description.arm_group, link or description.tcp_link
+        if group not in description.groups:
+            raise RobotError(f"no group '{group}'; groups: {', '.join(description.groups)}")
+        if link not in description.link_names:
+            raise RobotError(f"no link '{link}'; links: {', '.join(description.link_names)}")
+        names = description.groups[group].joint_names
+        start = description.start_positions()
+        before: list[SE3] = []
+        pose = SE3.identity()
+        for joint in _carriers(description, link):
+            pose = pose @ joint.pose
+            if joint.name in names:
+                before.append(pose)
+                pose = SE3.identity()
+            elif joint.is_movable:
+                if joint.mimic is not None and joint.mimic.joint in names:
+                    raise RobotError(f"'{link}' moves with '{joint.name}', which mimics a joint")
+                value = float(start[description.joint_index[joint.name]])
+                pose = pose @ motion(joint, value)
+        if len(before) < len(names) or not names:
+            raise RobotError(f"the joints of group '{group}' do not all carry '{link}'")
+        joints = [description.joint_by_name[name] for name in names]
+        bounded = [(max(each.lower, -np.pi), min(each.upper, np.pi))
+                   if each.kind == "continuous" else (each.lower, each.upper)
+                   for each in joints]  # fmt: skip
+        states = description.states_of(group)
+        home = states[HOME].positions if HOME in states else {}
+        return cls(
+            description,
+            link,
+            names,
+            np.array([low for low, _ in bounded]),
+            np.array([high for _, high in bounded]),
+            np.array([joint.kind != "prismatic" for joint in joints]),
+            np.array([home.get(n, start[description.joint_index[n]]) for n in names]),
+            tuple(before),
+            np.array([joint.axis for joint in joints]),
+            pose,
+        )
+
+    @property
+    def dof(self) -> int:
+        """Number of joints."""
+        return len(self.joint_names)
+
+    def link_pose(self, joint_positions: FloatArray) -> SE3:
+        """T_world_link at the group's positions, shape (dof,)."""
+        rotations, translations, _ = self._walk(np.asarray(joint_positions, float)[None])
+        return SE3(rotations[0], translations[0])
+
+    def jacobians(self, samples: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Jacobians in world axes at (N, dof) positions, and R_world_link.
+
+        Returns:
+            Rows of [m, rad] per joint, shape (N, 6, dof); rotations, shape (N, 3, 3).
+        """
+        rotations, tips, carried = self._walk(np.asarray(samples, dtype=float))
+        columns: list[FloatArray] = []
+        for (origins, axes), is_turning in zip(carried, self.is_turning, strict=True):
+            linear = np.cross(axes, tips - origins) if is_turning else axes
+            columns.append(np.hstack([linear, axes if is_turning else np.zeros_like(axes)]))
+        return np.stack(columns, axis=2), rotations
+
+    def whole(self, joint_positions: FloatArray) -> FloatArray:
+        """Positions of the whole robot in description order, the rest as at the start of a run."""
+        whole = self.description.start_positions()
+        for name, position in zip(self.joint_names, joint_positions, strict=True):
+            whole[self.description.joint_index[name]] = position
+        return self.description.with_mimics(whole)
+
+    def farthest(self) -> tuple[FloatArray, float]:
+        """A sphere that the last joint's frame cannot leave: centre (3,) and radius [m].
+
+        The centre is the origin of the last joint whose place no joint before it changes; from
+        there on lengths add up at most (triangle inequality), whatever the limits.
+        """
+        pivot, pose = 0, self.before[0]
+        while pivot + 1 < self.dof and self._stays(pivot):
+            pose = pose @ self.before[pivot + 1]
+            pivot += 1
+        later = range(pivot + 1, self.dof)
+        radius = sum(float(np.linalg.norm(self.before[index].translation)) for index in later)
+        for index in range(pivot, self.dof):
+            if not self.is_turning[index]:
+                radius += float(max(abs(self.lower[index]), abs(self.upper[index])))
+        return pose.translation, radius
+
+    def _stays(self, index: int) -> bool:
+        """Whether the next joint's origin lies on this joint's axis, so that turning leaves it."""
+        away = np.cross(self.axes[index], self.before[index + 1].translation)
+        return bool(self.is_turning[index]) and float(np.linalg.norm(away)) < 1e-9
+
+    def _walk(
+        self, samples: FloatArray
+    ) -> tuple[FloatArray, FloatArray, list[tuple[FloatArray, FloatArray]]]:
+        """The link's rotations and places, and each joint's origin and axis in the world."""
+        count = len(samples)
+        R, p = np.tile(np.eye(3), (count, 1, 1)), np.zeros((count, 3))
+        carried: list[tuple[FloatArray, FloatArray]] = []
+        for index, before in enumerate(self.before):
+            p = p + R @ before.translation
+            R = R @ before.rotation
+            axes = R @ self.axes[index]
+            carried.append((p, axes))
+            if self.is_turning[index]:
+                R = R @ rotations_about(self.axes[index], samples[:, index])
+            else:
+                p = p + axes * samples[:, index, None]
+        return R @ self.tip.rotation, p + R @ self.tip.translation, carried
+
+
+def motion(joint: Joint, position: float) -> SE3:
+    """What a joint's position adds behind its pose at zero."""
+    if joint.kind == "prismatic":
+        return SE3(np.eye(3), position * joint.axis)
+    return SE3(rotations_about(joint.axis, np.array([position]))[0], np.zeros(3))
+
+
+def rotations_about(axis: FloatArray, angles: FloatArray) -> FloatArray:
+    """Rotation matrices about a unit axis, shape (N, 3, 3): Rodrigues' formula."""
+    x, y, z = axis
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    sine, cosine = np.sin(angles)[:, None, None], np.cos(angles)[:, None, None]
+    return np.eye(3) + sine * K + (1.0 - cosine) * (K @ K)
+
+
+def _carriers(description: RobotDescription, link: str) -> list[Joint]:
+    """The joints between the world and a link, in this order."""
+    before = {joint.child: joint for joint in description.joints}
+    found: list[Joint] = []
+    while link in before:
+        found.append(before[link])
+        link = before[link].parent
+    return found[::-1]

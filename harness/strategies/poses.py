@@ -1,0 +1,101 @@
+"""Poses of a link: within reach by construction, out of reach by construction, or anywhere."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from hypothesis import strategies as st
+
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.robot.chain import Chain
+from harness.strategies.positions import (
+    Positions,
+    joint_positions,
+    near_limit_positions,
+    near_singular_positions,
+)
+from harness.strategies.tasks import Task
+
+
+@dataclass(frozen=True, eq=False)
+class Target:
+    """A pose that is asked for.
+
+    Attributes:
+        pose: T_world_link.
+        joint_positions: That reach it, shape (dof,); None where nobody knows any.
+    """
+
+    pose: SE3
+    joint_positions: FloatArray | None = None
+
+
+Targets = st.SearchStrategy[Target]
+
+BEYOND = (0.001, 0.01, 0.1, 1.0)
+"""How far outside the arm's reach, in shares of it."""
+
+
+def reachable_poses(chain: Chain, positions: Positions | None = None) -> Targets:
+    """Poses that the arm can take: forward kinematics of joint positions within the limits.
+
+    Args:
+        chain: Of the arm.
+        positions: Where from; by default anywhere between the limits.
+    """
+    drawn = joint_positions(chain) if positions is None else positions
+    return drawn.map(lambda each: Target(chain.link_pose(each), each))
+
+
+def near_limit_poses(chain: Chain) -> Targets:
+    """Poses that the arm takes with a joint at a limit or next to it."""
+    return reachable_poses(chain, near_limit_positions(chain))
+
+
+def near_singular_poses(chain: Chain, task: Task | None = None) -> Targets:
+    """Poses that the arm takes at a singularity or next to it."""
+    return reachable_poses(chain, near_singular_positions(chain, task))
+
+
+def unreachable_poses(chain: Chain, *, any_orientation: bool = False) -> Targets:
+    """Poses that no joint positions reach, whatever the limits: the arm is too short.
+
+    Args:
+        chain: Of the arm.
+        any_orientation: Out of reach even where the orientation is free; else the pose puts the
+            last joint out of reach.
+    """
+    centre, radius = chain.farthest()
+    behind = np.linalg.norm(chain.tip.translation) if any_orientation else 0.0
+    reach = radius + float(behind)
+
+    def beyond(target: Target, share: float) -> Target:
+        pose = target.pose
+        last = pose @ chain.tip.inverse()
+        here = pose.translation if any_orientation else last.translation
+        away = here - centre
+        length = float(np.linalg.norm(away))
+        direction = away / length if length > 1e-9 else np.array([1.0, 0.0, 0.0])
+        shift = centre + direction * reach * (1.0 + share) - here
+        return Target(SE3(pose.rotation, pose.translation + shift))
+
+    return st.builds(beyond, reachable_poses(chain), st.sampled_from(BEYOND))
+
+
+def poses_around(chain: Chain) -> Targets:
+    """Poses anywhere in and around the arm's reach: a reachable one, moved by up to its reach.
+
+    Whether the arm can take them is not known.
+    """
+    size = chain.farthest()[1] + float(np.linalg.norm(chain.tip.translation))
+    shares = st.integers(-100, 100).map(lambda percent: 0.01 * percent)
+
+    def moved(target: Target, share: tuple[float, float, float]) -> Target:
+        shift = np.round(size * np.array(share), 3)
+        if not shift.any():
+            return target
+        return Target(SE3(target.pose.rotation, target.pose.translation + shift))
+
+    return st.builds(moved, reachable_poses(chain), st.tuples(shares, shares, shares))

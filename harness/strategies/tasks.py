@@ -1,0 +1,82 @@
+"""What is asked of an arm: a pose, a position with a pitch, or a position."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.robot.chain import Chain
+
+Task = Literal["pose", "position and pitch", "position"]
+
+ROWS: dict[Task, int] = {"pose": 6, "position and pitch": 4, "position": 3}
+"""Numbers that a task fixes, which is how many joints it takes."""
+
+_LEAST_HORIZONTAL = 0.05  # the pitch of an x axis that is nearly vertical changes no faster
+
+
+def natural_task(chain: Chain) -> Task:
+    """The most that an arm with so many joints can be asked for anywhere in its reach."""
+    fitting: list[Task] = [task for task, rows in ROWS.items() if rows <= chain.dof]
+    return fitting[0] if fitting else "position"
+
+
+def pitch_of(pose: SE3) -> float:
+    """Angle of a frame's x axis below the horizontal [rad], -pi/2 to pi/2."""
+    x_axis = pose.rotation[:, 0]
+    return float(np.arctan2(-x_axis[2], np.hypot(x_axis[0], x_axis[1])))
+
+
+def miss(task: Task, asked: SE3, reached: SE3) -> tuple[float, float]:
+    """How far a pose is from what a task asks for: [m], and [rad] of pitch or orientation."""
+    shift, turn = asked.distance_to(reached)
+    if task == "pose":
+        return shift, turn
+    return shift, abs(pitch_of(asked) - pitch_of(reached)) if "pitch" in task else 0.0
+
+
+def task_jacobians(chain: Chain, task: Task, samples: FloatArray) -> FloatArray:
+    """How joints change what a task fixes, positions in shares of the arm's reach.
+
+    Args:
+        chain: Of the arm.
+        task: What is fixed.
+        samples: Joint positions, shape (N, dof).
+
+    Returns:
+        Shape (N, rows, dof).
+    """
+    jacobians, rotations = chain.jacobians(samples)
+    jacobians[:, :3] /= max(chain.farthest()[1], 1e-6)
+    if task == "pose":
+        return jacobians
+    if task == "position":
+        return jacobians[:, :3]
+    x_axes = rotations[:, :, 0]
+    horizontal = np.maximum(np.hypot(x_axes[:, 0], x_axes[:, 1]), _LEAST_HORIZONTAL)
+    about = np.stack([-x_axes[:, 1], x_axes[:, 0], np.zeros(len(x_axes))], axis=1)
+    pitch = np.einsum("ni,nij->nj", about / horizontal[:, None], jacobians[:, 3:])
+    return np.concatenate([jacobians[:, :3], pitch[:, None]], axis=1)
+
+
+def task_error(task: Task, asked: SE3, here: SE3, reach: float) -> FloatArray:
+    """What is left to a target, in the rows of `task_jacobians`; `reach` in m.
+
+    The turn is to first order.
+    """
+    shift = (asked.translation - here.translation) / reach
+    if task == "position":
+        return shift
+    if task == "position and pitch":
+        return np.append(shift, pitch_of(asked) - pitch_of(here))
+    crossed = np.cross(here.rotation, asked.rotation, axis=0)  # column by column
+    return np.concatenate([shift, 0.5 * crossed.sum(axis=1)])
+
+
+def manipulability(chain: Chain, task: Task, samples: FloatArray) -> FloatArray:
+    """Smallest singular value of the task's Jacobian at (N, dof) positions; 0 is singular."""
+    values = np.linalg.svd(task_jacobians(chain, task, samples), compute_uv=False)
+    return np.asarray(values[:, -1], dtype=float)
