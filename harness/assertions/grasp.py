@@ -77,7 +77,7 @@ def grasped(check: Grasped, window: Window) -> MarginSignal:
         apart = _too_wide(run, name, window.start + index)
         return f"{forces}; {name} is not between the fingers{apart}{_planners_belief(run, name)}"
 
-    return all_of(window, parts, text, present=window.cut(present(run, name)))
+    return all_of(window, parts, text, present=window.cut(present(run, name)), shown=len(parts))
 
 
 def _too_wide(run: Run, name: str, sample: int) -> str:

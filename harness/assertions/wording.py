@@ -95,6 +95,8 @@ def _fields(model: BaseModel) -> str:
 
 
 def _vector(value: Any) -> str:
+    if isinstance(value, BaseModel):
+        return _fields(value)
     if isinstance(value, tuple):
         return "[" + ", ".join(f"{part:.6g}" for part in value) + "]"  # pyright: ignore[reportUnknownVariableType]
     return f"{value:.6g}" if isinstance(value, float) else str(value)

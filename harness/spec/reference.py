@@ -1,7 +1,8 @@
-"""The reference of steps and expectations as Markdown, made from the models."""
+"""The reference of scenario files and steps as Markdown, made from the models."""
 
 from __future__ import annotations
 
+import inspect
 import types
 from collections.abc import Collection, Iterable, Mapping
 from typing import Annotated, Any, Literal, Union, cast, get_args, get_origin
@@ -12,19 +13,12 @@ from pydantic.fields import FieldInfo
 from harness.core.errors import ErrorCode
 from harness.spec.annotations import bare, is_model, keys_of
 from harness.spec.base import SpecModel
-from harness.spec.checks import CheckFields, Formula
-from harness.spec.formula import SIGNALS
-from harness.spec.language import BESIDE_CHECK, BESIDE_VERB, PREDICATES, TEMPORAL, VERBS
+from harness.spec.language import BESIDE_VERB, VERBS
 from harness.spec.scenario import Scenario
 from harness.spec.steps import Step, StepFields
 from harness.spec.units import MEANINGS
 from harness.spec.world import WorldSpec
 
-JUDGED = {
-    "at_end": "Bare, it must hold at the last sample of its step or run.",
-    "always": "Bare, it must hold at every sample of its step or run.",
-    "eventually": "Bare, it must hold at some sample of its step or run.",
-}
 NOT_YET = "*Not yet available.*"
 KINDS: dict[Any, str] = {str: "text", float: "number", int: "whole number", bool: "true or false"}
 
@@ -40,50 +34,14 @@ STEPS_HEAD = """A step is one verb with its content, and what stands beside it:
   id: above
   expect: [{tcp_pose: {pose: {frame: base_link, xyz: [0.32, -0.17, 0.3]}, position_only: true}}]
 ```"""
-EXPECTATIONS_HEAD = """An expectation is a predicate, bare or inside a temporal word. Under a
-step's `expect` it is judged over that step, under the file's over the whole run: its window.
-
-```yaml
-expect:
-  - lifted: {object: green_cylinder, above: 5 cm, for: 1 s}
-  - always: within_limits
-  - never: {collision: {between: [robot, Table]}}
-```
-
-Every verdict has a margin: how far it was from failing. What was never observed does not pass."""
-
-
-UNTIL_TEXT = """- `{always: A, until: B}`: A holds at every sample before one at which B does, and
-B does; with `for`, B is held from there on; with `within`, B begins by then.
-
-The words are formulas of signal temporal logic: with a hold T and a deadline W, `eventually A` is
-`eventually[0, W] always[0, T] A`, `never A` is `not eventually[0, W] always[0, T] A`, `always A` is
-`always A` (with a deadline `eventually[0, W] always A`), and `until` is
-`A until[0, W] always[0, T] B`. `during` gives them the step's samples as their window."""
-FORMULA_TEXT = """```yaml
-expect:
-  - formula: always (z(red_box) > 5 cm implies force(gripper, red_box) > 0.1 N)
-  - formula: {formula: "eventually[0, 3] always[0, 500 ms] speed(tcp) < 0.005", during: lift}
-```
-
-From the weakest binding to the strongest: `implies`, `or`, `and`, `until[a, b]`, then `not`,
-`always[a, b]`, `eventually[a, b]`, then `<` `<=` `>` `>=`, `+` `-`, `*` `/`. Parentheses group.
-`->`, `|`, `&`, `!`, `U`, `G`, `F` are other ways to write implies, or, and, not, until, always,
-eventually. `abs(a)`, `min(a, b)`, `max(a, b)` are numbers, `5 cm`, `90 deg`, `200 ms`, `2 N` too.
-An interval is in seconds after the moment at which its word is judged; without one it lasts to the
-end of the window. Names with other characters than letters, digits and `_` stand in quotes.
-
-The margin is that of the comparison that decides, in its unit. Where the window ends before a
-formula is decided it is not reached: `always[0, 5] A` in a window of 3 s may fail, and cannot pass.
-Where a signal is missing it is not observable."""
 
 
 def scenario_reference() -> str:
     """The keys of a scenario file and of a world file."""
     parts = ["# Scenario and world files", VALUES]
     for title, model in (("Scenario file", Scenario), ("World file", WorldSpec)):
-        parts += [f"## {title}", _sentence(model), _table(keys_of(model).items())]
-    return "\n\n".join([*parts, *_parts((Scenario, WorldSpec))]) + "\n"
+        parts += [f"## {title}", sentence(model), table(keys_of(model).items())]
+    return "\n\n".join([*parts, *part_sections((Scenario, WorldSpec))]) + "\n"
 
 
 def steps_reference(available: Collection[type] | None = None) -> str:
@@ -92,44 +50,17 @@ def steps_reference(available: Collection[type] | None = None) -> str:
     Args:
         available: Models of the steps that can be executed; None leaves that out.
     """
-    beside = _table((key, keys_of(StepFields)[key]) for key in BESIDE_VERB)
-    parts = ["# Steps", STEPS_HEAD, VALUES, _contents(VERBS, available)]
+    beside = table((key, keys_of(StepFields)[key]) for key in BESIDE_VERB)
+    parts = ["# Steps", STEPS_HEAD, VALUES, contents(VERBS, available)]
     parts += ["Beside every verb may stand:", beside]
     parts.append(f"Error codes are {', '.join(f'`{code}`' for code in get_args(ErrorCode))}.")
     for verb, model in VERBS.items():
-        parts += _section(verb, model, BESIDE_VERB, available, ())
-    parts += _parts(VERBS.values())
+        parts += section(verb, model, BESIDE_VERB, available, ())
+    parts += part_sections(VERBS.values())
     return "\n\n".join(parts) + "\n"
 
 
-def expectations_reference(available: Collection[type] | None = None) -> str:
-    """Every temporal word and predicate, and when a bare one is judged.
-
-    Args:
-        available: Models of the predicates that can be judged; None leaves that out.
-    """
-    beside = _table((key, keys_of(CheckFields)[key]) for key in BESIDE_CHECK)
-    parts = ["# Expectations", EXPECTATIONS_HEAD, VALUES, _contents(PREDICATES, available)]
-    parts += ["Inside or beside every word may stand:", beside]
-    parts += ["## Temporal words", _words({w: _sentence(m) for w, m in TEMPORAL.items()})]
-    parts += [UNTIL_TEXT, *_formula_section()]
-    for word, model in PREDICATES.items():
-        judged = model.judged if issubclass(model, CheckFields) else "at_end"
-        parts += _section(word, model, BESIDE_CHECK, available, (JUDGED[judged],))
-    parts += _parts(PREDICATES.values())
-    return "\n\n".join(parts) + "\n"
-
-
-def _formula_section() -> list[str]:
-    rows = ["| signal | unit | meaning |", "| --- | --- | --- |"]
-    for name, (kinds, unit, meaning) in SIGNALS.items():
-        arguments = f"({', '.join(kinds)})" if kinds else ""
-        unit = unit or "the joint's"
-        rows.append(f"| `{name}{arguments}` | {unit} | {meaning} |")
-    return ["## `formula`", _sentence(Formula), FORMULA_TEXT, "\n".join(rows)]
-
-
-def _contents(words: Mapping[str, type[SpecModel]], available: Collection[type] | None) -> str:
+def contents(words: Mapping[str, type[SpecModel]], available: Collection[type] | None) -> str:
     """Links to the sections, those not yet available last."""
     now = [word for word, model in words.items() if available is None or model in available]
     later = [word for word in words if word not in now]
@@ -140,26 +71,27 @@ def _contents(words: Mapping[str, type[SpecModel]], available: Collection[type] 
     return "\n\n".join(lines)
 
 
-def _section(
+def section(
     word: str,
     model: type[SpecModel],
     beside: Collection[str],
     available: Collection[type] | None,
     notes: Iterable[str],
 ) -> list[str]:
+    """A word's heading, definition, notes and keys."""
     fields = [(key, field) for key, field in keys_of(model).items() if key not in beside]
-    parts = [f"## `{word}`", _sentence(model)]
+    parts = [f"## `{word}`", sentence(model)]
     if available is not None and model not in available:
         parts.append(NOT_YET)
     parts += notes
     if model.short and not any(f.is_required() for key, f in fields if key != model.short):
         parts.append(f"`- {word}: x` is short for `- {word}: {{{model.short}: x}}`.")
     if fields:
-        parts.append(_table(fields))
+        parts.append(table(fields))
     return parts
 
 
-def _parts(models: Iterable[type[SpecModel]]) -> list[str]:
+def part_sections(models: Iterable[type[SpecModel]]) -> list[str]:
     """Sections of the models that the keys of these models hold, in alphabetical order."""
     found: dict[str, type[SpecModel]] = {}
     waiting = list(models)
@@ -172,7 +104,7 @@ def _parts(models: Iterable[type[SpecModel]]) -> list[str]:
     lines = ["# Parts"] if found else []
     for name in sorted(found):
         fields = keys_of(found[name]).items()
-        lines += [f"## {name}", _sentence(found[name]), *([_table(fields)] if fields else [])]
+        lines += [f"## {name}", sentence(found[name]), *([table(fields)] if fields else [])]
     return lines
 
 
@@ -184,11 +116,14 @@ def _models_in(annotation: Any) -> list[type[SpecModel]]:
     return [model for each in get_args(annotation) for model in _models_in(each)]
 
 
-def _sentence(model: type[SpecModel]) -> str:
-    return " ".join((model.__doc__ or "").split())
+def sentence(model: type[SpecModel]) -> str:
+    """What a model says of itself, a line for each paragraph."""
+    paragraphs = inspect.cleandoc(model.__doc__ or "").split("\n\n")
+    return "\n\n".join(" ".join(each.split()) for each in paragraphs)
 
 
-def _table(fields: Iterable[tuple[str, FieldInfo]]) -> str:
+def table(fields: Iterable[tuple[str, FieldInfo]]) -> str:
+    """Keys with what may be written, their default and meaning."""
     rows = ["| key | value | default | meaning |", "| --- | --- | --- | --- |"]
     for key, field in fields:
         cells = (f"`{key}`", _kind(field), _default(field), field.description or "")
@@ -196,7 +131,8 @@ def _table(fields: Iterable[tuple[str, FieldInfo]]) -> str:
     return "\n".join(rows)
 
 
-def _words(meanings: Mapping[str, str]) -> str:
+def words(meanings: Mapping[str, str]) -> str:
+    """A list of words."""
     return "\n".join(f"- `{word}`: {meaning}" for word, meaning in meanings.items())
 
 
@@ -220,7 +156,9 @@ def _described(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
         kinds = [_described(each) for each in arguments if each is not type(None)]
         return " or ".join(dict.fromkeys(kinds)) if len(kinds) <= 4 else "expectation"
     if get_origin(annotation) is Literal:
-        return ", ".join(f"`{each}`" for each in arguments) if len(arguments) < 8 else "error code"
+        if set(arguments) <= set(get_args(ErrorCode)):
+            return "error code"
+        return ", ".join(f"`{each}`" for each in arguments)
     if get_origin(annotation) in (tuple, list):
         first = _described(arguments[0])
         size = "" if arguments[-1] is ... or len(arguments) == 1 else f"{len(arguments)} x "

@@ -6,8 +6,9 @@ import harness.engine.executors
 from harness.assertions.judge import EXECUTED
 from harness.engine.registry import is_available
 from harness.importers.reference import formats_page
+from harness.spec.expectations_reference import expectations_reference
 from harness.spec.language import VERBS
-from harness.spec.reference import expectations_reference, scenario_reference, steps_reference
+from harness.spec.reference import scenario_reference, steps_reference
 from harness.spec.schema import schema_text, world_schema_text
 
 del harness

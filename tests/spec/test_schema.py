@@ -5,8 +5,9 @@ import jsonschema
 import pytest
 
 from harness.core.resources import data_folder
+from harness.spec.expectations_reference import expectations_reference
 from harness.spec.language import PREDICATES, VERBS
-from harness.spec.reference import expectations_reference, steps_reference
+from harness.spec.reference import steps_reference
 from harness.spec.schema import scenario_schema, schema_text, world_schema
 from harness.spec.source import Source
 from harness.spec.steps import MoveTo

@@ -1,0 +1,34 @@
+"""The reference's pictures of expectations tell what becomes of them in real runs."""
+
+import html
+import re
+
+import pytest
+
+from harness.spec.language import PREDICATES
+from tests.docs.pictures import FOLDER, RENEW, pictures, said_in, title_of
+
+
+@pytest.fixture(scope="module")
+def panels():
+    """What each picture shows, from runs of now."""
+    return dict(pictures())
+
+
+def without_numbers(text):
+    return re.sub(r"\d+(\.\d+)?", "#", html.unescape(text))
+
+
+def test_every_predicate_has_a_small_picture_of_a_pass_and_a_failure(panels):
+    assert set(panels) == set(PREDICATES)
+    for word, pair in panels.items():
+        assert [verdict.status for *_, verdict in pair] == ["passed", "failed"], word
+        assert (FOLDER / f"{word}.svg").stat().st_size < 60_000
+
+
+def test_the_pictures_say_what_the_runs_of_now_say(panels):
+    for word, pair in panels.items():
+        kept = without_numbers(said_in((FOLDER / f"{word}.svg").read_text(encoding="utf-8")))
+        for text, _, _, verdict in pair:
+            title = without_numbers(title_of(text, verdict).replace("\n", " "))
+            assert title in kept, f"{word}.svg is of other runs; {RENEW}"
