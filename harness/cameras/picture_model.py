@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from harness.cameras.meshes import load_obj
+from harness.cameras.meshes import mesh_parts
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Rgba, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
@@ -20,10 +20,6 @@ SOLID_GROUP = 0
 TRANSLUCENT_GROUP = 1
 FLOOR_GROUP = 2
 FLOOR, EYE = "floor", "eye"
-
-MUJOCO_SUFFIXES = (".stl", ".msh")
-OBJ_SUFFIX = ".obj"
-"""Mesh files that can be drawn: those that MuJoCo reads, and the one that is read here."""
 
 GHOST_ALPHA = 0.3
 """Opacity of objects that are in the planner's belief alone."""
@@ -107,9 +103,8 @@ def undrawn(description: RobotDescription, objects: Sequence[WorldObject]) -> tu
     looks = [link.visuals for link in description.links]
     looks += [obj.visuals or obj.shapes for obj in objects]
     shapes = [shape.geometry for look in looks for shape in look]
-    meshes = [geometry.path for geometry in shapes if isinstance(geometry, Mesh)]
-    known = {*MUJOCO_SUFFIXES, OBJ_SUFFIX}
-    return tuple(sorted({path.name for path in meshes if path.suffix.lower() not in known}))
+    meshes = [geometry for geometry in shapes if isinstance(geometry, Mesh)]
+    return tuple(sorted({mesh.path.name for mesh in meshes if not mesh_parts(mesh)}))
 
 
 def _add_body(spec: mujoco.MjSpec, name: str, shapes: Sequence[Shape], *, ghost: bool) -> None:
@@ -135,16 +130,8 @@ def _pieces(spec: mujoco.MjSpec, shape: Shape) -> list[tuple[Geometry | str, Rgb
     if not isinstance(geometry, Mesh):
         return [(geometry, None)]
     key = f"{geometry.path}|{geometry.scale}"
-    suffix = geometry.path.suffix.lower()
-    if suffix in MUJOCO_SUFFIXES:
-        if spec.mesh(key) is None:
-            asset = spec.add_mesh(name=key, file=str(geometry.path), scale=geometry.scale)
-            asset.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
-        return [(key, None)]
-    if suffix != OBJ_SUFFIX:
-        return []  # `undrawn` names it
     pieces: list[tuple[Geometry | str, Rgba | None]] = []
-    for number, part in enumerate(load_obj(geometry)):
+    for number, part in enumerate(mesh_parts(geometry)):
         name = f"{key}|{number}"
         if spec.mesh(name) is None:
             asset = spec.add_mesh(name=name)

@@ -25,6 +25,7 @@ LARGEST_FILE = 64_000_000
 
 HEADER = 20_000
 UNIT = re.compile(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']\s*([0-9.eE+-]+)\s*[\"']")
+ROOT = b"<COLLADA"
 DECLARATION = re.compile(rb"<!\s*(DOCTYPE|ENTITY)", re.IGNORECASE)
 
 
@@ -89,7 +90,7 @@ def _load(geometry: Mesh) -> Any:
     import coal  # here: most robots are known without their meshes
 
     path = geometry.path
-    scale = np.array(geometry.scale, dtype=float) * _unit(geometry)
+    scale = np.array(geometry.scale, dtype=float) * unit_of(geometry)
     try:
         model = coal.MeshLoader().load(str(path), scale)
     except (RuntimeError, ValueError) as error:
@@ -100,8 +101,12 @@ def _load(geometry: Mesh) -> Any:
     return model
 
 
-def _unit(geometry: Mesh) -> float:
-    """Metres of a COLLADA file's unit; 1 for other files, which are taken in metres."""
+def unit_of(geometry: Mesh) -> float:
+    """Metres of a COLLADA file's unit; 1 for other files, which are taken in metres.
+
+    Raises:
+        RobotError: The file is none that is read: its kind, its size, entities in it.
+    """
     path = geometry.path
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
@@ -117,6 +122,8 @@ def _unit(geometry: Mesh) -> float:
         raise RobotError(f"{path.name} has {size / 1e6:.0f} MB; at most {largest:.0f} MB are read")
     if suffix != ".dae":
         return 1.0
+    if ROOT not in header:
+        raise RobotError(f"{path.name} is no COLLADA file")
     if DECLARATION.search(header):
         raise RobotError(f"{path.name} declares a document type or entities, which are not read")
     found = UNIT.search(header)

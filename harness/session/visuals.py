@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from harness.cameras.meshes import load_obj
+from harness.cameras.meshes import mesh_parts
 from harness.core.geometry import Mesh, Shape
 from harness.recording.run import MeshRecord, Run
 
@@ -18,9 +18,7 @@ def mesh_records(run: Run) -> tuple[MeshRecord, ...]:
     """
     records: list[MeshRecord] = []
     for geometry in dict.fromkeys(_meshes(run)):
-        if geometry.path.suffix.lower() != ".obj":
-            continue
-        for part in load_obj(geometry):
+        for part in mesh_parts(geometry):
             # in the precision in which they are saved
             vertices = part.vertices.astype(np.float32).astype(np.float64)
             records.append(

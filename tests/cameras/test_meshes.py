@@ -1,10 +1,14 @@
-"""OBJ files come out as coloured triangles."""
+"""Mesh files come out as coloured triangles."""
 
 import numpy as np
 import pytest
 
-from harness.cameras.meshes import coarsen, load_obj
+from harness.cameras.mesh_part import coarsen
+from harness.cameras.meshes import mesh_parts
+from harness.cameras.obj_parts import load_obj
 from harness.core.geometry import Mesh
+from harness.robot.mesh_file import read_triangles
+from tests.robot.test_mesh_file import DAE, STL, sorted_rows, write
 
 CUBE_SIDES = """
 mtllib two.mtl
@@ -58,3 +62,47 @@ def test_coarsening_merges_near_vertices_and_keeps_the_shape():
     a, b, c = (coarse[fewer[:, i]] for i in range(3))
     area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
     assert area == pytest.approx(np.pi * 0.05**2, rel=0.02)
+
+
+PAINTED = (
+    DAE.format(unit=0.01)
+    .replace('<triangles count="4">', '<triangles count="4" material="paint">')
+    .replace("<library_geometries>", """<library_effects><effect id="e"><profile_COMMON>
+<technique sid="t"><lambert><diffuse><color>0.8 0.1 0.2 1</color></diffuse></lambert></technique>
+</profile_COMMON></effect></library_effects><library_materials><material id="m">
+<instance_effect url="#e"/></material></library_materials><library_geometries>""")
+    .replace('<instance_geometry url="#g"/>', """<instance_geometry url="#g"><bind_material>
+<technique_common><instance_material symbol="paint" target="#m"/></technique_common>
+</bind_material></instance_geometry>""")
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "rgba"),
+    [
+        ("a.stl", STL, None),
+        ("a.dae", DAE.format(unit=1), None),
+        ("b.dae", PAINTED, (0.8, 0.1, 0.2, 1.0)),
+    ],
+)
+def test_a_mesh_looks_as_large_as_what_touches_and_has_its_colour(tmp_path, name, text, rgba):
+    mesh = write(tmp_path, name, text)
+    (part,) = mesh_parts(mesh)
+    assert part.rgba == (rgba and pytest.approx(rgba))
+    assert part.faces.shape == (4, 3)
+    touching = sorted_rows(read_triangles(mesh).vertices)
+    assert sorted_rows(part.vertices) == pytest.approx(touching, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.dae", "<COLLADA"),
+        ("b.dae", DAE.format(unit=1).split("<scene>")[0] + "</COLLADA>"),
+        ("c.dae", f"<!--{'x' * 20_000}--><!DOCTYPE a [<!ENTITY b 'c'>]>{DAE.format(unit=1)}"),
+        ("d.stl", "solid\n"),
+        ("e.obj", "v 0 0\nf 1 2 3\n"),
+    ],
+)
+def test_a_mesh_that_cannot_be_read_shows_nothing(tmp_path, name, text):
+    assert mesh_parts(write(tmp_path, name, text)) == ()

@@ -1,0 +1,43 @@
+"""Triangles of one colour, coarse enough to draw quickly without a graphics card."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.core.geometry import Rgba
+from harness.core.types import FloatArray, IntArray
+
+GRID = 0.002
+"""Vertices within a cell of this size become one [m]: about a pixel in a picture of an arm."""
+
+
+@dataclass(frozen=True, eq=False)
+class MeshPart:
+    """Triangles of one colour.
+
+    Attributes:
+        vertices: Shape (V, 3) [m].
+        faces: Shape (F, 3), indices of vertices.
+        rgba: None where the file gives no colour.
+    """
+
+    vertices: FloatArray
+    faces: IntArray
+    rgba: Rgba | None
+
+
+def coarsen(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
+    """Merge vertices that share a cell of the grid and drop triangles that collapse."""
+    cells, inverse = np.unique(
+        np.round(vertices / GRID).astype(np.int64), axis=0, return_inverse=True
+    )
+    inverse = inverse.reshape(-1)
+    counts = np.bincount(inverse, minlength=len(cells))[:, None]
+    merged = np.stack([np.bincount(inverse, vertices[:, i]) for i in range(3)], axis=1) / counts
+    faces = inverse[faces]
+    a, b, c = faces.T
+    faces = faces[(a != b) & (b != c) & (c != a)]
+    used, faces = np.unique(faces, return_inverse=True)
+    return merged[used], faces.reshape(-1, 3)
