@@ -16,6 +16,7 @@ from harness.cli.robot_options import ROBOT, add_robot_options
 EPILOG = """exit codes: 0 passed, 1 failed, 2 invalid file or wrong usage, 3 error, 130 Ctrl-C"""
 BROKEN_PIPE_EXIT_CODE = 141  # as a shell shows SIGPIPE
 IMPORTS = ("sdf", "scene")
+BAGS = ("mcap", "sqlite3")
 LISTS = ("robots", "worlds", "scenarios", "steps", "expectations", "planners")
 
 
@@ -78,6 +79,7 @@ def _parser() -> argparse.ArgumentParser:
     _judge_options(command("judge", "judge a saved run again"))
     _compare_options(command("compare", "tell what changed from one saved run to another"))
     _new_options(command("new", "write a commented scenario that passes"))
+    _export_options(command("export", "write a saved run as a rosbag2, and its robot as a URDF"))
     _import_options(command("import", "write files of other programs as ours", module="importing"))
     _robot_options(command("robot", "look a robot over, or draw it"))
     _bench_options(command("bench", "compare planners on the motions of scenarios"))
@@ -114,6 +116,7 @@ def _run_options(run: argparse.ArgumentParser) -> None:
     )
     run.add_argument("--no-report", action="store_true", help="write no report")
     run.add_argument("--no-page", action="store_true", help="write the report without its page")
+    run.add_argument("--bag", action="store_true", help="write a rosbag2 into the report too")
     run.add_argument("--json", action="store_true", help="one JSON document on stdout")
     run.add_argument(
         "--hard-cap",
@@ -176,6 +179,22 @@ def _compare_options(compare: argparse.ArgumentParser) -> None:
 
 def _new_options(new: argparse.ArgumentParser) -> None:
     new.add_argument("file", metavar="FILE", help="for example first.scenario.yaml")
+
+
+def _export_options(export: argparse.ArgumentParser) -> None:
+    export.add_argument("run", metavar="RUN", help="the run's report folder")
+    export.add_argument("--bag", metavar="DIR", help="write a rosbag2 into this new folder")
+    export.add_argument("--urdf", metavar="FILE", help="write the robot's URDF")
+    export.add_argument("--storage", choices=BAGS, default="mcap",
+                        help="of the bag (default: mcap, compressed)")  # fmt: skip
+    export.add_argument("--rate", metavar="HZ", type=_rate, default=100.0,
+                        help="of joints, frames and clock (default: 100)")  # fmt: skip
+    export.add_argument("--raw-images", action="store_true",
+                        help="the cameras' pictures uncompressed too")  # fmt: skip
+    export.add_argument("--meshes", choices=("package", "file"), default="package",
+                        help="how the URDF names mesh files: as package://, or where they are"
+                        " on this machine")  # fmt: skip
+    export.add_argument("--force", action="store_true", help="overwrite what is there")
 
 
 def _import_options(importing: argparse.ArgumentParser) -> None:
@@ -260,10 +279,18 @@ def _count(text: str) -> int:
 
 
 def _seconds(text: str) -> float:
+    return _positive(text, "seconds")
+
+
+def _rate(text: str) -> float:
+    return _positive(text, "messages a second")
+
+
+def _positive(text: str, what: str) -> float:
     try:
-        seconds = float(text)
+        number = float(text)
     except ValueError:
-        seconds = float("nan")
-    if not 0 < seconds < float("inf"):
-        raise argparse.ArgumentTypeError(f"'{text}' is not a number of seconds above 0")
-    return seconds
+        number = float("nan")
+    if not 0 < number < float("inf"):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of {what} above 0")
+    return number

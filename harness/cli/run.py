@@ -67,7 +67,9 @@ def _jobs(arguments: argparse.Namespace, files: Sequence[Path]) -> list[CaseJob]
     for file, folder in zip(files, report_folders(files, Path(arguments.report_dir)), strict=True):
         reported = None if arguments.no_report else folder
         is_reported, page = reported is not None, not arguments.no_page
-        jobs.append(CaseJob(file, overrides, arguments.seed, reported, is_reported, page))
+        jobs.append(
+            CaseJob(file, overrides, arguments.seed, reported, is_reported, page, arguments.bag)
+        )
         again = CaseJob(file, overrides, arguments.seed, None, stills=False)
         jobs.extend([again] * (arguments.repeat - 1))
     return jobs

@@ -25,11 +25,20 @@ def link_poses(
     poses: dict[str, FloatArray] = {}
     for placement in robot.placements:
         parent = poses.setdefault(placement.parent, IDENTITY[None])
-        pose = compose(parent, np.array([placement.pose]))
-        if placement.joint:
-            pose = compose(pose, _motion(placement, joint_positions[:, columns[placement.joint]]))
-        poses[placement.link] = pose
+        moved = joint_positions[:, columns[placement.joint]] if placement.joint else None
+        poses[placement.link] = compose(parent, placement_poses(placement, moved))
     return poses if links is None else {name: poses[name] for name in links if name in poses}
+
+
+def placement_poses(placement: LinkPlacement, positions: FloatArray | None) -> FloatArray:
+    """T_parent_link at positions of its joint, shape (N, 7); (1, 7) when it is fixed.
+
+    Args:
+        placement: How the link hangs.
+        positions: Of its joint [rad or m], shape (N,); None when it has none.
+    """
+    pose = np.array([placement.pose])
+    return pose if positions is None else compose(pose, _motion(placement, positions))
 
 
 def _motion(placement: LinkPlacement, positions: FloatArray) -> FloatArray:

@@ -43,6 +43,7 @@ def run_case(
     report_dir: Path | None = None,
     stills: bool = True,
     page: bool = True,
+    bag: bool = False,
     on_progress: Notify = lambda _: None,
 ) -> CaseResult:
     """Compile, execute, judge and report one scenario.
@@ -54,6 +55,7 @@ def run_case(
         report_dir: Folder to write; None writes nothing.
         stills: Whether to render a picture of every step.
         page: Whether the report gets its page.
+        bag: Whether the report gets a rosbag2.
         on_progress: Told of every step.
     """
     clock = Clock()
@@ -83,7 +85,16 @@ def run_case(
         if report_dir is not None:
             with clock.part("write"):
                 notes = _write(
-                    report_dir, prepared, run, verdicts, outcome, fingerprint, clock, stills, page
+                    report_dir,
+                    prepared,
+                    run,
+                    verdicts,
+                    outcome,
+                    fingerprint,
+                    clock,
+                    stills,
+                    page,
+                    bag,
                 )
             on_progress(ProgressEvent("written", 0, 0, "", outcome, run_time(run), str(report_dir)))
     except HarnessError as error:
@@ -255,6 +266,7 @@ def _write(
     clock: Clock,
     stills: bool,
     page: bool,
+    bag: bool,
 ) -> tuple[str, ...]:
     """Write the report folder; what a person should know of it comes back as notes."""
     from harness.session.visuals import mesh_records
@@ -268,6 +280,10 @@ def _write(
             from harness.reporting.html.write import write_page
 
             write_page(target, stored)
+        if bag:
+            from harness.reporting.rosbag.write import BAG, write_bag
+
+            write_bag(target / BAG, stored)
         return notes
 
     return write_run(

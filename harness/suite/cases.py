@@ -33,6 +33,7 @@ class CaseJob:
         report_dir: Where its report goes; None writes none.
         stills: Whether the report gets a picture of every step.
         page: Whether it gets its page.
+        bag: Whether it gets a rosbag2.
     """
 
     file: Path
@@ -41,6 +42,7 @@ class CaseJob:
     report_dir: Path | None = None
     stills: bool = True
     page: bool = True
+    bag: bool = False
 
 
 Function = Callable[[CaseJob, Callable[[ProgressEvent], None]], CaseResult]
@@ -63,6 +65,7 @@ def run_case(job: CaseJob, notify: Callable[[ProgressEvent], None]) -> CaseResul
         report_dir=job.report_dir,
         stills=job.stills,
         page=job.page,
+        bag=job.bag,
         on_progress=notify,
     )
 

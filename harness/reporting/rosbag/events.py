@@ -1,0 +1,137 @@
+"""What happened when: steps, verdicts and findings, as JSON and as a log."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import PurePath
+from typing import Any
+
+from harness.recording.run import Run, StepRecord, Verdict
+from harness.recording.store import StoredRun
+from harness.reporting.rosbag.messages import Log, String, stamp
+from harness.reporting.rosbag.samples import Message
+from harness.reporting.rosbag.topics import EVENTS, ROSOUT
+
+NODE = "armharness"
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happened.
+
+    Attributes:
+        time: In simulation [s].
+        said: One line for the log.
+        level: Of the log.
+        content: Plain data for programs; its `event` says which it is.
+    """
+
+    time: float
+    said: str
+    level: int
+    content: Mapping[str, Any]
+
+
+def event_messages(stored: StoredRun) -> Iterator[Message]:
+    """Every event twice: as JSON on a topic of ours, and in the log that every tool shows."""
+    file = PurePath(stored.run.file).name  # where it was is no part of what happened
+    for event in events(stored):
+        text = json.dumps(event.content, ensure_ascii=False, allow_nan=False)
+        yield Message(event.time, EVENTS, String(data=text))
+        yield Message(
+            event.time,
+            ROSOUT,
+            Log(
+                stamp=stamp(event.time), level=event.level, name=NODE, msg=event.said,
+                file=file, function="", line=int(event.content.get("line", 0)),
+            ),
+        )  # fmt: skip
+
+
+def events(stored: StoredRun) -> list[Event]:
+    """The run's, in order of time; what ends does so before what begins."""
+    run = stored.run
+    first, last = float(run.signals.times[0]), float(run.signals.times[-1])
+    head = {"event": "run_started", "scenario": run.scenario, "case": run.case, "seed": run.seed}
+    tail = {"event": "run_finished", "outcome": stored.outcome, "digest": stored.digest}
+    told = [*_steps(run), *_findings(run, last), *(_verdict(v, last) for v in stored.verdicts)]
+    return [
+        Event(first, f"run: {run.scenario}", Log.INFO, head),
+        *sorted(told, key=lambda event: event.time),
+        Event(last, f"outcome: {stored.outcome}", _level(stored.outcome == "passed"), tail),
+    ]
+
+
+def _steps(run: Run) -> list[Event]:
+    """Begin and end of every step; nested ones end before the block they stand in."""
+    told: list[Event] = []
+    begun: list[StepRecord] = []
+
+    def finish_but(path: str) -> None:
+        while begun and not path.startswith(f"{begun[-1].path}."):
+            told.append(_finished(begun.pop()))
+
+    for step in run.steps:
+        finish_but(step.path)
+        if step.status == "not_reached":
+            continue
+        told.append(_started(step))
+        begun.append(step)
+    finish_but("")
+    end = float(run.signals.times[-1])
+    told += [_not_reached(step, end) for step in run.steps if step.status == "not_reached"]
+    return told
+
+
+def _step(event: str, step: StepRecord) -> dict[str, Any]:
+    names = {"event": event, "step": step.id, "path": step.path, "verb": step.verb}
+    return names | {"summary": step.summary, "line": step.line}
+
+
+def _started(step: StepRecord) -> Event:
+    said = f"{step.id}: {step.summary}"
+    return Event(step.start_time, said, Log.INFO, _step("step_started", step))
+
+
+def _finished(step: StepRecord) -> Event:
+    content = _step("step_finished", step) | {"status": step.status}
+    content |= {"error_code": step.error_code, "message": step.message}
+    said = f"{step.id}: {step.status}"
+    said += f": {step.error_code}: {step.message}" if step.error_code else ""
+    return Event(step.end_time, said, _level(step.status != "failed"), content)
+
+
+def _not_reached(step: StepRecord, end: float) -> Event:
+    said = f"{step.id}: not reached"
+    return Event(end, said, Log.WARN, _step("step_not_reached", step))
+
+
+def _findings(run: Run, last: float) -> list[Event]:
+    told: list[Event] = []
+    for finding in run.findings:
+        time = finding.time if math.isfinite(finding.time) else last
+        content = {"event": "finding", "kind": finding.kind, "step": finding.step}
+        told.append(Event(time, finding.message, Log.WARN, content | {"message": finding.message}))
+    return told
+
+
+def _verdict(verdict: Verdict, last: float) -> Event:
+    content = {
+        "event": "verdict", "expectation": verdict.expectation, "status": verdict.status,
+        "margin": _finite(verdict.margin), "unit": verdict.unit, "step": verdict.step,
+        "line": verdict.line, "reason": verdict.reason, "points": verdict.points,
+    }  # fmt: skip
+    said = f"{verdict.expectation}: {verdict.status}: {verdict.reason}"
+    time = verdict.time if math.isfinite(verdict.time) else last
+    return Event(time, said, _level(verdict.status == "passed"), content)
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _level(is_good: bool) -> int:
+    return Log.INFO if is_good else Log.ERROR

@@ -1,0 +1,114 @@
+"""The tree of frames: one parent each, links along the URDF, objects and cameras beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from harness.core.pose_arrays import IDENTITY
+from harness.core.types import BoolArray, FloatArray, IntArray
+from harness.recording.link_poses import placement_poses
+from harness.recording.run import Run
+from harness.reporting.rosbag.messages import TFMessage, TransformStamped, header, transform
+from harness.reporting.rosbag.samples import Message, blocks
+from harness.reporting.rosbag.topics import TF, TF_STATIC
+
+WORLD = "world"
+
+
+@dataclass(frozen=True, eq=False)
+class Edge:
+    """Where frames hang that do not move.
+
+    Attributes:
+        pose: T_parent_child (xyz, quat wxyz), shape (7,).
+    """
+
+    parent: str
+    child: str
+    pose: FloatArray
+
+
+def static_edges(run: Run) -> list[Edge]:
+    """The root in the world, fixed joints, objects that stayed where they were, cameras."""
+    placements = run.robot.placements
+    edges: list[Edge] = []
+    children = {placement.link for placement in placements}
+    roots = dict.fromkeys(p.parent for p in placements if p.parent not in children)
+    edges += [Edge(WORLD, root, IDENTITY) for root in roots if root != WORLD]
+    edges += [Edge(p.parent, p.link, np.array(p.pose)) for p in placements if not p.joint]
+    edges += [
+        Edge(WORLD, name, poses[0])
+        for name, poses in sorted(run.signals.object_poses.items())
+        if _stays(poses)
+    ]
+    return [*edges, *_cameras(run, {WORLD, *run.robot.link_names, *run.signals.object_poses})]
+
+
+def moving_objects(run: Run) -> list[str]:
+    """Objects with a transform of their own at every sample at which they are there."""
+    return [name for name, poses in sorted(run.signals.object_poses.items()) if not _stays(poses)]
+
+
+def optical_frames(run: Run) -> dict[str, str]:
+    """The optical frame of each camera, by the camera's name; no two share one."""
+    taken = {WORLD, *run.signals.object_poses}
+    frames: dict[str, str] = {}
+    for camera in run.cameras:
+        wanted = camera.optical_frame_id or f"{camera.name}_optical_frame"
+        frames[camera.name] = wanted if wanted not in taken else f"{camera.name}/{wanted}"
+        taken.add(frames[camera.name])
+    return frames
+
+
+def static_tf(run: Run) -> Message:
+    """All that never moves, once."""
+    start = float(run.signals.times[0])
+    transforms = [
+        _stamped(start, edge.parent, edge.child, edge.pose.tolist()) for edge in static_edges(run)
+    ]
+    return Message(start, TF_STATIC, TFMessage(transforms=transforms))
+
+
+def moving_tf(run: Run, indices: IntArray) -> Iterator[Message]:
+    """Every moving joint and every free object that is there, at each sample."""
+    columns = {joint.name: column for column, joint in enumerate(run.robot.joints)}
+    moved = [placement for placement in run.robot.placements if placement.joint]
+    objects = moving_objects(run)
+    for block in blocks(indices):
+        positions = run.signals.joint_positions[block]
+        edges = [(p.parent, p.link) for p in moved] + [(WORLD, name) for name in objects]
+        poses = [placement_poses(p, positions[:, columns[p.joint]]) for p in moved]
+        poses += [run.signals.object_poses[name][block] for name in objects]
+        if not poses:
+            return
+        rows = np.stack(poses, axis=1)
+        there: BoolArray = ~np.any(np.isnan(rows), axis=2)
+        for number, index in enumerate(block):
+            time = float(run.signals.times[index])
+            transforms = [
+                _stamped(time, parent, child, rows[number, place].tolist())
+                for place, (parent, child) in enumerate(edges)
+                if there[number, place]
+            ]
+            yield Message(time, TF, TFMessage(transforms=transforms))
+
+
+def _cameras(run: Run, known: set[str]) -> Iterator[Edge]:
+    """Optical frames that are no link of the robot already."""
+    for camera, frame in zip(run.cameras, optical_frames(run).values(), strict=True):
+        if frame not in known and camera.frame in known:
+            yield Edge(camera.frame, frame, camera.optical_pose.as_vector())
+
+
+def _stays(poses: FloatArray) -> bool:
+    return bool((poses == poses[0]).all())
+
+
+def _stamped(time: float, parent: str, child: str, pose: list[float]) -> Any:
+    return TransformStamped(
+        header=header(time, parent), child_frame_id=child, transform=transform(pose)
+    )

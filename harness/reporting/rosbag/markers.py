@@ -1,0 +1,174 @@
+"""What stands in the scene, as markers: fixed objects in the world, moving ones in their frames."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from harness.core.geometry import (
+    Box,
+    Capsule,
+    Cylinder,
+    Mesh,
+    Plane,
+    Rgba,
+    Shape,
+    Sphere,
+)
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.recording.link_poses import link_poses
+from harness.recording.run import MeshRecord, ObjectRecord, Run, StepRecord
+from harness.reporting.rosbag.frames import WORLD, moving_objects
+from harness.reporting.rosbag.messages import (
+    ColorRGBA,
+    CompressedImage,
+    Marker,
+    MarkerArray,
+    MeshFile,
+    Point,
+    Vector3,
+    duration,
+    header,
+    pose_message,
+)
+from harness.reporting.rosbag.samples import Message
+from harness.reporting.rosbag.topics import SCENE_MARKERS
+
+PLANE_SIZE = 4.0
+"""Of the square that stands for an endless plane [m]."""
+PLANNED = "planned_tcp"
+PLANNED_COLOUR: Rgba = (0.5, 0.2, 0.9, 1.0)
+LINE_WIDTH = 0.004  # [m]
+
+Solid = tuple[int, tuple[float, float, float], SE3]
+"""A marker's type, its scale, and T_shape_marker."""
+
+
+def scene_markers(run: Run) -> Iterator[Message]:
+    """Every object and planned path there is, anew each time that this changes."""
+    first, last = float(run.signals.times[0]), float(run.signals.times[-1])
+    planned = ((step.start_time, _planned(run, step)) for step in run.steps)
+    lines = [(time, line) for time, line in planned if line is not None]
+    changes = {first, *(time for time, _ in lines)}
+    changes |= {time for obj in run.objects for span in obj.present for time in span}
+    for time in sorted(time for time in changes if first <= time < last or time == first):
+        yield Message(time, SCENE_MARKERS, _array(run, time, lines))
+
+
+def _array(run: Run, time: float, lines: Sequence[tuple[float, FloatArray]]) -> Any:
+    """All that is there at a time; what was there before is taken away first."""
+    markers = [_marker(time, WORLD, "", 0, action=Marker.DELETEALL)]
+    moving = set(moving_objects(run))
+    for obj in run.objects:
+        if any(begin <= time < end for begin, end in obj.present):
+            markers += _of_object(run, obj, time, is_moving=obj.name in moving)
+    for number, (begin, points) in enumerate(lines):
+        if begin <= time:
+            line = _marker(time, WORLD, PLANNED, number, kind=Marker.LINE_STRIP)
+            line.scale = Vector3(x=LINE_WIDTH, y=0.0, z=0.0)
+            line.color = _colour(PLANNED_COLOUR)
+            line.points = _points(points)
+            markers.append(line)
+    return MarkerArray(markers=markers)
+
+
+def _of_object(run: Run, obj: ObjectRecord, time: float, *, is_moving: bool) -> list[Any]:
+    known = run.signals.object_poses.get(obj.name)
+    pose = np.array(obj.pose) if known is None else known[0]
+    if not is_moving and not pose.size:
+        return []
+    base, frame = (SE3.identity(), obj.name) if is_moving else (SE3.from_vector(pose), WORLD)
+    markers: list[Any] = []
+    for shape in obj.shapes:
+        for kind, scale, offset in _solids(shape):
+            marker = _marker(time, frame, obj.name, len(markers), kind=kind)
+            marker.pose = pose_message((base @ shape.pose @ offset).as_vector().tolist())
+            marker.scale = Vector3(x=scale[0], y=scale[1], z=scale[2])
+            marker.color = _colour(shape.rgba)
+            markers.append(marker)
+        for mesh in _meshes(run, shape):
+            marker = _marker(time, frame, obj.name, len(markers), kind=Marker.TRIANGLE_LIST)
+            marker.pose = pose_message((base @ shape.pose).as_vector().tolist())
+            marker.scale = Vector3(x=1.0, y=1.0, z=1.0)
+            marker.color = _colour(mesh.rgba or shape.rgba)
+            marker.points = _points(mesh.vertices[mesh.faces].reshape(-1, 3))
+            markers.append(marker)
+    return markers
+
+
+def _solids(shape: Shape) -> list[Solid]:
+    """The markers that make up a shape; none of a mesh."""
+    match shape.geometry:
+        case Box(size=size):
+            return [(Marker.CUBE, size, SE3.identity())]
+        case Sphere(radius=radius):
+            return [_ball(radius, SE3.identity())]
+        case Cylinder(radius=radius, length=length):
+            return [(Marker.CYLINDER, (2 * radius, 2 * radius, length), SE3.identity())]
+        case Capsule(radius=radius, length=length):
+            ends = [SE3.from_xyz_rpy((0, 0, z)) for z in (-0.5 * length, 0.5 * length)]
+            body = (Marker.CYLINDER, (2 * radius, 2 * radius, length), SE3.identity())
+            return [body, *(_ball(radius, end) for end in ends)]
+        case Plane():
+            below = SE3.from_xyz_rpy((0, 0, -0.0005))
+            return [(Marker.CUBE, (PLANE_SIZE, PLANE_SIZE, 0.001), below)]
+        case Mesh():
+            return []
+
+
+def _ball(radius: float, pose: SE3) -> Solid:
+    return Marker.SPHERE, (2 * radius, 2 * radius, 2 * radius), pose
+
+
+def _meshes(run: Run, shape: Shape) -> Iterator[MeshRecord]:
+    geometry = shape.geometry
+    for record in run.meshes:
+        if isinstance(geometry, Mesh) and (record.path, record.scale) == (
+            geometry.path,
+            geometry.scale,
+        ):
+            yield record
+
+
+def _planned(run: Run, step: StepRecord) -> FloatArray | None:
+    """Where a step's trajectory was to take the TCP, shape (points, 3) [m]."""
+    trajectory, tcp = step.trajectory, run.robot.tcp_link
+    if trajectory is None or step.start_index >= len(run.signals.times):
+        return None
+    columns = {joint.name: column for column, joint in enumerate(run.robot.joints)}
+    names = [str(name) for name in trajectory["joint_names"]]
+    positions = np.asarray(trajectory["positions"], dtype=float)
+    if not len(positions) or any(name not in columns for name in names):
+        return None
+    rows = np.tile(run.signals.joint_positions[step.start_index], (len(positions), 1))
+    rows[:, [columns[name] for name in names]] = positions
+    poses = link_poses(run.robot, rows, [tcp]).get(tcp)
+    return None if poses is None else poses[:, :3]
+
+
+def _marker(
+    time: float, frame: str, ns: str, number: int, *, kind: int = 0, action: int = 0
+) -> Any:
+    return Marker(
+        header=header(time, frame), ns=ns, id=number, type=kind, action=action,
+        pose=pose_message([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
+        scale=Vector3(x=0.0, y=0.0, z=0.0), color=_colour((0.0, 0.0, 0.0, 0.0)),
+        lifetime=duration(0.0), frame_locked=True, points=[], colors=[],
+        texture_resource="",
+        texture=CompressedImage(header=header(time), format="", data=np.zeros(0, np.uint8)),
+        uv_coordinates=[], text="", mesh_resource="",
+        mesh_file=MeshFile(filename="", data=np.zeros(0, np.uint8)),
+        mesh_use_embedded_materials=False,
+    )  # fmt: skip
+
+
+def _colour(rgba: Rgba) -> Any:
+    r, g, b, a = map(float, rgba)
+    return ColorRGBA(r=r, g=g, b=b, a=a)
+
+
+def _points(points: FloatArray) -> list[Any]:
+    return [Point(x=x, y=y, z=z) for x, y, z in points.tolist()]

@@ -1,0 +1,112 @@
+"""What was planned, for RViz's trajectory displays, and the path that the TCP took."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.recording.run import Run, StepRecord
+from harness.reporting.rosbag.frames import WORLD
+from harness.reporting.rosbag.messages import (
+    NOTHING,
+    DisplayTrajectory,
+    JointTrajectory,
+    JointTrajectoryPoint,
+    MultiDOFJointState,
+    MultiDOFJointTrajectory,
+    Path,
+    PoseStamped,
+    RobotState,
+    RobotTrajectory,
+    duration,
+    header,
+    joint_state,
+    pose_message,
+)
+from harness.reporting.rosbag.samples import Message, samples_at
+from harness.reporting.rosbag.topics import DISPLAY_PLANNED_PATH, PLANNED_TRAJECTORY, TCP_PATH
+
+PATH_RATE = 5.0
+"""How often the course's trajectory server looks where the TCP is, as its UR launch sets it [Hz]
+(MOGI-ROS/mogi_trajectory_server, Apache-2.0; so too the next number)."""
+PATH_SPACING = 0.02
+"""How far a pose must be from the last one kept [m]."""
+LONGEST_PUBLISHED = 300
+"""Poses of a path up to which it is published at every look; a longer one less often."""
+
+
+def planned(run: Run) -> Iterator[Message]:
+    """Each motion's trajectory when it begins, as such and as MoveIt shows it."""
+    for step in run.steps:
+        if step.trajectory is not None and step.status != "not_reached":
+            trajectory = _trajectory(step)
+            yield Message(step.start_time, PLANNED_TRAJECTORY, trajectory)
+            yield Message(step.start_time, DISPLAY_PLANNED_PATH, _display(run, step, trajectory))
+
+
+def tcp_path(run: Run) -> Iterator[Message]:
+    """The path so far, again and again, as the course's trajectory server publishes it.
+
+    A pose is kept when it is `PATH_SPACING` or more from the last one kept; the path's frame is the
+    world.
+    """
+    kept: list[Any] = []
+    last: FloatArray | None = None
+    published = 0
+    indices = samples_at(run.signals.times, PATH_RATE)
+    for number, index in enumerate(indices):
+        time, pose = float(run.signals.times[index]), run.signals.tcp_pose[index]
+        if np.isnan(pose).any():
+            continue
+        if last is None or np.linalg.norm(pose[:3] - last[:3]) >= PATH_SPACING:
+            last = pose
+            content = pose_message(pose.tolist())
+            kept.append(PoseStamped(header=header(time, WORLD), pose=content))
+        waits = 1 + len(kept) // LONGEST_PUBLISHED
+        if number - published >= waits or number in (0, len(indices) - 1):
+            published = number
+            yield Message(time, TCP_PATH, Path(header=header(time, WORLD), poses=list(kept)))
+
+
+def _trajectory(step: StepRecord) -> Any:
+    plan = step.trajectory or {}
+    times = np.asarray(plan["times"], dtype=float)
+    points = [
+        JointTrajectoryPoint(
+            positions=np.asarray(plan["positions"][row], dtype=float),
+            velocities=_row(plan.get("velocities"), row),
+            accelerations=_row(plan.get("accelerations"), row),
+            effort=NOTHING,
+            time_from_start=duration(float(times[row] - times[0])),
+        )
+        for row in range(len(times))
+    ]
+    names = [str(name) for name in plan["joint_names"]]
+    return JointTrajectory(header=header(step.start_time), joint_names=names, points=points)
+
+
+def _row(values: Any, row: int) -> FloatArray:
+    return NOTHING if values is None else np.asarray(values[row], dtype=float)
+
+
+def _display(run: Run, step: StepRecord, trajectory: Any) -> Any:
+    """With the joints as they were when it began."""
+    time = step.start_time
+    index = min(step.start_index, len(run.signals.times) - 1)
+    names = [joint.name for joint in run.robot.joints]
+    multi = MultiDOFJointTrajectory(header=header(time), joint_names=[], points=[])
+    return DisplayTrajectory(
+        model_id=run.robot.name,
+        trajectory=[RobotTrajectory(joint_trajectory=trajectory, multi_dof_joint_trajectory=multi)],
+        trajectory_start=RobotState(
+            joint_state=joint_state(time, names, run.signals.joint_positions[index]),
+            multi_dof_joint_state=MultiDOFJointState(
+                header=header(time), joint_names=[], transforms=[], twist=[], wrench=[]
+            ),
+            attached_collision_objects=[],
+            is_diff=False,
+        ),
+    )

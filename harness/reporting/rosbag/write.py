@@ -1,0 +1,148 @@
+"""A bag written: a folder that `ros2 bag`, RViz, Foxglove and rerun open."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Iterator
+from dataclasses import dataclass
+from operator import attrgetter
+from pathlib import Path
+from typing import Literal
+
+from rosbags.interfaces import Connection
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+
+from harness.core.errors import HarnessError
+from harness.recording.run import Run
+from harness.recording.store import StoredRun
+from harness.reporting.rosbag import cameras, joints
+from harness.reporting.rosbag.events import event_messages
+from harness.reporting.rosbag.foxglove import foxglove_layout
+from harness.reporting.rosbag.frames import moving_tf, static_tf
+from harness.reporting.rosbag.markers import scene_markers
+from harness.reporting.rosbag.messages import TYPESTORE, String, nanoseconds
+from harness.reporting.rosbag.plans import planned, tcp_path
+from harness.reporting.rosbag.rviz import rviz_configuration
+from harness.reporting.rosbag.samples import Message, samples_at
+from harness.reporting.rosbag.topics import ROBOT_DESCRIPTION, Topic
+from harness.reporting.rosbag.urdf import MeshAddresses, urdf_of
+
+VERSION = 8
+"""Of rosbag2's metadata. Version 9 says QoS in words, which Humble and Iron cannot read; Jazzy and
+later read both."""
+
+BAG = "bag"
+"""The folder of a bag that is written with its run."""
+Storage = Literal["mcap", "sqlite3"]
+ROBOT, LAYOUT, RVIZ = "robot.urdf", "foxglove.json", "view.rviz"
+
+
+@dataclass(frozen=True)
+class BagOptions:
+    """How a bag is written.
+
+    Attributes:
+        storage: `mcap` is compressed (zstd chunks); `sqlite3` is what Humble writes by default.
+        rate: Of joints, frames and clock [Hz].
+        has_raw_images: Videos uncompressed too.
+        meshes: How the URDF names mesh files.
+    """
+
+    storage: Storage = "mcap"
+    rate: float = 100.0
+    has_raw_images: bool = False
+    meshes: MeshAddresses = "package"
+
+
+def write_bag(folder: Path, stored: StoredRun, options: BagOptions | None = None) -> None:
+    """Write a run as a rosbag2; equal runs and options give equal bytes.
+
+    The bag's files are called as the folder is. Beside them lie the URDF, a layout for Foxglove
+    and a configuration for RViz.
+
+    Args:
+        folder: Must not be there yet.
+        stored: A saved run; nothing else is read.
+        options: Default: those of `BagOptions`.
+
+    Raises:
+        HarnessError: The disk is full, or the place is not writable or taken.
+    """
+    options = options or BagOptions()
+    if folder.exists():
+        raise HarnessError(f"{folder} is there already; a bag needs a new folder")
+    try:
+        _write_messages(folder, stored, options)
+        run = stored.run
+        _text(folder / ROBOT, urdf_of(run, options.meshes))
+        _text(folder / LAYOUT, foxglove_layout(run))
+        _text(folder / RVIZ, rviz_configuration(run))
+    except OSError as error:
+        raise HarnessError(
+            f"the bag cannot be written to {folder}: {error.strerror or error};"
+            " free some space there, or choose another place"
+        ) from error
+
+
+def _write_messages(folder: Path, stored: StoredRun, options: BagOptions) -> None:
+    plugin = StoragePlugin.MCAP if options.storage == "mcap" else StoragePlugin.SQLITE3
+    writer = Writer(folder, version=VERSION, storage_plugin=plugin)
+    if options.storage == "mcap":
+        writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
+    for key, value in _about(stored).items():
+        writer.set_custom_data(key, value)
+    connections: dict[str, Connection] = {}
+    with writer:
+        for message in _messages(stored, options):
+            topic = message.topic
+            if topic.name not in connections:
+                connections[topic.name] = _connection(writer, topic)
+            content = TYPESTORE.serialize_cdr(message.content, topic.msgtype)
+            writer.write(connections[topic.name], nanoseconds(message.time), content)
+
+
+def _connection(writer: Writer, topic: Topic) -> Connection:
+    qos = [topic.qos()]
+    return writer.add_connection(
+        topic.name, topic.msgtype, typestore=TYPESTORE, offered_qos_profiles=qos
+    )
+
+
+def _about(stored: StoredRun) -> dict[str, str]:
+    """What the bag's metadata says of the run; nothing of the wall clock."""
+    run = stored.run
+    about = {"scenario": run.scenario, "seed": str(run.seed), "outcome": stored.outcome}
+    return about | {"digest": stored.digest, **run.versions}
+
+
+def _messages(stored: StoredRun, options: BagOptions) -> Iterator[Message]:
+    """Everything in order of time; what is latched comes before what moves."""
+    run = stored.run
+    indices = samples_at(run.signals.times, options.rate)
+    streams = [
+        iter([_description(run, options), static_tf(run)]),
+        joints.clock(run, indices),
+        joints.measured(run, indices),
+        joints.commanded(run, indices),
+        moving_tf(run, indices),
+        _in_order(planned(run)),
+        scene_markers(run),
+        cameras.captures(run),
+        *(cameras.video_frames(run, video, is_raw=options.has_raw_images) for video in run.videos),
+        tcp_path(run),
+        event_messages(stored),
+    ]
+    return heapq.merge(*streams, key=attrgetter("time"))
+
+
+def _in_order(messages: Iterator[Message]) -> Iterator[Message]:
+    return iter(sorted(messages, key=attrgetter("time")))
+
+
+def _description(run: Run, options: BagOptions) -> Message:
+    content = String(data=urdf_of(run, options.meshes))
+    return Message(float(run.signals.times[0]), ROBOT_DESCRIPTION, content)
+
+
+def _text(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8", newline="")
