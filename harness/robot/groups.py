@@ -112,8 +112,12 @@ def _members(
             members.add(by_child[link].name)
             link = by_child[link].parent
     for name in group.subgroups:
-        if name not in groups or name in (*seen, group.name):
-            _refuse(group, "group", name, f"cannot hold the group '{name}'", source)
+        circle = (*seen, group.name)
+        if name not in groups:
+            _refuse(group, "group", name, f"names the unknown group '{name}'", source)
+        if name in circle:
+            told = " - ".join((*circle[circle.index(name) :], name))
+            _refuse(group, "group", name, f"groups hold each other in a circle: {told}", source)
         members |= _members(groups[name], groups, joints, virtual, source, (*seen, group.name))
     return members
 

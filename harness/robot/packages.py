@@ -80,7 +80,10 @@ class PackagePath:
         scheme = next((each for each in SCHEMES if name.startswith(each)), None)
         if scheme is not None:
             package, _, rest = name.removeprefix(scheme).partition("/")
-            path = (self.package(package) / rest).resolve()
+            try:
+                path = (self.package(package) / rest).resolve()
+            except NotFoundError as error:
+                raise NotFoundError(f"'{name}': {error}") from error
         elif re.match(r"\w+://", name) and not name.startswith("file://"):
             raise NotFoundError(f"'{name}' is no file: known are package:// and file://")
         else:

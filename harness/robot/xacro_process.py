@@ -178,8 +178,9 @@ class _Reader:
         here = os.path.realpath(filename)
         if here in above:
             circle = " includes ".join(
-                Path(each).name for each in [*above[above.index(here) :], here]
+                f"'{Path(each).name}'" for each in [*above[above.index(here) :], here]
             )
+            xacro.filestack.pop()
             raise RefusedError(f"files include each other in a circle: {circle}")
         if len(above) > DEEPEST_INCLUDE:
             raise RefusedError(f"files include each other more than {DEEPEST_INCLUDE} deep")

@@ -16,6 +16,9 @@ LARGEST_FILE = 16_000_000
 """Bytes of an XML file at most; the largest robot descriptions are under 1 MB."""
 
 MOST_ELEMENTS = 200_000
+MOST_ATTRIBUTES = 200
+"""Of one element; MuJoCo's reader takes hours for a million."""
+
 DEEPEST = 200
 
 PLACE_ATTRIBUTE = "harness-place"
@@ -196,6 +199,8 @@ class _Reader:
         self._count += 1
         if self._count > MOST_ELEMENTS:
             self._refuse(f"more than {MOST_ELEMENTS} elements")
+        if len(attributes) > MOST_ATTRIBUTES:
+            self._refuse(f"<{tag}> has more than {MOST_ATTRIBUTES} attributes")
         if len(self._open) >= DEEPEST:
             self._refuse(f"elements are nested more than {DEEPEST} deep")
         here = self._here()
