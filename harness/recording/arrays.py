@@ -1,7 +1,8 @@
 """Recorded arrays under flat names, and a file of them with the same bytes every time.
 
 `times`, `tcp_pose` ... as they are; those of a mapping as `frames/<link>`, `object_poses/<object>`,
-`contact_forces/<body>|<body>`, `grip_forces/<link>|<object>`, `clearances/<a>|<b>`,
+`contact_forces/<body>|<body>`, `grip_forces/<link>|<object>`, `presses/<link>|<body>`,
+`clearances/<a>|<b>`,
 `clearance_links/<a>|<b>`, `planned_clearances/<a>|<b>`.
 """
 
@@ -20,7 +21,14 @@ from harness.recording.run import Pair, Signals
 
 Array = np.ndarray[Any, Any]
 BY_NAME = ("frames", "object_poses")
-BY_PAIR = ("contact_forces", "grip_forces", "clearances", "clearance_links", "planned_clearances")
+BY_PAIR = (
+    "contact_forces",
+    "grip_forces",
+    "presses",
+    "clearances",
+    "clearance_links",
+    "planned_clearances",
+)
 COMPRESSION = 1
 """Deflate level: 6 takes three times as long and saves a tenth on recorded doubles."""
 

@@ -363,6 +363,9 @@ class Signals:
             (body, body), robot link first, else sorted. Zero means no contact.
         grip_forces: Net normal force [N] of a finger's link on an object that both sides of the
             gripper ever touched, world axes, (N, 3) each; keys as in `contact_forces`.
+        presses: Where a robot link presses on another body, and how: mean of the contact points,
+            weighted by their normal forces (world xyz), and the sum of these forces on the other
+            body (world xyz) [N], (N, 6) each; NaN without force; keys as in `contact_forces`.
         clearances: Distance [m] between the robot (key `robot`), or a held object (its name), and
             an object, or `robot` and itself: (N,) each; NaN while either is absent. Capped at
             `clearance_cutoff`: a value there means "at least that far".
@@ -387,6 +390,7 @@ class Signals:
     grip_forces: Mapping[Pair, FloatArray] = field(
         default_factory=dict[tuple[str, str], FloatArray]
     )
+    presses: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
     clearances: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
     clearance_links: Mapping[Pair, IntArray] = field(
         default_factory=dict[tuple[str, str], np.ndarray]

@@ -13,16 +13,11 @@ from harness.core.errors import SimulationDiverged, StepFailed
 from harness.core.types import FloatArray
 from harness.ports import LONGEST_RUN
 from harness.recording.run import Signals
+from harness.simulation.contact_record import BYTES, ROWS, BodyPair, ContactRecord
 from harness.simulation.model import PhysicsModel
-
-ROWS = 4096
-"""Samples by which the arrays grow."""
 
 MOST_BYTES = 2**30
 """Largest record of states, sensors and contacts; judging it takes about four times as much."""
-
-CONTACTS_PER_ROW = 24
-"""Contacts that fit into the first arrays for each sample; more make them grow sooner."""
 
 _DIVERGED = (
     mujoco.mjtWarning.mjWARN_BADQPOS,
@@ -30,8 +25,6 @@ _DIVERGED = (
     mujoco.mjtWarning.mjWARN_BADQACC,
     mujoco.mjtWarning.mjWARN_BADCTRL,
 )
-
-BodyPair = tuple[str, str]
 
 
 class Recording:
@@ -51,11 +44,7 @@ class Recording:
         self._sensors = np.empty((ROWS, model.nsensordata))
         self._commands = np.empty((ROWS, model.nu))
         self._command_velocities = np.empty((ROWS, model.nu))
-        self._contact_end = np.zeros(ROWS, dtype=np.int64)
-        self._geoms = np.empty((ROWS * CONTACTS_PER_ROW, 2), dtype=np.int32)
-        self._forces = np.empty(ROWS * CONTACTS_PER_ROW)
-        self._normals = np.empty((ROWS * CONTACTS_PER_ROW, 3), dtype=np.float32)
-        self._contacts = 0
+        self._contacts = ContactRecord(physics)
         self.count = 0
 
     def start(self, command: FloatArray) -> None:
@@ -90,7 +79,7 @@ class Recording:
         model, data, step = self._physics.model, self._data, mujoco.mj_step
         control, qpos, qvel, sensors = data.ctrl, data.qpos, data.qvel, data.sensordata
         positions, velocities, sensed = self._qpos, self._qvel, self._sensors
-        keep_contacts = self._keep_contacts
+        keep_contacts = self._contacts.keep
         for row in range(first, first + steps):
             control[:] = controls[row - first]
             step(model, data)
@@ -120,7 +109,7 @@ class Recording:
             )
         rows = (self._qpos, self._qvel, self._sensors, self._commands, self._command_velocities)
         per_row = 8 * (1 + sum(array.shape[1] for array in rows))
-        size = (self.count + steps) * per_row + 28 * self._contacts
+        size = (self.count + steps) * per_row + BYTES * self._contacts.count
         if size > MOST_BYTES:
             raise StepFailed(
                 "TIMED_OUT",
@@ -130,25 +119,11 @@ class Recording:
                 {"bytes": size, "limit": MOST_BYTES},
             )
 
-    def _keep_contacts(self, data: mujoco.MjData, row: int) -> None:
-        begin = self._contacts
-        self._contacts = end = begin + data.ncon
-        self._contact_end[row] = end
-        if end > len(self._forces):
-            self._geoms = np.concatenate([self._geoms, np.empty_like(self._geoms)])
-            self._forces = np.concatenate([self._forces, np.empty_like(self._forces)])
-            self._normals = np.concatenate([self._normals, np.empty_like(self._normals)])
-        if end > begin:
-            contact = data.contact
-            self._geoms[begin:end] = contact.geom
-            self._normals[begin:end] = contact.frame[:, :3]
-            data.efc_force.take(contact.efc_address, 0, self._forces[begin:end], "clip")
-
     def _record_forces_of_last_row(self) -> None:
         """Find the forces in the present state, leaving the physics as if nobody had looked."""
         refresh(self._physics.model, self._data)
         self._sensors[self.count - 1] = self._data.sensordata
-        self._keep_contacts(self._data, self.count - 1)
+        self._contacts.keep(self._data, self.count - 1)
 
     def _refuse_divergence(self, first: int) -> None:
         warned = any(self._data.warning[kind].number for kind in _DIVERGED)
@@ -161,17 +136,11 @@ class Recording:
             )
 
     def _reserve(self, rows: int) -> None:
+        self._contacts.reserve(rows)
         if rows <= len(self._qpos):
             return
         more = max(len(self._qpos), rows - len(self._qpos))  # doubled, so that few copies are made
-        for name in (
-            "_qpos",
-            "_qvel",
-            "_sensors",
-            "_commands",
-            "_command_velocities",
-            "_contact_end",
-        ):
+        for name in ("_qpos", "_qvel", "_sensors", "_commands", "_command_velocities"):
             old = getattr(self, name)
             setattr(self, name, np.concatenate([old, np.zeros((more, *old.shape[1:]), old.dtype)]))
 
@@ -213,60 +182,7 @@ class Recording:
 
     def contacts(self, first: int, last: int) -> Mapping[BodyPair, FloatArray]:
         """Normal force [N] of pairs that touch in samples first to last - 1, (samples,) each."""
-        begin = self._contact_end[first - 1] if first else 0
-        end = self._contact_end[last - 1]
-        per_row = np.diff(self._contact_end[first:last], prepend=begin)
-        rows = np.repeat(np.arange(last - first), per_row)
-        bodies = self._physics.model.geom_bodyid[self._geoms[begin:end]]
-        bodies.sort(axis=1)
-        codes = bodies[:, 0].astype(np.int64) * self._physics.model.nbody + bodies[:, 1]
-        forces = self._forces[begin:end]
-        found: dict[BodyPair, FloatArray] = {}
-        for code in np.unique(codes):
-            chosen = codes == code
-            first_body, second_body = divmod(int(code), self._physics.model.nbody)
-            force = np.bincount(rows[chosen], forces[chosen], minlength=last - first)
-            found[self._pair(first_body, second_body)] = force.astype(np.float64)
-        return dict(sorted(found.items()))
-
-    def grip_forces(self, pairs: Mapping[BodyPair, FloatArray]) -> Mapping[BodyPair, FloatArray]:
-        """Net normal force [N] of finger links on what both sides touched, world axes, (N, 3) each.
-
-        Args:
-            pairs: Contact forces of the whole record.
-        """
-        gripper, count = self._physics.description.gripper, self.count
-        if gripper is None:
-            return {}
-        sides = [frozenset(links) for links in gripper.sides.values()]
-        touched = [{b for a, b in pairs if a in links} for links in sides]
-        both = set[str]().union(*touched).intersection(*touched)
-        end = self._contact_end[count - 1]
-        per_row = np.diff(self._contact_end[:count], prepend=0)
-        rows = np.repeat(np.arange(count), per_row)
-        bodies = self._physics.model.geom_bodyid[self._geoms[:end]]
-        numbers = {name: number for number, name in enumerate(self._physics.body_names)}
-        found: dict[BodyPair, FloatArray] = {}
-        for link, name in pairs:
-            if name not in both or not any(link in links for links in sides):
-                continue
-            there = bodies == numbers[link]
-            chosen = (there | (bodies == numbers[name])).all(axis=1)
-            # a contact's normal points from its first geom to its second
-            signed = np.where(there[chosen, 0], 1.0, -1.0) * self._forces[:end][chosen]
-            vectors = signed[:, None] * self._normals[:end][chosen]
-            found[link, name] = np.zeros((count, 3))
-            np.add.at(found[link, name], rows[chosen], vectors)
-        return found
-
-    def _pair(self, first: int, second: int) -> BodyPair:
-        names, robot = self._physics.body_names, self._physics.robot_bodies
-        if (first in robot) != (second in robot):
-            return (
-                (names[first], names[second]) if first in robot else (names[second], names[first])
-            )
-        a, b = sorted((names[first], names[second]))
-        return a, b
+        return self._contacts.forces(first, last)
 
     def signals(self, object_poses: Mapping[str, FloatArray]) -> Signals:
         """Everything recorded.
@@ -283,7 +199,7 @@ class Recording:
         command_velocities[:, physics.actuated] = self._command_velocities[:count]
         efforts[:, physics.actuated] = self._sensors[:count, frame_end:]
         frames = self._sensors[:count, :frame_end].reshape(count, -1, 7)
-        contacts = self.contacts(0, count)
+        contacts = self._contacts.forces(0, count)
         return Signals(
             times=np.arange(count, dtype=np.float64) * self.timestep,
             joint_positions=self.joint_positions(0).copy(),
@@ -295,7 +211,8 @@ class Recording:
             frames={name: frames[:, i + 1].copy() for i, name in enumerate(physics.frames)},
             object_poses=dict(object_poses),
             contact_forces=contacts,
-            grip_forces=self.grip_forces(contacts),
+            grip_forces=self._contacts.grip_forces(contacts, count),
+            presses=self._contacts.presses(count),
         )
 
     def free_poses(self, qpos: int) -> FloatArray:

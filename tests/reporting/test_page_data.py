@@ -50,6 +50,19 @@ def from_differences(coded, rows):
     return (np.cumsum(columns, axis=1) % 65536).astype(np.uint16)
 
 
+def test_a_blow_between_two_frames_is_kept():
+    blow = np.full((200, 6), np.nan)
+    blow[57] = (0.3, -0.2, 0.1, 0.0, 0.0, 400.0)
+    run = lift_run(presses={("left_finger", "box"): blow, ("palm", "box"): blow * np.nan})
+    run, buffer = unpacked(page_html(stored(run)))
+    (press,) = run["presses"]
+    assert (press["link"], press["body"], press["count"]) == ("left_finger", "box", 1)
+    assert press["first"] * run["frames"]["step"] == pytest.approx(0.57, abs=0.02)
+    columns = from_differences(buffer(press["buffer"], np.uint16), 1).astype(np.int16)[:, 0]
+    assert columns[:3] * press["units"][0] == pytest.approx([0.3, -0.2, 0.1], abs=1e-4)
+    assert columns[3:] * press["units"][1] == pytest.approx([0, 0, 400], rel=1e-4)
+
+
 @given(SIGNALS, st.integers(1, 40))
 def test_thinning_keeps_every_extreme_and_invents_nothing(columns, stretches):
     thinned = thin(columns, stretches)

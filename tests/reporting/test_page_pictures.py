@@ -99,6 +99,25 @@ def test_a_ten_minute_run_opens_and_scrubs(visit, tmp_path):
     assert shown == pytest.approx(expected, abs=0.2)
 
 
+def test_contacts_are_told_and_drawn_where_they_were(visit, tmp_path):
+    pressed = np.full((200, 6), np.nan)
+    pressed[50:150] = (0.3, 0.0, 0.1, 0.0, -12.5, 0.0)
+    run = lift_run(presses={("left_finger", "box"): pressed})
+    opened = visit(write(tmp_path, run), "#t=1")
+    page = opened.page
+    told = "left_finger presses box 12.5 N"
+    assert told in opened.text("#readout")
+    page.wait_for_timeout(300)
+    with_arrow = page.locator("#view canvas").screenshot()
+    page.click("#tool-contacts")
+    page.wait_for_timeout(300)
+    assert told not in opened.text("#readout")
+    assert page.locator("#view canvas").screenshot() != with_arrow
+    page.click("#tool-contacts")
+    page.keyboard.press("Home")
+    assert told not in opened.text("#readout"), "before it touches"
+
+
 def test_a_run_without_duration_says_so_where_plots_would_be(visit, tmp_path):
     page = visit(write(tmp_path, lift_run(1))).page
     assert "no simulated time" in page.inner_text("#plots")

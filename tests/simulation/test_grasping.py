@@ -177,3 +177,18 @@ def test_the_fingers_press_a_grasped_object_against_each_other(gripper_over_tabl
         assert 0.9 * scalar < np.linalg.norm(total) <= scalar * (1 + 1e-6)
     directions = [total / np.linalg.norm(total) for total in totals]
     assert directions[0] @ directions[1] < -0.9
+
+
+def test_presses_say_where_fingers_touch_what_they_hold_and_which_way(gripper_over_table):
+    simulator, _, _ = squeeze(gripper_over_table)
+    signals = simulator.finish()
+    centre = signals.object_poses["cylinder"][-1, :2]
+    pads = [("rh_p12_rn_r2", "cylinder"), ("rh_p12_rn_l2", "cylinder")]
+    for pair in pads:
+        place, force = signals.presses[pair][-1, :3], signals.presses[pair][-1, 3:]
+        outward = place[:2] - centre
+        assert np.linalg.norm(outward) == pytest.approx(0.03, abs=0.001), "on the cylinder's side"
+        assert force == pytest.approx(signals.grip_forces[pair][-1])
+        assert force[:2] @ outward < -0.9 * np.linalg.norm(force) * np.linalg.norm(outward)
+        assert np.isnan(signals.presses[pair][0]).all(), "not yet"
+    assert all(link in gripper_over_table.link_names for link, _ in signals.presses)

@@ -12,6 +12,7 @@ from harness.reporting.html.groups import pack_groups
 from harness.reporting.html.packing import Packer
 from harness.reporting.html.paths import pack_plan, pack_tcp_path
 from harness.reporting.html.pictures import pack_cameras
+from harness.reporting.html.presses import pack_presses
 from harness.reporting.html.scene import pack_scene
 from harness.reporting.html.story import (
     environment,
@@ -72,6 +73,7 @@ def _data(stored: StoredRun) -> str:
             "source": run.source,
             "groups": pack_groups(run, stored.verdicts, packer),
             "cameras": pack_cameras(run, packer),
+            "presses": pack_presses(run, packer),
             **pack_scene(run, packer),
         }
     )

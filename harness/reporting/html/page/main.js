@@ -2,6 +2,7 @@
 
 import { readAddress, writeAddress } from "./address.js";
 import { Clock } from "./clock.js";
+import { Contacts } from "./contacts.js";
 import { byId, element, rgba, themeColor } from "./dom.js";
 import { makeFilm } from "./film.js";
 import { listenToKeys } from "./keys.js";
@@ -20,6 +21,7 @@ import { makeTimeline, stepAt } from "./timeline.js";
 import { verdictList } from "./verdicts.js";
 import { Viewer } from "./viewer.js";
 
+const PRESSES_TOLD = 3;
 const GRIP = 20; // a force [N] at which a body in contact glows fully
 
 async function start() {
@@ -73,7 +75,9 @@ async function start() {
       return [`${id} ${worst.toFixed(1)} %`];
     });
     const name = run.steps[step]?.summary ?? "";
-    byId("readout").textContent = [`t ${time.toFixed(3)} s  ${name}`, place, loads.join("   ")].filter(Boolean).join("\n");
+    const presses = scene?.showsContacts ? scene.arrows.at(time).slice(0, PRESSES_TOLD) : [];
+    const touches = presses.map(({ link, body, size }) => `${link} presses ${body} ${size.toFixed(1)} N`);
+    byId("readout").textContent = [`t ${time.toFixed(3)} s  ${name}`, place, loads.join("   "), ...touches].filter(Boolean).join("\n");
   }
 
   function drawAt(time, canvas) {
@@ -178,8 +182,9 @@ function makeScene(payload) {
   viewer.canvas.setAttribute("aria-label", "3D replay of the run; arrow keys turn it, plus and minus zoom");
   const replay = new Replay(payload, viewer);
   const marks = new Marks(payload, viewer);
+  const arrows = new Contacts(payload, viewer);
   return {
-    viewer, orbit, film, replay, marks,
+    viewer, orbit, film, replay, marks, arrows,
     toolPosition(time) {
       const { times, path } = marks.tcp;
       const index = 3 * indexAt(times, time);
@@ -196,6 +201,7 @@ function makeScene(payload) {
         }
       }
       replay.glow(this.showsContacts ? pressed : new Map());
+      arrows.show(time, this.showsContacts);
       const tool = replay.byName.get(run.toolBody);
       replay.showState(marks.wanted.goal ? run.steps[step]?.nearest?.bodies : null);
       marks.show(time, step, tool ? [...this.toolPosition(time), ...replay.poseOf(tool, time).slice(3)] : null);

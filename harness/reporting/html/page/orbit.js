@@ -3,7 +3,7 @@
 import { addScaled, lookAt, multiply, perspective } from "./vectors.js";
 
 const FIELD_OF_VIEW = 0.7; // [rad]
-const CLOSENESS = 0.95; // the corners of what is seen may touch the edge
+const CLOSENESS = 0.84; // the corners of what is seen may touch the edge
 const LIFT = 0.07; // of the radius: room for what is written over the picture's top
 const TURN_PER_PIXEL = 0.008; // [rad]
 const STEEPEST = 1.55; // [rad]

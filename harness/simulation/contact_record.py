@@ -1,0 +1,167 @@
+"""Every contact of every sample: which geoms touched, where, and how hard."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.simulation.model import PhysicsModel
+
+ROWS = 4096
+"""Samples by which the arrays grow."""
+
+CONTACTS_PER_ROW = 24
+"""Contacts that fit into the first arrays for each sample; more make them grow sooner."""
+
+BYTES = 40
+"""Of a contact in the arrays."""
+
+BodyPair = tuple[str, str]
+Array = np.ndarray[Any, Any]
+
+
+class ContactRecord:
+    """Contacts one sample behind the other; sums of them by pair of bodies."""
+
+    def __init__(self, physics: PhysicsModel) -> None:
+        size = ROWS * CONTACTS_PER_ROW
+        self._physics = physics
+        self._end = np.zeros(ROWS, dtype=np.int64)
+        self._geoms = np.empty((size, 2), dtype=np.int32)
+        self._forces = np.empty(size)
+        self._normals = np.empty((size, 3), dtype=np.float32)
+        self._points = np.empty((size, 3), dtype=np.float32)
+        self.count = 0
+
+    def reserve(self, rows: int) -> None:
+        """Make room for so many samples."""
+        if rows > len(self._end):
+            more = max(len(self._end), rows - len(self._end))
+            self._end = np.concatenate([self._end, np.zeros(more, dtype=np.int64)])
+
+    def keep(self, data: mujoco.MjData, row: int) -> None:
+        """Copy the contacts of the state that the physics is in, as those of a sample."""
+        begin = self.count
+        self.count = end = begin + data.ncon
+        self._end[row] = end
+        if end > len(self._forces):
+            self._geoms = np.concatenate([self._geoms, np.empty_like(self._geoms)])
+            self._forces = np.concatenate([self._forces, np.empty_like(self._forces)])
+            self._normals = np.concatenate([self._normals, np.empty_like(self._normals)])
+            self._points = np.concatenate([self._points, np.empty_like(self._points)])
+        if end > begin:
+            contact = data.contact
+            self._geoms[begin:end] = contact.geom
+            self._normals[begin:end] = contact.frame[:, :3]
+            self._points[begin:end] = contact.pos
+            data.efc_force.take(contact.efc_address, 0, self._forces[begin:end], "clip")
+
+    def forces(self, first: int, last: int) -> dict[BodyPair, FloatArray]:
+        """Normal force [N] of pairs that touch in samples first to last - 1, (samples,) each."""
+        begin = int(self._end[first - 1]) if first else 0
+        forces = self._forces[begin : self._end[last - 1]]
+        rows = self._rows(first, last)
+        found = {
+            self._pair(*numbers): np.bincount(rows[chosen], forces[chosen], minlength=last - first)
+            for numbers, chosen in self._by_pair(begin, int(self._end[last - 1]))
+        }
+        return {pair: found[pair].astype(np.float64) for pair in sorted(found)}
+
+    def presses(self, count: int) -> dict[BodyPair, FloatArray]:
+        """Where a link of the robot presses on something else, and how.
+
+        Args:
+            count: Samples, from the first on.
+
+        Returns:
+            By link and other body, shape (count, 6): the mean of the contact points, weighted by
+            their normal forces, in the world; then the sum of these forces on the other body, in
+            world axes [N]. NaN where there is no force.
+        """
+        end, rows, robot = (
+            int(self._end[count - 1]),
+            self._rows(0, count),
+            self._physics.robot_bodies,
+        )
+        found: dict[BodyPair, FloatArray] = {}
+        for (first, second), chosen in self._by_pair(0, end):
+            if (first in robot) == (second in robot):
+                continue
+            link = first if first in robot else second
+            where, force = rows[chosen], self._forces[:end][chosen]
+            # a contact's normal points from its first geom to its second
+            bodies = self._physics.model.geom_bodyid[self._geoms[:end][chosen, 0]]
+            signed = np.where(bodies == link, force, -force)
+            total = np.bincount(where, force, minlength=count)
+            weighted = [*(self._points[:end][chosen] * force[:, None]).T]
+            vectors = [*(self._normals[:end][chosen] * signed[:, None]).T]
+            sums = [np.bincount(where, values, minlength=count) for values in (*weighted, *vectors)]
+            pressed = np.full((count, 6), np.nan)
+            there = total > 0
+            pressed[there] = np.stack(sums, axis=1)[there]
+            pressed[there, :3] /= total[there, None]
+            found[self._pair(first, second)] = pressed
+        return {pair: found[pair] for pair in sorted(found)}
+
+    def grip_forces(
+        self, pairs: Mapping[BodyPair, FloatArray], count: int
+    ) -> dict[BodyPair, FloatArray]:
+        """Net normal force [N] of finger links on what both sides touched, world axes, (N, 3) each.
+
+        Args:
+            pairs: Contact forces of the whole record.
+            count: Samples, from the first on.
+        """
+        gripper = self._physics.description.gripper
+        if gripper is None:
+            return {}
+        sides = [frozenset(links) for links in gripper.sides.values()]
+        touched = [{b for a, b in pairs if a in links} for links in sides]
+        both = set[str]().union(*touched).intersection(*touched)
+        end = int(self._end[count - 1])
+        rows = self._rows(0, count)
+        bodies = self._physics.model.geom_bodyid[self._geoms[:end]]
+        numbers = {name: number for number, name in enumerate(self._physics.body_names)}
+        found: dict[BodyPair, FloatArray] = {}
+        for link, name in pairs:
+            if name not in both or not any(link in links for links in sides):
+                continue
+            there = bodies == numbers[link]
+            chosen = (there | (bodies == numbers[name])).all(axis=1)
+            # a contact's normal points from its first geom to its second
+            signed = np.where(there[chosen, 0], 1.0, -1.0) * self._forces[:end][chosen]
+            vectors = signed[:, None] * self._normals[:end][chosen]
+            found[link, name] = np.zeros((count, 3))
+            np.add.at(found[link, name], rows[chosen], vectors)
+        return found
+
+    def _rows(self, first: int, last: int) -> Array:
+        """Of every contact in samples first to last - 1: its sample, from 0."""
+        begin = self._end[first - 1] if first else 0
+        per_row = np.diff(self._end[first:last], prepend=begin)
+        return np.repeat(np.arange(last - first), per_row)
+
+    def _by_pair(self, begin: int, end: int) -> Iterator[tuple[tuple[int, int], Array]]:
+        """Numbers of two bodies that touch, the smaller first, and which contacts are theirs."""
+        bodies = self._physics.model.geom_bodyid[self._geoms[begin:end]]
+        bodies.sort(axis=1)
+        codes = bodies[:, 0].astype(np.int64) * self._physics.model.nbody + bodies[:, 1]
+        for code in np.unique(codes):
+            first, second = divmod(int(code), self._physics.model.nbody)
+            yield (first, second), codes == code
+
+    def _pair(self, first: int, second: int) -> BodyPair:
+        """Names of two bodies: a robot's link first, else sorted."""
+        names, robot = self._physics.body_names, self._physics.robot_bodies
+        if (first in robot) != (second in robot):
+            return (
+                (names[first], names[second]) if first in robot else (names[second], names[first])
+            )
+        a, b = sorted((names[first], names[second]))
+        return a, b
