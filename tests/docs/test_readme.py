@@ -8,11 +8,17 @@ import cv2
 import pytest
 
 from harness.cli.main import main
+from tests.docs import gallery
 from tests.docs.generated import ROOT
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 FOLDERS = ("scenarios", "robots", "worlds")
-PAGES = [ROOT / "README.md", *(page for name in FOLDERS for page in (ROOT / name).glob("**/*.md"))]
+REPORTS = ROOT / "reports/README.md"
+PAGES = [
+    ROOT / "README.md",
+    REPORTS,
+    *(page for name in FOLDERS for page in (ROOT / name).glob("**/*.md")),
+]
 ROBOT = "robot: {model: ur3e, gripper: rh_p12_rn_a, base: {xyz: [0, 0, 1.02]}}"
 LINK = re.compile(r"\[[^\]]*\]\(([^)#\s]+)(?:#[^)]*)?\)")
 
@@ -31,6 +37,16 @@ def test_the_picture_is_there_and_small():
     [name] = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", README)
     assert (ROOT / name).stat().st_size < 200_000
     assert cv2.imread(str(ROOT / name)).shape == (480, 640, 3)
+
+
+def test_the_gallery_shows_every_lesson_and_the_page_and_says_how_it_was_made():
+    said = REPORTS.read_text(encoding="utf-8")
+    pictures = {Path(name).stem for name in re.findall(r"!\[[^\]]+\]\((gallery/[^)]+)\)", said)}
+    lessons = {file.name.split(".")[0] for file in (ROOT / "scenarios/lessons").glob("*.yaml")}
+    assert pictures == {*lessons, "page"} == {*gallery.SHOWN, gallery.PAGE[0]}
+    assert {file.stem for file in gallery.FOLDER.glob("*.png")} == pictures
+    assert all(file.stat().st_size < 400_000 for file in gallery.FOLDER.glob("*.png"))
+    assert f"`{gallery.RENEW}`" in said
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())

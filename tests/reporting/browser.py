@@ -2,6 +2,7 @@
 
 import os
 import shutil
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -10,20 +11,31 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stab
 SOFTWARE_GL = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 
 
-@pytest.fixture(scope="session")
-def browser():
-    """Debian's chromium, drawn in software, without a network."""
-    found = next(filter(None, map(shutil.which, BROWSERS)), None)
-    if found is None:
-        if os.environ.get("CI") == "true":
-            pytest.fail("no chromium is installed, and CI must open the pages in one")
-        pytest.skip("no chromium is installed: apt-get install chromium")
+def installed():
+    """The browser's file; None where there is none."""
+    return next(filter(None, map(shutil.which, BROWSERS)), None)
+
+
+@contextmanager
+def launched():
+    """The installed browser, drawing in software."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=found, args=list(SOFTWARE_GL))
+        browser = playwright.chromium.launch(executable_path=installed(), args=list(SOFTWARE_GL))
         yield browser
         browser.close()
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """Debian's chromium, drawn in software, without a network."""
+    if installed() is None:
+        if os.environ.get("CI") == "true":
+            pytest.fail("no chromium is installed, and CI must open the pages in one")
+        pytest.skip("no chromium is installed: apt-get install chromium")
+    with launched() as browser:
+        yield browser
 
 
 class Visit:
