@@ -4,10 +4,17 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Iterator, Sequence
+from itertools import islice
+from pathlib import Path
 
 from harness.cli.output import guarded, only_json_on_stdout, say
 from harness.suite.discovery import discover
+from harness.suite.header import read_header
 from harness.suite.outcome import EXIT_CODES
+
+MOST_CASES = 100
+"""Parametrised cases of a file that are checked; running them checks the rest."""
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -23,11 +30,12 @@ def _run(arguments: argparse.Namespace) -> int:
     style = Style.of(sys.stdout)
     code = 0
     documents: list[object] = []
-    for file in files:
-        found = check_file(file, overrides=dict(arguments.overrides), seed=arguments.seed)
+    for file, case, overrides in _cases(arguments, files):
+        found = check_file(file, overrides=overrides, seed=arguments.seed)
         outcome = "invalid" if found.problems else "failed" if found.predicted else "passed"
         code = max(code, EXIT_CODES[outcome])
-        documents.append({"file": str(file), "outcome": outcome, "problems": found.problems,
+        documents.append({"file": str(file), "case": case, "outcome": outcome,
+                          "problems": found.problems,
                           "predicted": found.predicted,
                           "explanations": found.explanations,
                           "notes": found.notes})  # fmt: skip
@@ -45,8 +53,18 @@ def _run(arguments: argparse.Namespace) -> int:
             "failed": "steps that will fail",
             "passed": "ok",
         }[outcome]
-        say(f"{file}: {style.outcome(outcome, told)}")
+        name = f"{file} [{case}]" if case else str(file)
+        say(f"{name}: {style.outcome(outcome, told)}")
     if arguments.json:
         with only_json_on_stdout() as write_json:
             write_json({"format": "armharness-check/1", "exit_code": code, "files": documents})
     return code
+
+
+def _cases(
+    arguments: argparse.Namespace, files: Sequence[Path]
+) -> Iterator[tuple[Path, str, dict[str, str]]]:
+    """File, case and its values, of every parametrised case; random values are as the file says."""
+    for file in files:
+        for case in islice(read_header(file).variation.parametrized(), MOST_CASES):
+            yield file, case.name, {**case.overrides, **dict(arguments.overrides)}

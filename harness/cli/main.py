@@ -112,6 +112,28 @@ def _run_options(run: argparse.ArgumentParser) -> None:
         help="run each N times and say whether all digests are the same",
     )
     run.add_argument(
+        "--case",
+        metavar="NAME",
+        dest="cases",
+        action="append",
+        default=[],
+        help="only the case of this name, or of names that match: 'ur5e-*'",
+    )
+    run.add_argument(
+        "--samples", metavar="N", type=_count, default=None, help="in place of the file's"
+    )
+    run.add_argument(
+        "--keep",
+        choices=("all", "failed"),
+        default="",
+        help="whose reports are written (default: all; of samples those that failed)",
+    )
+    run.add_argument(
+        "--resume",
+        action="store_true",
+        help="go on where the same command was interrupted, without computing again",
+    )
+    run.add_argument(
         "--report-dir", metavar="DIR", default="reports", help="where reports go (default: reports)"
     )
     run.add_argument("--no-report", action="store_true", help="write no report")

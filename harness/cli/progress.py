@@ -20,17 +20,26 @@ class ProgressLines:
     """
 
     def __init__(
-        self, stream: TextIO, cases: Sequence[str], *, is_side_by_side: bool, style: Style
+        self,
+        stream: TextIO,
+        cases: Sequence[str],
+        *,
+        is_side_by_side: bool,
+        style: Style,
+        is_brief: bool = False,
     ) -> None:
         self._stream = stream
         self._cases = cases
         self._style = style
         self._is_side_by_side = is_side_by_side
+        self._is_brief = is_brief
         self._rewrites = stream.isatty() and style.has_color and not is_side_by_side
         self._headline = -1
 
     def step(self, index: int, event: ProgressEvent) -> None:
         """Take note of a sign of life."""
+        if self._is_brief:
+            return
         if event.kind == "step_started" and self._rewrites:
             self._begin(index)
             width = shutil.get_terminal_size().columns
@@ -42,6 +51,9 @@ class ProgressLines:
 
     def result(self, index: int, result: CaseResult) -> None:
         """Tell a case's outcome."""
+        if self._is_brief and not self._is_side_by_side:
+            self._line(index, f"{self._cases[index]}  {case_line(result, self._style)}")
+            return
         self._begin(index)
         self._line(index, f"  {case_line(result, self._style)}")
         for note in result.notes:

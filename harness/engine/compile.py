@@ -88,7 +88,6 @@ class _Compiler:
 
     def compile(self) -> Program:
         sources, scenario = self.sources, self.sources.scenario
-        self._refuse_later_features(scenario)
         objects = self._objects_at_start()
         for obj in objects:
             self.scope.add_object(obj, present=True)
@@ -122,11 +121,6 @@ class _Compiler:
             cameras=self.scope.cameras,
             videos=videos,
         )
-
-    def _refuse_later_features(self, scenario: Scenario) -> None:
-        for key in ("parametrize", "randomize", "samples", "expect_rate"):
-            if getattr(scenario, key) is not None:
-                self.problems.add((key,), f"`{key}` is {NOT_YET}")
 
     # -- objects ------------------------------------------------------------------------------
 

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from harness.reporting.result import CaseResult
+from harness.reporting.sampled import rate_line
 from harness.reporting.terminal import causes
-from harness.suite.cases import CaseJob, run_here, run_isolated
-from harness.suite.folders import report_folders
+from harness.suite.cases import run_here, run_isolated
 from harness.suite.header import Header, read_header, source_lines
+from harness.suite.plan import PlannedCase, Wanted, planned
+from harness.suite.sampling import Sampling
 from harness.suite.warm import ServerStartError, WarmServer
 
+TOLD_SAMPLES = 3
 SERVER = pytest.StashKey[WarmServer]()
 PYTEST_MARKS = frozenset(
     ("skip", "skipif", "xfail", "parametrize", "parameterize", "parametrise", "parameterise",
@@ -33,21 +36,37 @@ class ScenarioNotPassed(Exception):
         super().__init__("\n".join(told))
 
 
+class RateNotShown(Exception):
+    """Samples of a scenario do not show the rate that was asked for; says which failed, and why."""
+
+    def __init__(self, rate: str, failed: Sequence[CaseResult]) -> None:
+        told = [rate]
+        for result in failed[:TOLD_SAMPLES]:
+            told += ["", f"{result.case}:", *causes(result, source_lines(Path(result.file)))]
+            told.append(f"again: harness run {result.file} --case {result.case}")
+        if len(failed) > TOLD_SAMPLES:
+            told += ["", f"... and {len(failed) - TOLD_SAMPLES} more samples that failed"]
+        super().__init__("\n".join(told))
+
+
 class ScenarioFile(pytest.File):
-    """A scenario file with its one case."""
+    """A scenario file with its cases; the random samples of one are one item."""
 
     def collect(self) -> Iterable[ScenarioItem]:
         header = read_header(self.path)
-        name = header.title.replace("::", ":")
-        yield ScenarioItem.from_parent(self, name=name, header=header)
+        title = header.title.replace("::", ":")
+        for case in header.variation.parametrized():
+            name = f"{title}[{case.name}]" if case.name else title
+            yield ScenarioItem.from_parent(self, name=name, header=header, case=case.name)
 
 
 class ScenarioItem(pytest.Item):
-    """One case of a scenario."""
+    """One case of a scenario, or all samples of it."""
 
-    def __init__(self, *, header: Header, **keywords: Any) -> None:
+    def __init__(self, *, header: Header, case: str, **keywords: Any) -> None:
         super().__init__(**keywords)
         self._header = header
+        self._case = case
         self.extra_keyword_matches.add(self.path.name)
         for tag in header.tags:
             self.extra_keyword_matches.add(tag)
@@ -56,41 +75,67 @@ class ScenarioItem(pytest.Item):
                 self.add_marker(getattr(pytest.mark, tag))
 
     def runtest(self) -> None:
-        result = self._run()
+        plan = [
+            each
+            for each in planned([_shown(self.path)], Wanted(report_root=self._report_root()))
+            if self._case == (each.case.name if each.case.sample is None else each.case.group)
+        ]
+        sampling = Sampling(plan)
+        results = self._run(plan, sampling)
+        if self._header.variation.samples:
+            self._judge_samples(sampling, results)
+            return
+        [result] = results.values()
         self._tell(result)
         if result.outcome != "passed":
             raise ScenarioNotPassed(result)
 
+    def _judge_samples(self, sampling: Sampling, results: Mapping[int, CaseResult]) -> None:
+        counted = sampling.counted(results)
+        broken = [each for each in counted.values() if each.outcome in ("invalid", "error")]
+        if broken:
+            raise ScenarioNotPassed(broken[0])
+        [group] = sampling.groups()
+        rate = group.rate
+        line = rate_line(self.name, rate)
+        self.user_properties += [("passed", rate.passed), ("samples", rate.total)]
+        self.add_report_section("call", "samples", line)
+        if group.outcome != "passed":
+            raise RateNotShown(line, [r for r in counted.values() if r.outcome != "passed"])
+
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
-        if isinstance(excinfo.value, ScenarioNotPassed | ServerStartError):
+        if isinstance(excinfo.value, ScenarioNotPassed | RateNotShown | ServerStartError):
             return str(excinfo.value)
         return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, int, str]:
         return self.path, self._header.line - 1, self.name
 
-    def _run(self) -> CaseResult:
-        job = CaseJob(_shown(self.path), report_dir=self._report_dir())
+    def _run(self, plan: Sequence[PlannedCase], sampling: Sampling) -> dict[int, CaseResult]:
+        jobs = [each.job for each in plan]
         if self.config.getoption("--harness-in-process"):
-            results = run_here([job])
+            arriving = run_here(jobs, is_needless=sampling.is_needless)
         else:
             cap = self.config.getini("harness_hard_cap")
-            results = run_isolated(
-                [job], _server(self.config), hard_cap=float(cap) if cap else None
+            arriving = run_isolated(
+                jobs,
+                _server(self.config),
+                hard_cap=float(cap) if cap else None,
+                is_needless=sampling.is_needless,
             )
-        [(_index, result)] = results
-        return result
+        results: dict[int, CaseResult] = {}
+        for index, result in arriving:
+            results[index] = result
+            sampling.note(index, result.outcome)
+        return results
 
-    def _report_dir(self) -> Path | None:
+    def _report_root(self) -> Path | None:
         if self.config.getoption("--harness-no-report"):
             return None
         asked = self.config.getoption("--harness-report-dir")
-        root = (
-            Path(asked)
-            if asked
-            else self.config.rootpath / self.config.getini("harness_report_dir")
-        )
-        return report_folders([self.path], root)[0]
+        if asked:
+            return Path(asked)
+        return self.config.rootpath / self.config.getini("harness_report_dir")
 
     def _tell(self, result: CaseResult) -> None:
         """Put what a later reader needs beside the test's outcome."""

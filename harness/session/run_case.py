@@ -44,6 +44,8 @@ def run_case(
     stills: bool = True,
     page: bool = True,
     bag: bool = False,
+    case: str = "",
+    only_failed: bool = False,
     on_progress: Notify = lambda _: None,
 ) -> CaseResult:
     """Compile, execute, judge and report one scenario.
@@ -56,6 +58,8 @@ def run_case(
         stills: Whether to render a picture of every step.
         page: Whether the report gets its page.
         bag: Whether the report gets a rosbag2.
+        case: Name of the case; empty when the file has one.
+        only_failed: Whether to write a report only where the case does not pass.
         on_progress: Told of every step.
     """
     clock = Clock()
@@ -64,26 +68,32 @@ def run_case(
             prepared = prepare(path, overrides, seed)
     except SpecError as error:
         return CaseResult(
-            str(path), "", path.name, "invalid", problems=tuple(error.problems),
+            str(path), case, path.name, "invalid", problems=tuple(error.problems),
             message="; ".join(problem.message for problem in error.problems[:1]),
         )  # fmt: skip
     program = prepared.program
     on_progress(ProgressEvent("compiled", 0, len(program.steps), program.title, "", 0.0, ""))
     try:
         run = _execute(prepared, str(path), clock, on_progress, report_dir)
-        if report_dir is not None and stills:
-            run = with_pictures(run)
+        run = replace(run, case=case)
         placed = _placed(program)
+        bare, is_kept = run, report_dir is not None and not only_failed
         with clock.part("render"):
-            run = with_camera_pictures(run, program, placed, is_kept=report_dir is not None)
+            run = with_camera_pictures(bare, program, placed, is_kept=is_kept)
         with clock.part("judge"):
             verdicts = judge(run, placed)
         outcome = _outcome(run, verdicts)
         _tell_verdicts(program, run, outcome, on_progress)
         fingerprint = digest(run, verdicts)
         notes: tuple[str, ...] = ()
+        if outcome == "passed" and only_failed:
+            report_dir = None
         if report_dir is not None:
+            if only_failed:
+                with clock.part("render"):
+                    run = with_camera_pictures(bare, program, placed, is_kept=True)
             with clock.part("write"):
+                run = with_pictures(run) if stills else run
                 notes = _write(
                     report_dir,
                     prepared,
@@ -99,12 +109,12 @@ def run_case(
             on_progress(ProgressEvent("written", 0, 0, "", outcome, run_time(run), str(report_dir)))
     except HarnessError as error:
         return CaseResult(
-            str(path), "", program.title, "error", seed=program.seed, message=str(error),
+            str(path), case, program.title, "error", seed=program.seed, message=str(error),
             wall_times=clock.seconds,
         )  # fmt: skip
     return CaseResult(
         file=str(path),
-        case="",
+        case=case,
         title=program.title,
         outcome=outcome,
         digest=fingerprint,

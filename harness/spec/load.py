@@ -21,6 +21,7 @@ from harness.spec.params import override, substitute
 from harness.spec.scenario import Scenario
 from harness.spec.short_forms import models_shape
 from harness.spec.source import Located, Source, SourceMap
+from harness.spec.varied_paths import check_paths, values_of_case
 from harness.spec.wording import problems_of
 from harness.spec.world import WorldSpec
 from harness.spec.yaml_file import parse_yaml, read_text
@@ -104,7 +105,8 @@ def read_scenario(
     text = read_text(path)
     problems: list[Problem] = []
     written = parse_yaml(text, Source.of_text(str(path), text))
-    written = override(written, given, keys_of(Scenario))
+    written = override(written, given, keys_of(Scenario), values_of_case(written, given))
+    check_paths(written, tuple(keys_of(Scenario)), problems)
     written = substitute(with_includes(written, path, problems), problems)
     try:
         model, lines = _model(written, Scenario, problems)
@@ -141,7 +143,9 @@ def parse_scenario(
     """As `load_scenario`, of a text that would stand in the file."""
     problems: list[Problem] = []
     written = parse_yaml(text, Source.of_text(str(path), text))
-    written = override(written, overrides or {}, keys_of(Scenario))
+    given = dict(overrides or {})
+    written = override(written, given, keys_of(Scenario), values_of_case(written, given))
+    check_paths(written, tuple(keys_of(Scenario)), problems)
     written = substitute(with_includes(written, path, problems), problems)
     model, lines = _model(written, Scenario, problems)
     return LoadedScenario(model, path, text, lines, written)

@@ -15,7 +15,12 @@ REFERENCE = re.compile(r"\$(?P<escape>\$?)\{(?P<name>[^{}]*)\}")
 PARAMS = "params"
 
 
-def override(root: Located, overrides: Mapping[str, str], keys: Iterable[str]) -> Located:
+def override(
+    root: Located,
+    overrides: Mapping[str, str],
+    keys: Iterable[str],
+    known: Mapping[str, Located] | None = None,
+) -> Located:
     """A file's values with others set from outside.
 
     Args:
@@ -23,6 +28,7 @@ def override(root: Located, overrides: Mapping[str, str], keys: Iterable[str]) -
         overrides: Dotted path -> value as YAML. A list's items go by index from 0; a bare name
             that is a parameter sets the parameter; a key that may stand there is added.
         keys: The keys that the whole file may have.
+        known: Path -> its value where the file itself says it, so that mistakes are told there.
 
     Raises:
         SpecError: With every path that leads nowhere and every value that is not YAML.
@@ -31,8 +37,9 @@ def override(root: Located, overrides: Mapping[str, str], keys: Iterable[str]) -
     for path, text in overrides.items():
         source = Source(f"--set {path}={text}")
         try:
-            value = parse_value(text, source)
-            root = _set(root, _parts(root, path, source, tuple(keys)), value, Place(source), path)
+            value = known[path] if known and path in known else parse_value(text, source)
+            place = value.place if known and path in known else Place(source)
+            root = _set(root, _parts(root, path, source, tuple(keys)), value, place, path)
         except SpecError as error:
             problems += error.problems
     if problems:

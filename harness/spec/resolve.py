@@ -11,6 +11,7 @@ from harness.spec.paths import paths_from
 from harness.spec.scenario import Scenario
 from harness.spec.short_forms import models_shape
 from harness.spec.source import Entry, Loc, Located, Source, SourceMap
+from harness.spec.variation import VARIATION_KEYS
 from harness.spec.yaml_file import parse_yaml
 from harness.spec.yaml_text import yaml_text
 
@@ -35,6 +36,7 @@ def resolved_text(
     entries = {
         key: entry if key == PARAMS else Entry(entry.key, escaped(entry.value))
         for key, entry in loaded.written.mapping().items()
+        if key not in VARIATION_KEYS
     }
     seed = Located(loaded.scenario.seed, loaded.written.place)
     entries["seed"] = Entry(seed.place, seed)

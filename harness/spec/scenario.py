@@ -6,10 +6,10 @@ from typing import Annotated, Any, cast
 
 from pydantic import Field, model_validator
 
+from harness.core.variation import MOST_SAMPLES, count_of
 from harness.spec.base import (
     Count,
     Flag,
-    Fraction,
     JointAcceleration,
     JointEffort,
     JointValue,
@@ -23,6 +23,7 @@ from harness.spec.checks import Expectation
 from harness.spec.planning import Planning
 from harness.spec.poses import Pose
 from harness.spec.steps import Step
+from harness.spec.variation import Distribution, Expected, Parametrize
 from harness.spec.world import ObjectSpec
 
 
@@ -144,15 +145,6 @@ class WorldChoice(SpecModel):
     )
 
 
-class Expected(SpecModel):
-    """A success rate to be shown by sampled cases."""
-
-    at_least: Fraction = Field(description="Share of the cases that pass.")
-    confidence: Annotated[Number, Field(gt=0, lt=1)] = Field(
-        default=0.95, description="With which this is to be shown."
-    )
-
-
 class Scenario(SpecModel):
     """One test of an arm application."""
 
@@ -190,15 +182,30 @@ class Scenario(SpecModel):
         description="What the arm does, in order."
     )
     expect: tuple[Expectation, ...] = Field(default=(), description="Judged over the whole run.")
-    parametrize: dict[str, Any] | list[Any] | None = Field(
-        default=None, description="Cases over values of the file; not yet available."
+    parametrize: Parametrize | None = Field(
+        default=None,
+        description="Cases: a grid `{robot.model: [ur3e, ur5e]}`, or a list of named ones.",
     )
-    randomize: dict[str, Any] | None = Field(
-        default=None, description="Distributions of values of the file; not yet available."
+    randomize: dict[str, Distribution] | None = Field(
+        default=None, description="Dotted path -> distribution of that value."
     )
-    samples: Annotated[Count, Field(ge=1, le=100_000)] | None = Field(
-        default=None, description="How many random cases; not yet available."
+    samples: Annotated[Count, Field(ge=1, le=MOST_SAMPLES)] | None = Field(
+        default=None, description="How many random cases; default 20 where something is random."
     )
     expect_rate: Expected | None = Field(
-        default=None, description="Of random cases; not yet available."
+        default=None, description="Of the samples; without it every one must pass."
     )
+
+    @model_validator(mode="after")
+    def _rate_of_samples(self) -> Scenario:
+        if self.expect_rate is not None and self.samples is None and self.randomize is None:
+            raise ValueError("`expect_rate` is of `samples`: say how many, or what is random")
+        return self
+
+    @model_validator(mode="after")
+    def _bounded_cases(self) -> Scenario:
+        if self.parametrize is not None and self.samples is not None:
+            count = count_of(self.parametrize) * self.samples
+            if count > MOST_SAMPLES:
+                raise ValueError(f"{count} samples of all cases; at most {MOST_SAMPLES} are run")
+        return self

@@ -34,6 +34,8 @@ class CaseJob:
         stills: Whether the report gets a picture of every step.
         page: Whether it gets its page.
         bag: Whether it gets a rosbag2.
+        case: Name of the case; empty when the file has one.
+        only_failed: Whether a report is written only where the case does not pass.
     """
 
     file: Path
@@ -43,10 +45,18 @@ class CaseJob:
     stills: bool = True
     page: bool = True
     bag: bool = False
+    case: str = ""
+    only_failed: bool = False
 
 
 Function = Callable[[CaseJob, Callable[[ProgressEvent], None]], CaseResult]
 Watcher = Callable[[int, ProgressEvent], None]
+Chooser = Callable[[int], bool]
+
+
+def never(_index: int) -> bool:
+    """Every case is needed."""
+    return False
 
 
 def nobody_watches(_index: int, _event: ProgressEvent) -> None:
@@ -66,15 +76,23 @@ def run_case(job: CaseJob, notify: Callable[[ProgressEvent], None]) -> CaseResul
         stills=job.stills,
         page=job.page,
         bag=job.bag,
+        case=job.case,
+        only_failed=job.only_failed,
         on_progress=notify,
     )
 
 
 def run_here(
-    jobs: Sequence[CaseJob], *, watch: Watcher = nobody_watches, function: Function = run_case
+    jobs: Sequence[CaseJob],
+    *,
+    watch: Watcher = nobody_watches,
+    function: Function = run_case,
+    is_needless: Chooser = never,
 ) -> Iterator[tuple[int, CaseResult]]:
     """Run cases in this process, one after the other; for debuggers: nothing contains a crash."""
     for index, job in enumerate(jobs):
+        if is_needless(index):
+            continue
         try:
             result = function(job, lambda event, index=index: watch(index, event))
         except Exception:  # noqa: BLE001 - whatever breaks is this case's outcome
@@ -90,6 +108,7 @@ def run_isolated(
     hard_cap: float | None = None,
     watch: Watcher = nobody_watches,
     function: Function = run_case,
+    is_needless: Chooser = never,
 ) -> Iterator[tuple[int, CaseResult]]:
     """Run every case in its own forked process, `workers` side by side.
 
@@ -100,6 +119,7 @@ def run_isolated(
         hard_cap: Wall seconds a case may take before it is ended as an error.
         watch: Hears (index, event) of running cases.
         function: What a child calls; importable there by its name.
+        is_needless: Asked for each index before its case begins; such a case is left out.
 
     Yields:
         (index into `jobs`, result) in the order in which cases end.
@@ -114,9 +134,13 @@ def run_isolated(
         while waiting or running:
             while waiting and len(running) < workers:
                 index, job = waiting.pop()
+                if is_needless(index):
+                    continue
                 _clean(job)
                 number = server.start(function, job)
                 running[number] = _Running(index, job, time.monotonic() + cap)
+            if not running:
+                break
             for event in server.wait(_patience(running)):
                 case = running[event.job]
                 match event:
@@ -196,5 +220,5 @@ def error_result(job: CaseJob, message: str) -> CaseResult:
     """The outcome of a case in which the harness, or a native library, broke."""
     title = job.file.name.removesuffix(".scenario.yaml")
     return CaseResult(
-        str(job.file), "", title, "error", seed=job.seed or 0, message=message.rstrip()
+        str(job.file), job.case, title, "error", seed=job.seed or 0, message=message.rstrip()
     )

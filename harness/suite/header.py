@@ -1,4 +1,4 @@
-"""A scenario file's title and tags, read without judging the file."""
+"""A scenario file's title, tags and cases, read without judging the file."""
 
 from __future__ import annotations
 
@@ -7,6 +7,9 @@ from pathlib import Path
 
 from harness.core.errors import SpecError
 from harness.suite.discovery import SUFFIX
+from harness.suite.variation import ONE_CASE, Variation
+
+VARIED = ("parametrize", "randomize", "samples", "expect_rate", "seed")
 
 
 @dataclass(frozen=True)
@@ -17,11 +20,13 @@ class Header:
         title: Its `scenario`; the file's name where there is none.
         tags: Its `tags`.
         line: Of the title, from 1.
+        variation: Its cases.
     """
 
     title: str
     tags: tuple[str, ...] = ()
     line: int = 1
+    variation: Variation = ONE_CASE
 
 
 def source_lines(file: Path) -> list[str]:
@@ -47,9 +52,11 @@ def read_header(file: Path) -> Header:
     if "tags" in entries:
         values = (item.value for item in entries["tags"].value.items())
         tags = tuple(value for value in values if isinstance(value, str) and value)
+    varied = {key: entries[key].value.plain() for key in VARIED if key in entries}
+    variation = Variation.of(varied)
     if "scenario" not in entries:
-        return Header(nameless.title, tags)
+        return Header(nameless.title, tags, variation=variation)
     key, title = entries["scenario"]
     if not isinstance(title.value, str) or not title.value.strip():
-        return Header(nameless.title, tags, key.line)
-    return Header(" ".join(title.value.split()), tags, key.line)
+        return Header(nameless.title, tags, key.line, variation)
+    return Header(" ".join(title.value.split()), tags, key.line, variation)

@@ -13,16 +13,16 @@ _TOKEN = re.compile(r"\s*(?:([()])|([^\s()]+))")
 _Part = Callable[[str], bool]
 
 
-def selects(expression: str, file: Path, header: Header) -> bool:
-    """Whether an expression holds for a scenario.
+def selects(expression: str, file: Path, header: Header, case: str = "") -> bool:
+    """Whether an expression holds for a case of a scenario.
 
-    A word holds if the file's path, the title or a tag contains it, in any case; `and`, `or`,
-    `not` and brackets as in Python.
+    A word holds if the file's path, the title, a tag or the case's name contains it, in any case;
+    `and`, `or`, `not` and brackets as in Python.
 
     Raises:
         UsageError: The expression cannot be read.
     """
-    text = "\n".join([file.as_posix(), header.title, *header.tags]).lower()
+    text = "\n".join([file.as_posix(), header.title, *header.tags, case]).lower()
     parser = _Parser(expression)
     value = parser.any_of(text)
     if parser.tokens:

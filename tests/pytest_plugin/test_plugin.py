@@ -156,3 +156,28 @@ def test_a_run_without_scenarios_imports_nothing_of_the_harness_but_the_plugin(p
         check=False,
     )
     assert "1 passed" in result.stdout, result.stdout
+
+
+def test_every_parametrised_case_is_an_item_with_a_readable_name(pytester, write):
+    cases = "parametrize:\n  robot: [open_manipulator_x, ur3e]\n  seed: [1, 2]\n"
+    write(holds=HOLDS + cases)
+    names = [f"Hold still[{robot}-{seed}]" for robot in ("open_manipulator_x", "ur3e")
+             for seed in (1, 2)]  # fmt: skip
+    assert selected(pytester) == names
+    assert selected(pytester, "-k", "ur3e-2") == ["Hold still[ur3e-2]"]
+    run(pytester, "holds.scenario.yaml::Hold still[ur3e-1]").assert_outcomes(passed=1)
+
+
+def test_random_samples_are_one_item_that_tells_the_rate(pytester, write):
+    lines = "params: {time: 0.1 s}\nrandomize:\n  time: {uniform: [0.15 s, 0.25 s]}\nsamples: 4\n"
+    varied = HOLDS.replace("wait: 0.1 s", 'wait: "${time}"') + lines
+    write(varied=varied, shown=varied.replace("at_most: 0.2 s", "at_most: 0.3 s"))
+    result = run(pytester, "-rA")
+    result.assert_outcomes(passed=1, failed=1)
+    result.stdout.re_match_lines(
+        [
+            r".*Hold still: [123] of 4 samples passed.*every one must pass.*",
+            r"sample\d:",
+            r"again: harness run varied.scenario.yaml --case sample\d",
+        ]
+    )

@@ -1,0 +1,114 @@
+"""Success rates of samples, and how they depend on what varies, as lines for the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from harness.core.quantity import split_quantity
+from harness.reporting.terminal import PLAIN, Style
+
+RateVerdict = Literal["shown", "refuted", "open"]
+
+BINS = 4
+"""Parts of equal size into which numbers are cut for a table."""
+
+MOST_ROWS = 12
+
+
+@dataclass(frozen=True)
+class Rate:
+    """How many samples passed, and what that shows.
+
+    Attributes:
+        passed: Of `total`.
+        total: Samples that count: up to where the sequential test ended the sampling.
+        low: Lower end of Wilson's interval.
+        high: Upper end.
+        confidence: Of the interval.
+        at_least: Asked rate; None when none was.
+        verdict: `shown` when the rate is at least what was asked, `refuted` when it is not, `open`
+            when these samples cannot tell.
+        stopped_early: Whether the sequential test ended the sampling.
+    """
+
+    passed: int
+    total: int
+    low: float
+    high: float
+    confidence: float
+    at_least: float | None
+    verdict: RateVerdict
+    stopped_early: bool = False
+
+
+def rate_line(name: str, rate: Rate, style: Style = PLAIN) -> str:
+    """`pick: 187 of 200 samples passed, 93.5% (89.2% to 96.2% at 95%): at least 90% is shown`."""
+    share = f"{rate.passed / rate.total:.1%}" if rate.total else "no rate"
+    line = f"{name}: {rate.passed} of {rate.total} samples passed, {share}"
+    line += f" ({rate.low:.1%} to {rate.high:.1%} at {rate.confidence:.0%} confidence)"
+    if rate.at_least is None:
+        is_shown = rate.verdict == "shown"
+        line += "" if is_shown else "; every one must pass, as no `expect_rate` is asked"
+    else:
+        asked = f"at least {rate.at_least:.1%}"
+        line += {
+            "shown": f": {asked} is shown",
+            "refuted": f": {asked} is refuted",
+            "open": f": {asked} is not shown: take more samples, or ask for less",
+        }[rate.verdict]
+    if rate.stopped_early:
+        line += "; the sequential test needed no more"
+    return f"{style.mark(rate.verdict == 'shown')} {line}"
+
+
+def table_lines(
+    cases: Sequence[tuple[Mapping[str, Any], bool]], style: Style = PLAIN
+) -> Iterator[str]:
+    """Passed of all, by each quantity that varies; the worst rows tell where to look.
+
+    Args:
+        cases: What varied in each case, and whether it passed.
+        style: Of the terminal.
+    """
+    paths = dict.fromkeys(path for values, _ in cases for path in values)
+    for path in paths:
+        rows = _rows([(values[path], good) for values, good in cases if path in values])
+        if len(rows) < 2:
+            continue
+        yield style.strong(path)
+        width = max(len(label) for label, _, _ in rows)
+        for label, passed, total in rows[:MOST_ROWS]:
+            mark = style.mark(passed == total)
+            yield f"  {mark} {label:<{width}}  {passed:>4} of {total:<4} {passed / total:7.1%}"
+        if len(rows) > MOST_ROWS:
+            yield f"  ... {len(rows) - MOST_ROWS} more"
+
+
+def _rows(entries: Sequence[tuple[Any, bool]]) -> list[tuple[str, int, int]]:
+    """Label, passed and total of each value, or of each part of a range of numbers."""
+    try:
+        numbers = [split_quantity(value) for value, _ in entries]
+    except ValueError:
+        numbers = []
+    if numbers and len({value for value, _ in numbers}) > BINS:
+        return _binned([number for number, _ in numbers], [g for _, g in entries], numbers[0][1])
+    found: dict[str, list[bool]] = {}
+    for index, (value, is_good) in enumerate(entries):
+        number, unit = numbers[index] if numbers else (0.0, "")
+        label = f"{number:.6g} {unit}".rstrip() if numbers else str(value)
+        found.setdefault(label, []).append(is_good)
+    return [(label, sum(goods), len(goods)) for label, goods in found.items()]
+
+
+def _binned(
+    numbers: Sequence[float], goods: Sequence[bool], unit: str
+) -> list[tuple[str, int, int]]:
+    order = sorted(range(len(numbers)), key=lambda index: numbers[index])
+    rows: list[tuple[str, int, int]] = []
+    for part in range(BINS):
+        chosen = order[part * len(order) // BINS : (part + 1) * len(order) // BINS]
+        label = f"{numbers[chosen[0]]:.4g} to {numbers[chosen[-1]]:.4g} {unit}".rstrip()
+        rows.append((label, sum(goods[index] for index in chosen), len(chosen)))
+    return rows

@@ -1,0 +1,127 @@
+"""Results on disk as they come, a JSON line each, so that an interrupted run can go on."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any, cast
+
+from harness import __version__
+from harness.core.errors import HarnessError
+from harness.recording.plain import from_plain, to_plain
+from harness.reporting.result import CaseResult
+from harness.suite.cases import CaseJob
+
+FORMAT = "armharness-stream/1"
+FILE = "results.jsonl"
+INPUTS = (
+    ".yaml",
+    ".yml",
+    ".sdf",
+    ".world",
+    ".urdf",
+    ".xacro",
+    ".srdf",
+    ".xml",
+    ".stl",
+    ".obj",
+    ".dae",
+)
+"""Files whose text counts where a scenario names them."""
+
+
+class Stream:
+    """Appends results to a file, and gives back those of an earlier run of the same inputs."""
+
+    def __init__(self, folder: Path, *, resume: bool) -> None:
+        """Open `folder/results.jsonl`.
+
+        Args:
+            folder: Made where it is missing.
+            resume: Whether results that are there already are kept; else they are overwritten.
+
+        Raises:
+            HarnessError: The file cannot be written.
+        """
+        self.path = folder / FILE
+        self._known: dict[str, CaseResult] = dict(_read(self.path)) if resume else {}
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            self._file = self.path.open("a" if resume else "w", encoding="utf-8")
+        except OSError as error:
+            raise HarnessError(f"'{self.path}' cannot be written: {error.strerror}") from error
+
+    def known(self, job: CaseJob) -> CaseResult | None:
+        """The result of an earlier run of the same file, values and version; None if there is none.
+
+        An error is no result: it is tried again.
+        """
+        result = self._known.get(fingerprint(job)) if self._known else None
+        return None if result is None or result.outcome == "error" else result
+
+    def write(self, job: CaseJob, result: CaseResult) -> None:
+        """Keep a result.
+
+        Raises:
+            HarnessError: The disk is full.
+        """
+        line = {"format": FORMAT, "key": fingerprint(job), "result": to_plain(result)}
+        try:
+            self._file.write(json.dumps(line, ensure_ascii=False, allow_nan=False) + "\n")
+            self._file.flush()
+        except OSError as error:
+            raise HarnessError(f"'{self.path}' cannot be written: {error.strerror}") from error
+
+    def close(self) -> None:
+        """Let go of the file."""
+        self._file.close()
+
+
+def _read(path: Path) -> Iterator[tuple[str, CaseResult]]:
+    """Whole lines of a stream; one that was cut off, or is of another format, is left out."""
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError):
+        return
+    for line in lines:
+        try:
+            entry = cast("dict[str, Any]", json.loads(line))
+            if entry["format"] == FORMAT:
+                yield str(entry["key"]), from_plain(entry["result"], CaseResult)
+        except (ValueError, KeyError, TypeError):
+            continue
+
+
+def fingerprint(job: CaseJob) -> str:
+    """What a case's result follows from: file, files it names, values, seed, version."""
+    said = [__version__, _file_hash(job.file), job.case, str(job.seed), *_sorted(job.overrides)]
+    return hashlib.sha256("\0".join(said).encode()).hexdigest()
+
+
+def _sorted(overrides: Mapping[str, str]) -> list[str]:
+    return [f"{path}={value}" for path, value in sorted(overrides.items())]
+
+
+@cache
+def _file_hash(file: Path) -> str:
+    """Hash of a scenario file and of the files that it names, and those that they name."""
+    hasher = hashlib.sha256()
+    waiting, seen = [file], set[Path]()
+    while waiting:
+        path = waiting.pop()
+        if path in seen or not path.is_file():
+            continue
+        seen.add(path)
+        try:
+            data = path.read_bytes()
+        except OSError:
+            continue
+        hasher.update(data)
+        if path.suffix.lower() in (".yaml", ".yml"):
+            words = data.decode("utf-8", "replace").replace(",", " ").replace("}", " ").split()
+            names = sorted({word.strip("\"'[]{}") for word in words})
+            waiting += [path.parent / name for name in names if name.lower().endswith(INPUTS)]
+    return hasher.hexdigest()

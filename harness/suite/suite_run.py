@@ -1,0 +1,171 @@
+"""The runs of one command: every case as often as asked, and what they came to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from harness.recording.run import Outcome
+from harness.reporting.result import CaseResult
+from harness.suite.cases import CaseJob, Watcher, nobody_watches, run_here, run_isolated
+from harness.suite.outcome import EXIT_CODES, INTERRUPTED_EXIT_CODE, exit_code
+from harness.suite.plan import PlannedCase
+from harness.suite.sampling import SampledGroup, Sampling
+from harness.suite.stream import Stream
+from harness.suite.warm import WarmServer
+
+Told = Callable[[int, CaseResult], None]
+
+
+@dataclass(frozen=True)
+class How:
+    """How a suite is run.
+
+    Attributes:
+        workers: Cases side by side.
+        repeat: Runs of each case; only the first is reported.
+        in_process: Without a process for each case, for debuggers.
+        hard_cap: Wall seconds a case may take; None: the program's own.
+        stream: Folder that results are written to as they come; None: nowhere.
+        resume: Whether results that are there are taken instead of computed.
+    """
+
+    workers: int = 1
+    repeat: int = 1
+    in_process: bool = False
+    hard_cap: float | None = None
+    stream: Path | None = None
+    resume: bool = False
+
+
+class SuiteRun:
+    """Runs planned cases and keeps their results.
+
+    Attributes:
+        plan: Cases, in file order.
+        jobs: Their runs: with repetitions, `repeat` of each case side by side.
+        results: By index into `jobs`; of samples, those that count.
+        resumed: How many results are from an earlier run.
+        is_interrupted: Whether Ctrl-C ended it early.
+    """
+
+    def __init__(self, plan: Sequence[PlannedCase], how: How) -> None:
+        self.plan = plan
+        self.jobs = [job for each in plan for job in _runs(each.job, how.repeat)]
+        self.results: dict[int, CaseResult] = {}
+        self.resumed = 0
+        self.is_interrupted = False
+        self._how = how
+        self._sampling = Sampling(plan)
+
+    def collect(
+        self, server: WarmServer, watch: Watcher = nobody_watches, told: Told = lambda *_: None
+    ) -> None:
+        """Run what is wanted; Ctrl-C leaves what is done.
+
+        Args:
+            server: Open, unless the cases run in this process.
+            watch: Hears of running cases.
+            told: Hears of ended ones.
+
+        Raises:
+            HarnessError: The stream cannot be written.
+        """
+        try:
+            if self._how.stream is None:
+                for index, result in self._arriving(server, watch):
+                    self._take(index, result)
+                    told(index, result)
+            else:
+                with closing(Stream(self._how.stream, resume=self._how.resume)) as stream:
+                    self._take_known(stream)
+                    for index, result in self._arriving(server, watch):
+                        self._take(index, result)
+                        stream.write(self.jobs[index], result)
+                        told(index, result)
+        except KeyboardInterrupt:
+            self.is_interrupted = True
+        counted = self._sampling.counted(self.results) if self._is_sampled else self.results
+        self.results = dict(sorted(counted.items()))
+
+    @property
+    def _is_sampled(self) -> bool:
+        """Repetitions are compared with each other, not counted as samples."""
+        return self._how.repeat == 1
+
+    def _arriving(self, server: WarmServer, watch: Watcher) -> Iterator[tuple[int, CaseResult]]:
+        how = self._how
+        if how.in_process:
+            return run_here(self.jobs, watch=watch, is_needless=self.is_needless)
+        return run_isolated(
+            self.jobs,
+            server,
+            workers=how.workers,
+            hard_cap=how.hard_cap,
+            watch=watch,
+            is_needless=self.is_needless,
+        )
+
+    def _take_known(self, stream: Stream) -> None:
+        for index, job in enumerate(self.jobs):
+            known = stream.known(job)
+            if known is not None:
+                self._take(index, known)
+                self.resumed += 1
+
+    def _take(self, index: int, result: CaseResult) -> None:
+        self.results[index] = result
+        if self._is_sampled:
+            self._sampling.note(index, result.outcome)
+
+    def is_needless(self, index: int) -> bool:
+        """Whether a run's result is known, or would not count."""
+        return index in self.results or (self._is_sampled and self._sampling.is_needless(index))
+
+    # -- what it came to ----------------------------------------------------------------------
+
+    @property
+    def missing(self) -> int:
+        """Runs that an interruption left undone."""
+        return sum(not self.is_needless(index) for index in range(len(self.jobs)))
+
+    @property
+    def rates(self) -> list[SampledGroup]:
+        """Success rates of the parametrised cases that are sampled."""
+        return self._sampling.groups() if self._is_sampled else []
+
+    def repetitions(self) -> list[list[CaseResult]]:
+        """Results of the same case together, in file order."""
+        together: dict[int, list[CaseResult]] = {}
+        for index, result in self.results.items():
+            together.setdefault(index // self._how.repeat, []).append(result)
+        return list(together.values())
+
+    @property
+    def outcome(self) -> Outcome:
+        """The gravest outcome; repetitions that differ have failed."""
+        outcomes: list[Outcome] = (
+            self._sampling.outcomes(self.results)
+            if self._is_sampled
+            else [result.outcome for result in self.results.values()]
+        )
+        gravest: Outcome = "passed"
+        for each in outcomes:
+            gravest = each if EXIT_CODES[each] > EXIT_CODES[gravest] else gravest
+        is_same = all(
+            len({(result.outcome, result.digest) for result in runs}) == 1
+            for runs in self.repetitions()
+        )
+        return "failed" if gravest == "passed" and not is_same else gravest
+
+    @property
+    def exit_code(self) -> int:
+        """Of the command."""
+        return INTERRUPTED_EXIT_CODE if self.is_interrupted else exit_code([self.outcome])
+
+
+def _runs(job: CaseJob, repeat: int) -> list[CaseJob]:
+    first = replace(job, stills=job.report_dir is not None)
+    return [first, *[replace(job, report_dir=None, stills=False)] * (repeat - 1)]

@@ -1,0 +1,210 @@
+"""The cases of a scenario file: each value of a grid in turn, named ones, random samples.
+
+Read from the file's values alone, without judging them, so that collecting a thousand files takes
+a second; a file whose variation is wrong has one case, which tells its problems.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import json
+import random
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from statistics import NormalDist
+from typing import Any, cast
+
+from harness.core.quantity import split_quantity
+from harness.core.variation import MOST_CASES, MOST_SAMPLES, Cases, count_of
+
+DEFAULT_SAMPLES = 20
+LONGEST_NAME = 60
+SMALLEST_SHARE = 1e-12
+"""Of a normal distribution: farther out its inverse is not told from infinity."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """One instance of a scenario.
+
+    Attributes:
+        name: Unique in its file; empty when the file has one case.
+        overrides: Dotted path in the file -> value as YAML.
+        values: What varies, for tables: path -> value.
+        group: Name of the parametrised case that a sample belongs to; samples share a rate.
+        sample: Its number from 0; None when nothing is random.
+    """
+
+    name: str = ""
+    overrides: Mapping[str, str] = field(default_factory=dict[str, str])
+    values: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    group: str = ""
+    sample: int | None = None
+
+
+@dataclass(frozen=True)
+class Variation:
+    """What a file says of its cases.
+
+    Attributes:
+        parametrize: A grid, or named cases; None where there is none.
+        randomize: Path -> distribution; empty where nothing is random.
+        samples: How many of each parametrised case; 0: no samples.
+        at_least: Success rate to be shown; None: every sample must pass.
+        confidence: With which.
+        stop_early: Whether a sequential test may end the sampling.
+        seed: Of the file.
+    """
+
+    parametrize: Cases | None = None
+    randomize: Mapping[str, Mapping[str, Any]] = field(default_factory=dict[str, Any])
+    samples: int = 0
+    at_least: float | None = None
+    confidence: float = 0.95
+    stop_early: bool = True
+    seed: int = 0
+
+    @classmethod
+    def of(cls, values: Mapping[str, Any]) -> Variation:
+        """What the plain values of a file say; nothing where they make no sense."""
+        try:
+            return cls._of(values)
+        except (TypeError, ValueError, KeyError, AttributeError):
+            return cls()
+
+    @classmethod
+    def _of(cls, values: Mapping[str, Any]) -> Variation:
+        randomize = dict(values.get("randomize") or {})
+        for distribution in randomize.values():
+            _drawn(distribution, random.Random(0))
+        rate = cast("dict[str, Any]", values.get("expect_rate") or {})
+        default = DEFAULT_SAMPLES if randomize or rate else 0
+        variation = cls(
+            parametrize=values.get("parametrize"),
+            randomize=randomize,
+            samples=int(values.get("samples") or default),
+            at_least=float(rate["at_least"]) if "at_least" in rate else None,
+            confidence=float(rate.get("confidence", 0.95)),
+            stop_early=bool(rate.get("stop_early", True)),
+            seed=int(values.get("seed") or 0),
+        )
+        list(itertools.islice(variation.cases(), 3))
+        if count_of(variation.parametrize) > MOST_CASES or variation.count > MOST_SAMPLES:
+            raise ValueError("more cases than a file may have")
+        return variation
+
+    @property
+    def count(self) -> int:
+        """How many cases there are, samples included."""
+        return max(1, self.samples) * count_of(self.parametrize)
+
+    def cases(self, seed: int | None = None, samples: int | None = None) -> Iterator[Case]:
+        """Every case, in file order; samples of one parametrised case together.
+
+        Args:
+            seed: Instead of the file's.
+            samples: Instead of the file's.
+        """
+        base = self.seed if seed is None else seed
+        count = self.samples if samples is None else samples
+        for case in self.parametrized():
+            if not count:
+                yield case
+            else:
+                yield from (self._sample(case, index, base) for index in range(count))
+
+    def parametrized(self) -> Iterator[Case]:
+        """The cases without their samples."""
+        if self.parametrize is None:
+            yield Case()
+        elif isinstance(self.parametrize, Mapping):
+            grid = self.parametrize
+            labels = [_labels(values) for values in grid.values()]
+            for combination in itertools.product(*(range(len(v)) for v in grid.values())):
+                picked = list(zip(grid.items(), labels, combination, strict=True))
+                chosen = {path: values[place] for (path, values), _, place in picked}
+                yield _case("-".join(names[place] for _, names, place in picked), chosen)
+        else:
+            taken: set[str] = set()
+            for index, named in enumerate(self.parametrize):
+                chosen = {path: value for path, value in named.items() if path != "id"}
+                labels = [_label(value, place) for place, value in enumerate(chosen.values())]
+                name = _plain_name(str(named.get("id") or "-".join(labels)))
+                name = name if name and name not in taken else f"case{index}"
+                taken.add(name)
+                yield _case(name, chosen)
+
+    def _sample(self, case: Case, index: int, base: int) -> Case:
+        """A case with random values, and a seed of its own that everything random follows from."""
+        seed = _seed(f"{base}:{case.name}:{index}")
+        rng = random.Random(seed)
+        drawn = {path: _drawn(each, rng) for path, each in self.randomize.items()}
+        prefix = f"{case.name}-" if case.name else ""
+        return Case(
+            name=f"{prefix}sample{index}",
+            overrides={**case.overrides, **_as_yaml(drawn), "seed": str(seed)},
+            values={**case.values, **drawn},
+            group=case.name,
+            sample=index,
+        )
+
+
+ONE_CASE = Variation()
+
+
+def _case(name: str, values: Mapping[str, Any]) -> Case:
+    return Case(name, _as_yaml(values), dict(values), name)
+
+
+def _as_yaml(values: Mapping[str, Any]) -> dict[str, str]:
+    """Values as YAML, in which JSON is."""
+    return {path: json.dumps(value, ensure_ascii=False) for path, value in values.items()}
+
+
+def _seed(text: str) -> int:
+    digest = hashlib.sha256(text.encode()).digest()
+    return int.from_bytes(digest[:4], "big") & 0x7FFFFFFF
+
+
+def _drawn(distribution: Mapping[str, Any], rng: random.Random) -> Any:
+    """A value of a distribution, in the unit it is said in."""
+    if "choice" in distribution:
+        return rng.choice(list(distribution["choice"]))
+    if "uniform" in distribution:
+        (low, unit), (high, _) = (split_quantity(each) for each in distribution["uniform"])
+        return _with_unit(rng.uniform(low, high), unit)
+    normal = distribution["normal"]
+    (mean, unit), (std, _) = split_quantity(normal["mean"]), split_quantity(normal["std"])
+    curve = NormalDist(mean, std)
+    low, high = (normal.get(end) for end in ("low", "high"))
+    least = 0.0 if low is None else curve.cdf(split_quantity(low)[0])
+    most = 1.0 if high is None else curve.cdf(split_quantity(high)[0])
+    share = rng.uniform(least, most)
+    return _with_unit(curve.inv_cdf(min(max(share, SMALLEST_SHARE), 1 - SMALLEST_SHARE)), unit)
+
+
+def _with_unit(value: float, unit: str) -> float | str:
+    return f"{value!r} {unit}" if unit else value
+
+
+def _labels(values: Sequence[Any]) -> list[str]:
+    """A label for each value; numbered where two would be the same."""
+    labels = [_label(value, index) for index, value in enumerate(values)]
+    if len(set(labels)) == len(labels):
+        return labels
+    return [f"{label}.{index}" for index, label in enumerate(labels)]
+
+
+def _label(value: Any, index: int) -> str:
+    if isinstance(value, dict | list) or value is None:
+        return f"value{index}"
+    if isinstance(value, bool):
+        return str(value).lower()
+    return _plain_name(str(value)) or f"value{index}"
+
+
+def _plain_name(text: str) -> str:
+    """A name that stands in ids and paths without quotes."""
+    return re.sub(r"[^\w.+]+", "_", text).strip("_.")[:LONGEST_NAME]

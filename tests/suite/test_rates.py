@@ -1,0 +1,58 @@
+"""Success rates: against another implementation, and by their promised error."""
+
+import random
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.stats import binomtest
+
+from harness.suite.rates import decided, rate_of, wilson_interval
+
+
+@given(st.integers(1, 400), st.floats(0, 1), st.sampled_from([0.8, 0.95, 0.99]))
+def test_the_interval_is_wilsons(total, share, confidence):
+    passed = round(share * total)
+    expected = binomtest(passed, total).proportion_ci(confidence, method="wilson")
+    assert wilson_interval(passed, total, confidence) == pytest.approx(tuple(expected), abs=1e-9)
+
+
+@pytest.mark.parametrize("rate", [0.5, 0.9])
+def test_at_the_asked_rate_itself_the_sequential_test_rarely_decides(rate):
+    rng = random.Random(1)
+    wrong = 0
+    for _ in range(400):
+        passed = 0
+        for count in range(1, 301):
+            passed += rng.random() < rate
+            if decided(passed, count, rate, 0.95) != "open":
+                wrong += 1
+                break
+    assert 0 < wrong <= 0.05 * 400 + 3 * (400 * 0.05 * 0.95) ** 0.5
+
+
+@pytest.mark.parametrize(("true", "verdict"), [(0.99, "shown"), (0.5, "refuted")])
+def test_far_from_the_asked_rate_it_decides_early_and_rightly(true, verdict):
+    rng = random.Random(2)
+    for _ in range(50):
+        outcomes = [rng.random() < true for _ in range(400)]
+        rate = rate_of(outcomes, 0.8, 0.95, stop_early=True)
+        assert rate.verdict == verdict
+        assert rate.stopped_early
+        assert rate.total < 200
+
+
+def test_without_an_asked_rate_every_one_must_pass():
+    assert rate_of([True] * 5, None, 0.95, stop_early=True).verdict == "shown"
+    assert rate_of([True, False], None, 0.95, stop_early=True).verdict == "refuted"
+
+
+def test_too_few_samples_show_nothing_either_way():
+    rate = rate_of([True] * 5, 0.9, 0.95, stop_early=True)
+    assert rate.verdict == "open"
+    assert rate.low < 0.9 < rate.high
+
+
+def test_a_rate_of_one_cannot_be_shown_and_is_refuted_by_one_failure():
+    assert rate_of([True] * 100, 1.0, 0.95, stop_early=True).verdict == "open"
+    assert rate_of([True] * 9 + [False], 1.0, 0.95, stop_early=True).verdict == "refuted"

@@ -1,0 +1,179 @@
+"""Varied suites through the command line: rates, early ends, tables, going on, one sample alone."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+VARIED = """\
+scenario: Wait for a random time
+robot: open_manipulator_x
+seed: 5
+params: {time: 0.1 s}
+steps:
+  - wait: "${time}"
+expect:
+  - duration: {at_most: 0.15 s}
+randomize:
+  time: {uniform: [0.01 s, 0.2 s]}
+samples: 12
+"""
+GRID = """\
+scenario: Wait
+robot: open_manipulator_x
+params: {time: 0.1 s, unused: 1}
+steps:
+  - wait: "${time}"
+expect:
+  - duration: {at_most: 0.15 s}
+parametrize:
+  time: [0.05 s, 0.1 s, 0.2 s]
+  unused: [1, 2]
+"""
+
+
+def harness(*words, cwd):
+    return subprocess.run(
+        [sys.executable, "-m", "harness.cli", *map(str, words)],
+        cwd=cwd, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+
+
+def results(*words, cwd):
+    return json.loads(harness("run", *words, "--json", cwd=cwd).stdout)
+
+
+@pytest.fixture
+def varied(tmp_path):
+    def write(text=VARIED):
+        path = tmp_path / "varied.scenario.yaml"
+        path.write_text(text)
+        return path
+
+    return write
+
+
+@pytest.fixture(scope="module")
+def sampled(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sampled")
+    path = folder / "varied.scenario.yaml"
+    path.write_text(VARIED)
+    return folder, path, results(path, "-j", 2, cwd=folder)
+
+
+def test_a_rate_counts_each_sample_once_whatever_its_order(sampled):
+    folder, path, found = sampled
+    [group] = found["rates"]
+    passed = sum(case["outcome"] == "passed" for case in found["cases"])
+    assert (group["rate"]["passed"], group["rate"]["total"]) == (passed, 12)
+    assert 0 < passed < 12
+    assert found["exit_code"] == 1
+    alone = results(path, "--no-report", cwd=folder)
+    assert [case["digest"] for case in alone["cases"]] == [
+        case["digest"] for case in found["cases"]
+    ]
+    assert len({case["seed"] for case in found["cases"]}) == 12
+
+
+def test_a_failing_sample_runs_alone_to_the_same_digest_with_the_printed_command(sampled):
+    folder, path, found = sampled
+    worst = next(case for case in found["cases"] if case["outcome"] == "failed")
+    said = harness("run", path, "--no-report", cwd=folder).stdout
+    [command] = [
+        line.split("again:")[1].split()
+        for line in said.splitlines()
+        if "again:" in line and line.endswith(f"--case {worst['case']}")
+    ]
+    [again] = results(*command[2:], "--no-report", cwd=folder)["cases"]
+    assert (again["digest"], again["seed"]) == (worst["digest"], worst["seed"])
+
+
+def test_only_failed_samples_leave_reports_unless_all_are_kept(sampled):
+    folder, path, found = sampled
+    root = folder / "reports/varied"
+    failed = {case["case"] for case in found["cases"] if case["outcome"] == "failed"}
+    assert {report.name for report in root.iterdir()} == failed
+    words = ("--keep", "all", "--case", "sample[01]", "--no-page", "--report-dir", "all")
+    results(path, *words, cwd=folder)
+    assert {report.name for report in (folder / "all/varied").iterdir()} == {"sample0", "sample1"}
+
+
+def test_the_sequential_test_ends_the_sampling_at_the_same_sample_however_many_work(varied):
+    text = VARIED.replace("samples: 12", "samples: 60\nexpect_rate: {at_least: 0.2}")
+    path = varied(text)
+    totals = []
+    for workers in (1, 2):
+        found = results(path, "--no-report", "-j", workers, cwd=path.parent)
+        [group] = found["rates"]
+        assert group["rate"]["stopped_early"]
+        assert group["rate"]["verdict"] == "shown"
+        assert found["exit_code"] == 0
+        totals.append([case["case"] for case in found["cases"]])
+    assert totals[0] == totals[1]
+    assert len(totals[0]) < 60
+
+
+def test_a_rate_that_cannot_be_shown_fails_and_says_what_to_do(varied):
+    path = varied(VARIED.replace("samples: 12", "samples: 4\nexpect_rate: {at_least: 0.6}"))
+    done = harness("run", path, "--no-report", cwd=path.parent)
+    assert done.returncode == 1
+    assert "at least 60.0% is not shown: take more samples, or ask for less" in done.stdout
+
+
+def test_a_table_tells_which_quantity_decides(varied):
+    path = varied(GRID)
+    done = harness("run", path, "--no-report", cwd=path.parent)
+    assert done.returncode == 1
+    table = [" ".join(line.split()) for line in done.stdout.splitlines()]
+    assert "✗ 0.2 s 0 of 2 0.0%" in table
+    assert "✓ 0.05 s 2 of 2 100.0%" in table
+    assert "again: harness run varied.scenario.yaml --case 0.2_s-1" in done.stdout.replace(
+        str(path), path.name
+    ).replace("  harness", " harness")
+
+
+def test_what_is_known_is_not_computed_again_and_what_changed_is(varied):
+    path = varied(GRID)
+    first = results(path, "--no-page", cwd=path.parent)
+    stream = path.parent / "reports/results.jsonl"
+    lines = stream.read_text().splitlines()
+    assert len(lines) == 6
+    # as an interruption leaves it: two whole lines and a piece of one
+    stream.write_text("\n".join([*lines[:2], lines[2][:40]]) + "\n")
+    done = harness("run", path, "--no-page", "--resume", cwd=path.parent)
+    assert "2 of them were known from before" in done.stdout
+    again = results(path, "--no-page", "--resume", cwd=path.parent)
+    assert again["cases"] == [
+        {**case, "wall_times": other["wall_times"]}
+        for case, other in zip(first["cases"], again["cases"], strict=True)
+    ]
+    path.write_text(GRID.replace("0.15 s}", "0.16 s}"))
+    done = harness("run", path, "--no-page", "--resume", cwd=path.parent)
+    assert "known from before" not in done.stdout
+
+
+def test_a_case_that_is_not_there_is_named_with_those_that_are(varied):
+    path = varied(GRID)
+    done = harness("run", path, "--case", "0.3_s", cwd=path.parent)
+    assert done.returncode == 2
+    assert "0.05_s-1, 0.05_s-2" in done.stderr
+
+
+def test_a_mistake_in_one_value_is_told_of_its_cases_alone(varied):
+    path = varied(GRID.replace("0.2 s]", "0.2 m]"))
+    done = harness("check", path, cwd=path.parent)
+    assert done.returncode == 2
+    assert f"{path}:5:11: `0.2 m` is a length; a time is meant" in done.stdout
+    assert "[0.05_s-1]: ok" in done.stdout
+    ran = harness("run", path, "--no-report", cwd=path.parent)
+    assert ran.returncode == 2
+    assert "4 passed, 2 invalid of 6 cases" in ran.stdout
+
+
+def test_a_mistake_of_the_file_is_told_once_not_for_every_sample(varied):
+    path = varied(VARIED.replace("wait:", "wiat:"))
+    done = harness("run", path, "--no-report", cwd=path.parent)
+    assert done.returncode == 2
+    assert done.stdout.count("did you mean 'wait'") <= 1
+    assert "1 invalid of 1 case" in done.stdout
