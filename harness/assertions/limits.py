@@ -30,13 +30,15 @@ def gripper_joints(run: Run) -> frozenset[str]:
 
 def resting_joints(run: Run) -> frozenset[str]:
     """Joints that may lean on their stops: the gripper's, followers, and idle ones off the arm."""
-    names = {joint.name for joint in run.robot.joints if joint.is_mimic}
-    arm = run.robot.groups.get(run.robot.arm_group, ())
+    names = gripper_joints(run) | {joint.name for joint in run.robot.joints if joint.is_mimic}
+    others = names | set(run.robot.groups.get(run.robot.arm_group, ()))
     for column, joint in enumerate(run.robot.joints):
+        if joint.name in others:
+            continue
         commands = run.signals.joint_commands[:, column]
-        if joint.name not in arm and commands.size and (commands == commands[0]).all():
-            names.add(joint.name)
-    return gripper_joints(run) | names
+        if commands.size and (commands == commands[0]).all():
+            names |= {joint.name}
+    return names
 
 
 @signal.handles(WithinLimits)

@@ -61,6 +61,7 @@ from harness.spec.poses import Pose
 from tests.assertions.picture_mutants import SUBJECTS, seen_run, spoilt
 from tests.assertions.synthetic_run import (
     BOX,
+    ROBOT,
     TABLE,
     at,
     attachment,
@@ -215,6 +216,14 @@ CASES = [
                 "joint_positions": columns((2.0, 0.0), (0.5, 0.02)),
                 "joint_velocities": columns((3.0, 0.0), (2.0, 0.0)),
             }
+        ),
+        "late",
+    ),
+    (
+        WithinLimits(velocity=False, effort=False),
+        replace(
+            late(joint_positions=columns((2.0, 0.0), -0.0005), joint_commands=columns(0.0)),
+            robot=replace(ROBOT, gripper=None),
         ),
         "late",
     ),
