@@ -473,8 +473,8 @@ class Faults(Protocol):
         """Hold a joint where it is for the rest of the run, whatever its motor does."""
         ...
 
-    def push(self, name: str, force: FloatArray, duration: float) -> None:
-        """Push a free object at its centre of mass [N, world axes] for some time [s]."""
+    def push(self, forces: Mapping[str, FloatArray], duration: float) -> None:
+        """Push free objects at their centres of mass [N, world axes] for some time [s], at once."""
         ...
 
     def disturb_sensors(self, deviation: float, seed: int) -> float:

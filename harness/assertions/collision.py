@@ -193,10 +193,14 @@ def _names(run: Run, allowed: Pair, pair: Pair) -> bool:
     return (a in first and b in second) or (b in first and a in second)
 
 
-def _steps_of(run: Run, verbs: tuple[str, ...]) -> BoolArray:
+def _steps_of(run: Run, verbs: tuple[str, ...], during: BoolArray | None = None) -> BoolArray:
+    """Samples of the steps with these verbs; only of steps in which something is true."""
     mask = np.zeros(len(run.signals.times), dtype=bool)
     for step in run.steps:
-        if step.verb in verbs:
+        if step.verb not in verbs:
+            continue
+        around = slice(max(step.start_index - 1, 0), step.end_index + 1)
+        if during is None or during[around].any():
             mask[step.start_index : step.end_index] = True
     return mask
 
@@ -204,19 +208,19 @@ def _steps_of(run: Run, verbs: tuple[str, ...]) -> BoolArray:
 def _gripping(run: Run, link: str, name: str) -> BoolArray:
     """Samples at which a gripper link touches an object because it grips it, shape (N,).
 
-    A grip begins with a contact while the gripper moves (`gripper`, `grasp`, `release`). It lasts
-    while the contact does and the object is attached, or all finger sides touch it, or the arm
-    rests. A finger that knocks against an object on its way is a collision, whatever the planning
-    scene says of the object, and so is one that drags it along after letting go.
+    A grip begins with a contact in a `gripper`, `grasp` or `release` in which the object is between
+    all finger sides at some time. It lasts while the contact does and the object is attached, or
+    all finger sides touch it, or the arm rests. A finger that knocks against an object on its way
+    is a collision, whatever the planning scene says of the object, and so is one that drags it
+    along after letting go, or that opens against a wall.
     """
     gripper = run.robot.gripper
     hand = frozenset[str]() if gripper is None else finger_links(gripper) | {gripper.palm_link}
     if link not in hand:
         return np.zeros(len(run.signals.times), dtype=bool)
-    begins = _steps_of(run, GRIPPING_VERBS)
-    lasts = (
-        begins | attached(run, name) | held_by_fingers(run, name) | _steps_of(run, RESTING_VERBS)
-    )
+    held = held_by_fingers(run, name)
+    begins = _steps_of(run, GRIPPING_VERBS, held)
+    lasts = attached(run, name) | held | _steps_of(run, RESTING_VERBS)
     contact = debounced(run, force_between(run, hand, {name})) > 0
     mask = np.zeros(len(contact), dtype=bool)
     for start, stop in episodes(contact & lasts):

@@ -15,6 +15,7 @@ from harness.assertions.contacts import (
 )
 from harness.assertions.poses import object_poses, present, start_poses
 from harness.assertions.registry import Evidence, MarginSignal, signal
+from harness.assertions.support import rides_on
 from harness.assertions.text import amount
 from harness.assertions.window import Window, object_record
 from harness.recording.run import Measure
@@ -25,14 +26,18 @@ from harness.spec.checks import Lifted
 def lifted(check: Lifted, window: Window) -> MarginSignal:
     """Height above the object's start, less what is asked for [m].
 
-    Where a finger side does not touch the object, or anything but the fingers does, its height
-    counts for nothing: the margin there is `-above`, less still if it has sunk.
+    Where a finger side does not touch the object, or anything but the gripper and what rests on it
+    does, its height counts for nothing: the margin there is `-above`, less still if it has sunk.
     """
     run, name = window.run, check.object
-    fingers = finger_links(gripper_of(run))
+    gripper = gripper_of(run)
+    fingers = finger_links(gripper)
     rise = object_poses(run, name)[:, 2] - start_poses(run, name)[:, 2]
     sides = side_forces(run, name)
-    others = bodies_touching(run, name, but=fingers)
+    others = bodies_touching(run, name, but=fingers | {gripper.palm_link})
+    others = {
+        body: np.where(rides_on(run, body, name), 0.0, force) for body, force in others.items()
+    }
     touched = np.zeros(len(rise), dtype=bool)
     unknown = ~present(run, name)
     for force in others.values():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.assertions.contacts import TOUCH_FORCE
+from harness.assertions.contacts import TOUCH_FORCE, in_hand
 from harness.assertions.grasp import robot_contact
 from harness.assertions.poses import frame_poses, object_poses, present, speeds, start_poses
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
@@ -20,7 +20,7 @@ from harness.core.pose_arrays import (
     rotate,
     rotation_vector,
 )
-from harness.core.types import FloatArray
+from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import Measure, Run
 from harness.spec.checks import Displaced, On, Placed, Static, Upright
 
@@ -35,18 +35,26 @@ UP = np.array([0.0, 0.0, 1.0])
 
 @signal.handles(Placed)
 def placed(check: Placed, window: Window) -> MarginSignal:
-    """Rests on a support from below, untouched by the robot, still, and at the pose if given."""
+    """Rests on a support from below, untouched by the robot, still, and at the pose if given.
+
+    What is in the hand is no support but for a `placed` that names it.
+    """
     run, name = window.run, check.object
-    carried = supports(run, name)
-    if check.on is not None:
-        carried = {body: force for body, force in carried.items() if body == check.on}
+    carried = {
+        body: force if check.on is not None else np.where(_is_carried(run, body), 0.0, force)
+        for body, force in supports(run, name).items()
+        if check.on in (None, body)
+    }
     support = np.max([np.zeros(len(run.signals.times)), *carried.values()], axis=0)
     force, hold = robot_contact(run, name)
-    speed = _calm(window, window.cut(speeds(run, object_poses(run, name))[0]))
+    speed, turning = (
+        _calm(window, window.cut(rate)) for rate in speeds(run, object_poses(run, name))
+    )
     what = f"support by {check.on or 'anything but the robot'}"
     parts = [
         *_at_pose(check, window),
         Part("speed", speed, check.max_velocity, "<=", "m/s"),
+        Part("turning speed", turning, check.max_angular_velocity, "<=", "rad/s"),
         Part(what, window.cut(support), TOUCH_FORCE, ">=", "N"),
         Part("contact with the robot", window.cut(force), TOUCH_FORCE, "<=", "N"),
         Part("attached in the planning scene", window.cut(hold), 0.0, "==", "1"),
@@ -61,6 +69,13 @@ def placed(check: Placed, window: Window) -> MarginSignal:
         return f"{stands}; {_against(tightest)}"
 
     return all_of(window, parts, text, present=window.cut(present(run, name)))
+
+
+def _is_carried(run: Run, body: str) -> BoolArray:
+    """Samples at which the robot holds a body, shape (N,)."""
+    if all(record.name != body for record in run.objects):
+        return np.zeros(len(run.signals.times), dtype=bool)
+    return in_hand(run, body)
 
 
 def _at_pose(check: Placed, window: Window) -> list[Part]:

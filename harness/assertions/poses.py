@@ -71,18 +71,18 @@ def present(run: Run, name: str) -> BoolArray:
 def start_poses(run: Run, name: str) -> FloatArray:
     """Where the object started: its pose when it last appeared or was put somewhere, shape (N, 7).
 
-    A start is the first sample at which it is present, and the first one after `move_object`,
-    `add_object` and the like made it jump; without the latter, teleporting would be lifting.
+    A start is the first sample at which it is present, and the first one after a step moved it,
+    however little, or made it jump; without the latter, teleporting would be lifting.
     """
     poses = object_poses(run, name)
     here = present(run, name)
     starts = here & ~np.concatenate([[False], here[:-1]])
-    jumps = np.zeros(len(poses), dtype=bool)
-    jumps[1:] = np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1) > JUMP
+    jumps = np.zeros(len(poses))
+    jumps[1:] = np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1)
     for step in run.steps:
         if step.verb in SCENE_VERBS and step.status != "not_reached":
             moved = slice(step.start_index, step.end_index + 1)
-            starts[moved] |= jumps[moved]
+            starts[moved] |= jumps[moved] > (0.0 if name in step.result.get("moved", ()) else JUMP)
     latest = np.maximum.accumulate(np.where(starts, np.arange(len(poses)), -1))
     return np.where((latest >= 0)[:, None], poses[np.maximum(latest, 0)], np.nan)
 

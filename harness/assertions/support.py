@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.assertions.contacts import bodies_touching
+from harness.assertions.contacts import TOUCH_FORCE, bodies_touching
 from harness.assertions.poses import object_poses
 from harness.assertions.window import NotObservable, object_record
 from harness.core.geometry import Box, Capsule, Cylinder, Sphere
@@ -54,6 +54,17 @@ def is_below(run: Run, support: str, name: str) -> BoolArray:
         poses[:, 2] + rotate(poses[:, 3:], shape.pose.translation)[:, 2] for shape in record.shapes
     ] or [poses[:, 2]]
     return np.min(centres, axis=0) <= lowest + SINKING
+
+
+def rides_on(run: Run, rider: str, carrier: str) -> BoolArray:
+    """Samples at which a free object lies on another and touches nothing else, shape (N,)."""
+    free = [each.name for each in run.objects if not each.is_static and each.in_simulation]
+    if rider not in free:
+        return np.zeros(len(run.signals.times), dtype=bool)
+    alone = np.ones(len(run.signals.times), dtype=bool)
+    for force in bodies_touching(run, rider, but={carrier}).values():
+        alone &= force <= TOUCH_FORCE  # not where it is unknown
+    return alone & is_below(run, carrier, rider)
 
 
 def supports(run: Run, name: str) -> dict[str, FloatArray]:

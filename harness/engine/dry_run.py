@@ -51,8 +51,8 @@ class DryFaults:
         del joint
         return False
 
-    def push(self, name: str, force: FloatArray, duration: float) -> None:
-        del name, force, duration
+    def push(self, forces: Mapping[str, FloatArray], duration: float) -> None:
+        del forces, duration
 
     def disturb_sensors(self, deviation: float, seed: int) -> float:
         del seed

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Protocol
 
 import mujoco
@@ -72,12 +73,12 @@ class Faults:
         self._stalled.add(joint)
         return was_stalled
 
-    def push(self, name: str, force: FloatArray, duration: float) -> None:
-        """Push a free object at its centre of mass."""
-        body = self._physics.objects[name].body
-        self._data.xfrc_applied[body, :3] = force
+    def push(self, forces: Mapping[str, FloatArray], duration: float) -> None:
+        """Push free objects at their centres of mass, all at once."""
+        bodies = [self._physics.objects[name].body for name in forces]
+        self._data.xfrc_applied[bodies, :3] = list(forces.values())
         self._simulator.hold(duration)
-        self._data.xfrc_applied[body] = 0.0
+        self._data.xfrc_applied[bodies] = 0.0
 
     def disturb_sensors(self, deviation: float, seed: int) -> float:
         """Add white noise to the positions that the servos and their tolerances see."""

@@ -103,6 +103,9 @@ class Placed(ObjectCheck):
     max_velocity: Annotated[LinearVelocity, Field(gt=0)] = Field(
         default=0.005, description="Slower than this is still [m/s]."
     )
+    max_angular_velocity: Annotated[AngularVelocity, Field(gt=0)] = Field(
+        default=0.05, description="And turning slower than this [rad/s]."
+    )
 
 
 class On(ObjectCheck):

@@ -29,7 +29,9 @@ QUANTITIES: Mapping[str, tuple[Quantity, ...]] = {
     "lifted": (
         Quantity("height gained", "m", "at least `above`; counts for nothing where another fails"),
         Quantity("finger force", "N", f"at least {TOUCH} on every side, from both sides"),
-        Quantity("other contact", "N", f"at most {TOUCH} with anything but the fingers"),
+        Quantity(
+            "other contact", "N", f"at most {TOUCH}, but with the gripper and what rests on it"
+        ),
     ),
     "grasped": (
         Quantity("finger force", "N", "at least `min_force` on every side"),
@@ -42,8 +44,9 @@ QUANTITIES: Mapping[str, tuple[Quantity, ...]] = {
         Quantity("attached in the planning scene", "1", "not attached"),
     ),
     "placed": (
-        Quantity("support", "N", f"at least {TOUCH} from below"),
+        Quantity("support", "N", f"at least {TOUCH} from below, by what the robot does not hold"),
         Quantity("speed", "m/s", "at most `max_velocity`, and for 50 ms before"),
+        Quantity("turning speed", "rad/s", "at most `max_angular_velocity`, and for 50 ms before"),
         Quantity("contact with the robot", "N", f"at most {TOUCH}"),
         Quantity("attached in the planning scene", "1", "not attached"),
         Quantity("position error", "m", "with `pose`: at most the tolerance's `position`"),

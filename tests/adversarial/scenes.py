@@ -79,6 +79,11 @@ def touched(run: Run, name: str, *, at_end: bool = True) -> bool:
     return any((force[-50:] if at_end else force).max() > 0 for force in forces)
 
 
+def speed_at_end(run: Run, name: str) -> float:
+    """Of an object's origin [m/s]."""
+    return float(np.linalg.norm(np.diff(place_of(run, name)[-2:], axis=0)) / run.timestep)
+
+
 def rose(run: Run, name: str, by: float) -> bool:
     """The highest point against the start: robosuite's Lift, LIBERO's Up."""
     z = place_of(run, name)[:, 2]
@@ -233,5 +238,81 @@ SCENES = (
         lambda run: rose(run, "red_box", 0.05),
         ("lifted: {object: red_box, above: 5 cm, for: 1 s}", "grasped: red_box"),
         ("lifted: {object: red_box, above: 5 cm}",),
+    ),
+    Scene(
+        "object that spins in its place",
+        "two boxes hit a bar at its ends from both sides, and it turns about its middle",
+        "objects:\n"
+        "  - {name: bar, box: {size: [0.3, 0.03, 0.03]}, mass: 100 g, friction: 0.005, "
+        "pose: {xyz: [0.4, 0.4, 0.015]}}\n"
+        "  - {name: left, box: {size: [0.03, 0.03, 0.03]}, mass: 100 g, friction: 0.005, "
+        "pose: {xyz: [0.54, 0.36, 0.015]}}\n"
+        "  - {name: right, box: {size: [0.03, 0.03, 0.03]}, mass: 100 g, friction: 0.005, "
+        "pose: {xyz: [0.26, 0.44, 0.015]}}\n"
+        "steps:\n  - inject: {push: {left: [0, 0.1, 0], right: [0, -0.1, 0]}}\n"
+        "  - wait: 0.3 s\n",
+        "it lies on the floor, and its origin moves slower than 5 cm/s",
+        lambda run: speed_at_end(run, "bar") < 0.05,
+        (
+            "placed: {object: bar, max_velocity: 5 cm/s}",
+            "static: {object: bar, max_velocity: 5 cm/s}",
+        ),
+        ("on: {object: bar, support: ground_plane}",),
+    ),
+    Scene(
+        "object that stands on what the gripper holds",
+        "a cube stands on the box that is lifted",
+        "objects:\n" + RED_BOX + "  - {name: cube, box: {size: [0.03, 0.03, 0.02]}, mass: 10 g, "
+        "friction: 1, in: simulation, pose: {xyz: [0.25, 0, 0.0915]}}\nsteps:"
+        + AT_BOX
+        + "  - move_relative: {direction: {xyz: [0, 0, 1]}, distance: 4 cm}\n  - wait: 0.3 s\n",
+        "it touches something below it, nothing of the robot, and stands still",
+        lambda run: not touched(run, "cube") and speed_at_end(run, "cube") < 0.005,
+        ("placed: cube", "lifted: {object: cube, above: 2 cm}"),
+        ("on: {object: cube, support: red_box}", "lifted: {object: red_box, above: 2 cm}"),
+    ),
+    Scene(
+        "object put up bit by bit between the fingers",
+        "steps move the box up by 4.5 mm seven times while the closed fingers touch it",
+        "objects:\n"
+        + RED_BOX
+        + "steps:"
+        + AT_BOX
+        + "".join(
+            f"  - move_object: {{object: red_box, pose: {{xyz: [0.25, 0, {z:.4f}]}}}}\n"
+            "  - wait: 2 ms\n"
+            for z in (0.0455, 0.05, 0.0545, 0.059, 0.0635, 0.068, 0.0725)
+        ),
+        "it rose by 2 cm, and both fingers touch it",
+        lambda run: rose(run, "red_box", 0.02) and touched(run, "red_box"),
+        (
+            "lifted: {object: red_box, above: 2 cm}",
+            "displaced: {object: red_box, at_least: 2 cm}",
+            "grasped: red_box",
+        ),
+        ("in_contact: {between: [gripper, red_box]}",),
+    ),
+    Scene(
+        "finger that opens against a wall",
+        "the gripper opens beside a wall that the planner was not told of",
+        "objects:\n  - {name: wall, in: simulation, static: true, box: {size: [0.1, 0.02, 0.3]}, "
+        "pose: {xyz: [0.29, 0.066, 0.15]}}\nsteps:\n  - gripper: close\n  - gripper: open\n",
+        "the arm stood still, and the fingers may touch things while they move",
+        lambda run: bool(np.ptp(run.signals.tcp_pose[:, :3], axis=0).max() < 0.005),
+        ("never: collision",),
+        ("gripper: {stalled: true}",),
+    ),
+    Scene(
+        "camera that looks the other way",
+        "the box stands where the camera could see it, behind its back",
+        "cameras:\n  - {name: eye, pose: {xyz: [0.6, 0, 0.3]}, look_at: [-0.2, 0, 0.3], "
+        "image: {width: 160, height: 120}}\n"
+        "objects:\n  - {name: red_box, static: true, color: [1, 0, 0, 1], "
+        "box: {size: [0.08, 0.08, 0.08]}, pose: {xyz: [1.2, 0, 0.3]}}\n"
+        "steps:\n  - wait: 0.1 s\n",
+        "it is nearer to the camera than 1 m",
+        lambda run: bool(np.linalg.norm(place_of(run, "red_box")[-1] - (0.6, 0, 0.3)) < 1),
+        ("sees: {camera: eye, object: red_box, min_visible: 0.01, min_area: 1}",),
+        ("never: {sees: {camera: eye, object: red_box, min_visible: 0.01, min_area: 1}}",),
     ),
 )

@@ -161,7 +161,10 @@ def test_being_attached_prolongs_a_grip_but_excuses_no_knock():
     steps = (step("move", 0, 50), step("close", 50, 60, "gripper"), step("carry", 60, 200))
     attached = make_run(steps=steps, attachments=[attachment("box", 20, 200)])
     assert collides(touching("left_finger", "box", (30, 40), run=attached))
-    assert not collides(touching("left_finger", "box", (55, 150), run=attached))
+    one_sided = touching("left_finger", "box", (55, 150), run=attached)
+    assert collides(one_sided), "a finger that pushes alone grips nothing"
+    gripped = touching("right_finger", "box", (55, 58), run=one_sided)
+    assert not collides(gripped)
     assert collides(touching("left_finger", "box", (55, 150), run=make_run(steps=steps)))
 
 

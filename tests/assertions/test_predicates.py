@@ -125,6 +125,36 @@ def test_an_object_put_on_a_shelf_by_a_step_starts_there():
     assert verdict(run, Lifted(object="box", above=0.05)).status == "passed", "no step moved it"
 
 
+def test_steps_that_put_it_up_bit_by_bit_lift_nothing():
+    z = 0.02 + 0.004 * np.clip((np.arange(200) - 100) // 10, 0, 9)
+    steps = [
+        step(f"up{k}", k, k, "move_object", result={"moved": ["box"]}) for k in range(110, 200, 10)
+    ]
+    run = lift_run(object_poses={"box": heights(z)}, tcp_pose=heights(z), leave=0, steps=steps)
+    assert verdict(run, Lifted(object="box", above=0.01)).status == "failed"
+    assert verdict(run, Displaced(object="box", at_least=0.01)).status == "failed"
+    unmoved = replace(run, steps=())
+    assert verdict(unmoved, Lifted(object="box", above=0.01)).status == "passed"
+
+
+def test_what_rests_on_a_lifted_object_and_the_palm_hold_nothing_up():
+    run = lift_run()
+    top = thing("top", mass=0.01)
+    z = run.signals.object_poses["box"][:, 2] + 0.04
+    loads = {**run.signals.contact_forces, ("box", "top"): force(200, (0, 200), value=0.1)}
+    poses = {**run.signals.object_poses, "top": heights(z)}
+    loaded = changed(
+        replace(run, objects=(TABLE, BOX, top)), contact_forces=loads, object_poses=poses
+    )
+    spec = Lifted(object="box", above=0.05)
+    assert verdict(loaded, spec).status == "passed"
+    hung = {**loads, ("shelf", "top"): force(200, (0, 200), value=0.1)}
+    assert verdict(changed(loaded, contact_forces=hung), spec).status == "failed"
+    assert verdict(loaded, Lifted(object="top", above=0.05)).status == "failed"
+    palm = {**run.signals.contact_forces, ("palm", "box"): force(200, (90, 200))}
+    assert verdict(changed(run, contact_forces=palm), spec).status == "passed"
+
+
 def test_an_absent_object_was_never_up_for_lifting():
     assert verdict(absent_box(), Lifted(object="box")).status == "not reached"
 
@@ -262,6 +292,7 @@ def test_slip_of_what_was_never_held_is_not_reached():
 
 
 STANDING = {("Table", "box"): force(200, (0, 200))}
+PLACED = Placed(object="box")
 
 
 def test_a_box_at_rest_on_the_table_is_placed():
@@ -320,6 +351,35 @@ def test_a_turning_point_of_a_swing_is_not_still():
     assert abs(swing[199, 0] - swing[180, 0]) < 1e-4
     assert verdict(run, Placed(object="box")).status == "failed"
     assert verdict(run, Static(object="box")).status == "failed"
+
+
+def test_a_spinning_top_is_not_placed():
+    spinning = at(200, (0, 0, 0.02))
+    for k in range(200):
+        spinning[k, 3:] = SE3.from_xyz_rpy(rpy=(0, 0, 0.06 * k * DT)).quat_wxyz
+    answer = verdict(make_run(contact_forces=STANDING, object_poses={"box": spinning}), PLACED)
+    assert (answer.status, answer.unit) == ("failed", "rad/s")
+    assert answer.margin == pytest.approx(-0.01)
+
+
+def test_what_the_robot_holds_is_no_support_unless_it_is_named():
+    tray = thing("tray", Box((0.04, 0.04, 0.01)))
+    run = lift_run()
+    forces = {
+        tuple("tray" if body == "box" else body for body in pair): values
+        for pair, values in run.signals.contact_forces.items()
+    }
+    forces["box", "tray"] = force(200, (0, 200))
+    z = run.signals.object_poses["box"][:, 2]
+    z = np.where(np.arange(200) < 180, z, z[180])
+    held = make_run(
+        objects=(TABLE, BOX, tray),
+        object_poses={"box": heights(z), "tray": heights(z - 0.025)},
+        contact_forces=forces,
+        steps=run.steps,
+    )
+    assert verdict(held, PLACED).status == "failed"
+    assert verdict(held, Placed(object="box", on="tray")).status == "passed"
 
 
 def test_leaning_on_a_wall_is_no_support_from_below():

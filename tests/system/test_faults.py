@@ -61,6 +61,25 @@ def test_faults_that_change_nothing_are_findings_with_their_reason(tmp_path):
     assert len(told) == 6
 
 
+def test_pushes_of_one_step_are_at_the_same_time(tmp_path):
+    _, saved = run(
+        tmp_path,
+        "- inject: {push: {a: [0, 0.1, 0], b: [0, -0.1, 0]}, push_duration: 80 ms}",
+        rest="""
+        objects:
+          - {name: a, box: {size: [0.03, 0.03, 0.03]}, mass: 50 g, friction: 0.01,
+             pose: {xyz: [0.5, 0.4, 0.015]}}
+          - {name: b, box: {size: [0.03, 0.03, 0.03]}, mass: 50 g, friction: 0.01,
+             pose: {xyz: [0.5, -0.4, 0.015]}}
+        """,
+    )
+    assert saved.steps[0].end_time == pytest.approx(0.08)
+    went = {name: saved.signals.object_poses[name][:, 1] for name in "ab"}
+    assert went["a"][-1] - went["a"][0] > 0.004
+    assert went["a"] - 0.4 == pytest.approx(-(went["b"] + 0.4), abs=1e-5)
+    assert {receipt for receipt, _ in receipts(saved).values()} == {"landed"}
+
+
 def test_large_encoder_noise_stops_the_arm_and_small_noise_repeats_to_the_bit(tmp_path):
     lift = "- move_relative: {direction: {xyz: [0, 0, 1]}, distance: 0.05}"
     steps = HOME + "- inject: {sensor_noise: %s}\n" + lift

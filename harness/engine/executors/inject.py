@@ -35,4 +35,6 @@ def inject(step: Inject, cell: Cell) -> None:
         note("command_latency", "", before, step.command_latency)
     for name, force in (step.push or {}).items():
         note("push", name, [0.0, 0.0, 0.0], list(force))
-        faults.push(name, np.array(force), step.push_duration)
+    if step.push:
+        forces = {name: np.array(force) for name, force in step.push.items()}
+        faults.push(forces, step.push_duration)
