@@ -201,6 +201,8 @@ def _compare_options(compare: argparse.ArgumentParser) -> None:
 
 def _new_options(new: argparse.ArgumentParser) -> None:
     new.add_argument("file", metavar="FILE", help="for example first.scenario.yaml")
+    new.add_argument("--robot", metavar="ROBOT", default="", help=ROBOT)
+    add_robot_options(new)
 
 
 def _export_options(export: argparse.ArgumentParser) -> None:

@@ -7,29 +7,54 @@ import shlex
 from pathlib import Path
 
 from harness.cli.output import guarded, say
+from harness.cli.robot_options import source_of
 from harness.suite.discovery import SUFFIX, UsageError
 
 TEMPLATE = Path(__file__).parent / "templates" / "new.scenario.yaml"
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the template to a file that is not there yet."""
-    return guarded(lambda: _run(Path(arguments.file)))
+    """Write a scenario to a file that is not there yet."""
+    return guarded(lambda: _run(arguments, Path(arguments.file)))
 
 
-def _run(file: Path) -> int:
+def _run(arguments: argparse.Namespace, file: Path) -> int:
     if not file.name.endswith(SUFFIX):
         stem = file.name.removesuffix(".yaml").removesuffix(".yml")
         better = file.with_name(f"{stem}{SUFFIX}")
         raise UsageError(f"the name of a scenario ends in {SUFFIX}: try '{better}'")
+    if file.exists():
+        raise UsageError(f"'{file}' is there already; nothing was written")
+    is_new_folder = not file.parent.exists()
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
+        text, trouble = _content(arguments, file)
         with file.open("x", encoding="utf-8") as new:
-            new.write(TEMPLATE.read_text(encoding="utf-8"))
-    except FileExistsError:
-        raise UsageError(f"'{file}' is there already; nothing was written") from None
+            new.write(text)
     except OSError as error:
         raise UsageError(f"cannot write '{file}': {error.strerror}") from error
+    finally:
+        if is_new_folder and file.parent.is_dir() and not any(file.parent.iterdir()):
+            file.parent.rmdir()
     name = shlex.quote(str(file))
-    say(f"wrote {file}\ncheck it: harness check {name}\nrun it:   harness run {name}")
+    say(f"wrote {file}")
+    if trouble:
+        say(f"no steps were found that pass; `harness check` says: {trouble}")
+    say(f"check it: harness check {name}\nrun it:   harness run {name}")
     return 0
+
+
+def _content(arguments: argparse.Namespace, file: Path) -> tuple[str, str]:
+    """The scenario, and what is still wrong with it."""
+    if not arguments.robot:
+        for option in ("srdf", "gripper", "group", "tcp_link", "package_path", "args"):
+            if getattr(arguments, option):
+                raise UsageError(f"--{option.replace('_', '-')} goes with --robot")
+        return TEMPLATE.read_text(encoding="utf-8"), ""
+    from harness.session.first_scenario import first_scenario
+
+    source = source_of(arguments)
+    if source.kind == "scenario":
+        raise UsageError(f"--robot is a robot, and '{arguments.robot}' a scenario")
+    found = first_scenario(source, file)
+    return found.text, found.trouble

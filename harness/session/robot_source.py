@@ -67,6 +67,20 @@ class RobotSource:
         path = Path(self.word)
         return read_xml(path).get("name") if self.kind == "urdf" and path.is_file() else ""
 
+    def words(self) -> dict[str, Any]:
+        """What a scenario's `robot:` would say, not of a scenario."""
+        path = Path(self.word)
+        word = str(path.parent) if path.name == ROBOT_YAML else self.word
+        words: dict[str, Any] = {self.kind: word}
+        if self.args:
+            words["args"] = dict(self.args)
+        if self.packages:
+            words["packages"] = tuple(self.packages)
+        for key in ("srdf", "gripper", "group", "tcp_link"):
+            if getattr(self, key):
+                words[key] = getattr(self, key)
+        return words
+
 
 def load(source: RobotSource) -> RobotDescription:
     """The robot, composed.
@@ -78,19 +92,7 @@ def load(source: RobotSource) -> RobotDescription:
     if source.kind == "scenario":
         path = Path(source.word)
         return load_robot(load_scenario(path).scenario.robot, path.parent)
-    path = Path(source.word)
-    word = str(path.parent) if path.name == ROBOT_YAML else source.word
-    words: dict[str, Any] = {source.kind: word}
-    words |= {
-        key: getattr(source, key)
-        for key in ("srdf", "gripper", "tcp_link", "group")
-        if getattr(source, key)
-    }
-    if source.packages:
-        words["packages"] = tuple(source.packages)
-    if source.args:
-        words["args"] = dict(source.args)
-    return load_robot(RobotSpec.model_validate(words))
+    return load_robot(RobotSpec.model_validate(source.words()))
 
 
 def positions_of(description: RobotDescription, state: str) -> FloatArray:

@@ -1,0 +1,99 @@
+"""Every command of the page `Bring your own arm` does what the page says."""
+
+import contextlib
+import io
+import re
+import shlex
+
+import cv2
+import numpy as np
+import pytest
+
+from harness.cli.main import main
+from harness.planning.pair_statistics import random_positions, self_touches
+from harness.recording.store import read_run
+from harness.session.robot_source import RobotSource, load
+from harness.spec.load import load_scenario
+from tests.docs.generated import ROOT
+
+pytestmark = pytest.mark.packages
+
+PAGE = (ROOT / "robots/BRING_YOUR_OWN_ARM.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"(?ms)^```(sh|text|yaml)\n(.*?)^```$", PAGE)
+TIME = re.compile(r"  t=\d.*")
+
+
+@pytest.fixture(scope="module")
+def walked(tmp_path_factory):
+    """The folder after all commands, and for each shown text what the command before it said."""
+    folder = tmp_path_factory.mktemp("walk")
+    shown, said = [], ""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        patch.setenv("COLUMNS", "200")
+        for language, text in BLOCKS:
+            if language == "sh":
+                said = "".join(_run(line) for line in text.splitlines() if "pip" not in line)
+            elif language == "text":
+                shown.append((text, said))
+    return folder, shown
+
+
+def _run(line):
+    program, *arguments = shlex.split(line)
+    assert program == "harness"
+    stream = io.StringIO()
+    with contextlib.redirect_stdout(stream), contextlib.redirect_stderr(stream):
+        code = main(arguments)
+    assert code == 0, f"{line}\n{stream.getvalue()}"
+    return stream.getvalue()
+
+
+def test_each_shown_line_is_said_in_that_order(walked):
+    _, shown = walked
+    assert len(shown) == 3
+    for text, said in shown:
+        lines = iter(TIME.sub("", line) for line in said.splitlines())
+        for line in text.splitlines():
+            assert line == "..." or any(each.startswith(line) for each in lines), line
+
+
+def test_the_picture_shows_the_arm(walked):
+    picture = cv2.imread(str(walked[0] / "panda.png"))
+    assert picture.shape == (800, 800, 3)
+    dark = (picture.max(axis=2) < 90).mean()  # the dark caps of its joints, the shadow
+    white = (picture.min(axis=2) > 245).mean()  # its shells
+    assert dark > 0.005
+    assert white > 0.005
+
+
+def test_the_scenario_asks_for_the_robot_that_the_page_shows(walked):
+    [robot] = [text for language, text in BLOCKS if language == "yaml"]
+    written = (walked[0] / "panda/first.scenario.yaml").read_text(encoding="utf-8")
+    assert robot in written
+    assert load_scenario(walked[0] / "panda/first.scenario.yaml").scenario.steps[0].do == "pick"
+
+
+def test_the_run_really_lifted_the_box_between_the_fingers(walked):
+    stored = read_run(walked[0] / "reports/panda/first")
+    run = stored.run
+    assert all(verdict.status == "passed" for verdict in stored.verdicts)
+    signals = run.signals
+    height = signals.object_poses["box"][:, 2]
+    assert height[-1] - height[0] > 0.09
+    for finger in ("panda_leftfinger", "panda_rightfinger"):
+        assert signals.contact_forces[finger, "box"][-500:].min() > 0
+    looks = {mesh.path.suffix for mesh in run.meshes}
+    assert looks == {".dae"}
+
+
+def test_the_proposed_pairs_leave_nothing_that_the_real_srdf_would_check_and_that_touches(walked):
+    """Random configurations that the package's SRDF calls free are so under the proposal."""
+    words = re.findall(r"package://\S+panda\.(?:urdf|srdf)", PAGE)
+    theirs = load(RobotSource(words[0], srdf=words[1]))
+    ours = load(RobotSource(words[0], srdf=str(walked[0] / "panda.srdf")))
+    rows = random_positions(theirs, 1000, np.random.default_rng(11))
+    index = [theirs.joint_index[name] for name in ours.joint_names]
+    mine = self_touches(ours, rows[:, index]).is_free
+    free = self_touches(theirs, rows).is_free
+    assert (mine == free).mean() > 0.995
