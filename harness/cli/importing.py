@@ -8,16 +8,47 @@ import tempfile
 from pathlib import Path
 
 from harness.cli.output import guarded, say
+from harness.cli.robot_options import source_of
 from harness.suite.discovery import UsageError
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write a world file; what of the other file is left out is told."""
-    return guarded(lambda: _run(arguments))
+    """Write a world file or a robot's folder; what of the other file is left out is told."""
+    of_a_robot = arguments.kind == "srdf"
+    return guarded(lambda: _robot(arguments) if of_a_robot else _world(arguments))
 
 
-def _run(arguments: argparse.Namespace) -> int:
+def _robot(arguments: argparse.Namespace) -> int:
+    """Write robot.yaml, and the URDF and SRDF that it names."""
     source = Path(arguments.file)
+    if arguments.model_path:
+        raise UsageError("--model-path is for SDF; an SRDF's robot has --package-path")
+    if not arguments.robot:
+        raise UsageError("an SRDF says nothing without its robot: --robot FILE (URDF, xacro, MJCF)")
+    folder = Path(arguments.output) if arguments.output else source.with_suffix("")
+    folder = folder.parent if folder.name == "robot.yaml" else folder
+    if folder.suffix:
+        raise UsageError(f"'{folder}' is no folder: robot.yaml, URDF and SRDF are written into one")
+    from harness.robot.robot_folder import robot_folder
+    from harness.session.robot_source import KINDS
+    from harness.spec.scenario import RobotSpec
+
+    robot = source_of(argparse.Namespace(**vars(arguments), srdf=arguments.file))
+    if robot.kind not in KINDS.values():
+        raise UsageError(f"--robot is a URDF, xacro or MJCF file, not '{arguments.robot}'")
+    found = robot_folder(RobotSpec.model_validate(robot.words()), Path(), folder)
+    contents = {folder / name: text.encode() for name, text in found.files.items()}
+    _write(contents, is_forced=arguments.force)
+    for note in found.notes:
+        say(f"note: {note}")
+    say(f"wrote {', '.join(map(str, contents))}; `robot: {{model: {folder}}}`")
+    return 0
+
+
+def _world(arguments: argparse.Namespace) -> int:
+    source = Path(arguments.file)
+    if arguments.robot:
+        raise UsageError("--robot goes with an SRDF")
     target = Path(arguments.output) if arguments.output else source.with_suffix(".yaml")
     if target.suffix.lower() not in (".yaml", ".yml"):
         raise UsageError(f"the name of a world file ends in .yaml, not '{target.name}'")

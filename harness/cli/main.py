@@ -15,7 +15,7 @@ from harness.cli.robot_options import ROBOT, add_robot_options
 
 EPILOG = """exit codes: 0 passed, 1 failed, 2 invalid file or wrong usage, 3 error, 130 Ctrl-C"""
 BROKEN_PIPE_EXIT_CODE = 141  # as a shell shows SIGPIPE
-IMPORTS = ("sdf", "scene")
+IMPORTS = ("sdf", "scene", "srdf")
 BAGS = ("mcap", "sqlite3")
 LISTS = ("robots", "worlds", "scenarios", "steps", "expectations", "planners")
 
@@ -223,12 +223,16 @@ def _export_options(export: argparse.ArgumentParser) -> None:
 
 def _import_options(importing: argparse.ArgumentParser) -> None:
     importing.add_argument("kind", choices=IMPORTS, help="what FILE is")
-    importing.add_argument("file", metavar="FILE", help="an SDF world or a MoveIt scene")
+    importing.add_argument("file", metavar="FILE", help="an SDF world, a MoveIt scene or an SRDF")
     importing.add_argument("-o", "--output", metavar="FILE",
-                           help="what to write (default: FILE's name with .yaml)")  # fmt: skip
+                           help="what to write (default: FILE's name with .yaml; of an SRDF"
+                           " a folder of FILE's name)")  # fmt: skip
     importing.add_argument("--model-path", metavar="DIR", action="append", default=[],
                            help="look models up here before GZ_SIM_RESOURCE_PATH")  # fmt: skip
     importing.add_argument("--force", action="store_true", help="overwrite what is there")
+    importing.add_argument("--robot", metavar="FILE", default="",
+                           help="the URDF, xacro or MJCF that an SRDF is of")  # fmt: skip
+    add_robot_options(importing, has_srdf=False)
 
 
 def _robot_options(robot: argparse.ArgumentParser) -> None:

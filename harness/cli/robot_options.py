@@ -11,10 +11,11 @@ if TYPE_CHECKING:
 ROBOT = "a bundled name; a URDF, xacro or MJCF file, also as package://name/path; a robot's folder"
 
 
-def add_robot_options(command: argparse.ArgumentParser) -> None:
-    """Add what goes with a robot's file."""
+def add_robot_options(command: argparse.ArgumentParser, *, has_srdf: bool = True) -> None:
+    """Add what goes with a robot's file; `has_srdf` says whether `--srdf` is among it."""
     add = command.add_argument
-    add("--srdf", metavar="FILE", default="", help="groups, states, allowed pairs")
+    if has_srdf:
+        add("--srdf", metavar="FILE", default="", help="groups, states, allowed pairs")
     add("--package-path", metavar="DIR", action="append", default=[],
         help="where package:// is looked up and meshes may be read")  # fmt: skip
     add("--gripper", metavar="NAME", default="",

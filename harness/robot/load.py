@@ -16,7 +16,7 @@ from harness.robot.acceleration import with_possible_accelerations
 from harness.robot.calibration import calibrated
 from harness.robot.compose import Part, compose
 from harness.robot.description import Joint, RobotDescription
-from harness.robot.find_file import find_file
+from harness.robot.find_file import find_file, find_folder
 from harness.robot.import_robot import read_robot
 from harness.robot.imported_part import names_own_gripper
 from harness.robot.options import with_moveit_files, with_options
@@ -148,7 +148,8 @@ def _read(
         text = _text(path)
         if args:
             raise RobotError(f"robot.args: '{name}' is no xacro file and takes no arguments")
-    urdf = parse_urdf(text, folder, str(path))
+    packages = PackagePath.of_file(path, [find_folder(each, folder) for each in facts.packages])
+    urdf = parse_urdf(text, folder, str(path), packages)
     urdf = replace(urdf, joints=tuple(_with_facts(joint, facts) for joint in urdf.joints))
     for joint in facts.joints:
         if joint not in {item.name for item in urdf.joints}:

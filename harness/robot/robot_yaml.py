@@ -109,6 +109,9 @@ class RobotYaml(SpecModel):
     urdf: str | None = None
     xacro: XacroFile | None = None
     srdf: str
+    packages: tuple[str, ...] = Field(
+        default=(), description="Folders where package:// is looked up and meshes may be read."
+    )
     variants: tuple[Name, ...] = ()
     arm_group: Name | None = None
     tcp_link: Name | None = None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
 from dataclasses import replace
@@ -19,8 +20,17 @@ NO_LIMIT = 1e30
 """What is written for a velocity or effort without limit, and from which on one is read as such."""
 
 
-def write_urdf(name: str, links: Iterable[Link], joints: Iterable[Joint]) -> str:
-    """A URDF of the links and joints, every number with all its digits."""
+def write_urdf(
+    name: str, links: Iterable[Link], joints: Iterable[Joint], folder: Path | None = None
+) -> str:
+    """A URDF of the links and joints, every number with all its digits.
+
+    Args:
+        name: Of the robot.
+        links: Its links.
+        joints: Its joints.
+        folder: Where mesh files of no Python package are named from; None: by their whole paths.
+    """
     root = ET.Element("robot", name=name)
     for link in links:
         element = ET.SubElement(root, "link", name=link.name)
@@ -29,7 +39,7 @@ def write_urdf(name: str, links: Iterable[Link], joints: Iterable[Joint]) -> str
         for tag, shapes in (("visual", link.visuals), ("collision", link.collisions)):
             for shape in shapes:
                 for piece in _known_to_urdf(shape):
-                    _write_shape(element, tag, piece)
+                    _write_shape(element, tag, piece, folder)
     for joint in joints:
         _write_joint(root, joint)
     ET.indent(root)
@@ -90,7 +100,7 @@ def _known_to_urdf(shape: Shape) -> tuple[Shape, ...]:
     )
 
 
-def _write_shape(parent: ET.Element, tag: str, shape: Shape) -> None:
+def _write_shape(parent: ET.Element, tag: str, shape: Shape, folder: Path | None) -> None:
     element = ET.SubElement(parent, tag, {"name": shape.name} if shape.name else {})
     _write_pose(element, shape.pose)
     geometry = ET.SubElement(element, "geometry")
@@ -102,7 +112,8 @@ def _write_shape(parent: ET.Element, tag: str, shape: Shape) -> None:
         case Sphere(radius=radius):
             ET.SubElement(geometry, "sphere", radius=repr(radius))
         case Mesh(path=path, scale=scale):
-            ET.SubElement(geometry, "mesh", filename=_mesh_name(path), scale=_text(scale))
+            file = package_name(path) or str(path if folder is None else _seen(path, folder))
+            ET.SubElement(geometry, "mesh", filename=file, scale=_text(scale))
         case Plane() | Capsule():
             raise RobotError(f"link '{parent.get('name')}': no such shape in a URDF")
     if tag == "visual":
@@ -110,12 +121,16 @@ def _write_shape(parent: ET.Element, tag: str, shape: Shape) -> None:
         ET.SubElement(material, "color", rgba=_text(shape.rgba))
 
 
-def _mesh_name(path: Path) -> str:
-    """`package://` name of a file inside a Python package, else its path."""
+def package_name(path: Path) -> str:
+    """`package://` name of a file inside a Python package; empty for others."""
     for folder in path.parents:
         if (folder / "__init__.py").is_file():
             return f"package://{folder.name}/{path.relative_to(folder).as_posix()}"
-    return str(path)
+    return ""
+
+
+def _seen(path: Path, folder: Path) -> str:
+    return Path(os.path.relpath(path, folder)).as_posix()
 
 
 def _rate(limit: float) -> str:

@@ -12,8 +12,10 @@ import pytest
 from harness.cli.main import main
 from harness.planning.pair_statistics import random_positions, self_touches
 from harness.recording.store import read_run
+from harness.robot.load import load_robot
 from harness.session.robot_source import RobotSource, load
 from harness.spec.load import load_scenario
+from harness.spec.scenario import RobotSpec
 from tests.docs.generated import ROOT
 
 pytestmark = pytest.mark.packages
@@ -42,11 +44,12 @@ def walked(tmp_path_factory):
 def _run(line):
     program, *arguments = shlex.split(line)
     assert program == "harness"
-    stream = io.StringIO()
+    stream = io.TextIOWrapper(io.BytesIO(), encoding="utf-8", write_through=True)
     with contextlib.redirect_stdout(stream), contextlib.redirect_stderr(stream):
         code = main(arguments)
-    assert code == 0, f"{line}\n{stream.getvalue()}"
-    return stream.getvalue()
+    said = stream.buffer.getvalue().decode()
+    assert code == 0, f"{line}\n{said}"
+    return said
 
 
 def test_each_shown_line_is_said_in_that_order(walked):
@@ -72,6 +75,16 @@ def test_the_scenario_asks_for_the_robot_that_the_page_shows(walked):
     written = (walked[0] / "panda/first.scenario.yaml").read_text(encoding="utf-8")
     assert robot in written
     assert load_scenario(walked[0] / "panda/first.scenario.yaml").scenario.steps[0].do == "pick"
+
+
+def test_the_folder_is_the_same_robot(walked):
+    scenario = load_scenario(walked[0] / "panda/first.scenario.yaml").scenario
+    theirs = load_robot(scenario.robot, walked[0] / "panda")
+    ours = load_robot(RobotSpec(model="arm"), walked[0] / "panda")
+    assert ours.joint_names == theirs.joint_names
+    assert ours.tcp_link == theirs.tcp_link == "panda_hand_tcp"
+    assert ours.gripper.sides == theirs.gripper.sides
+    assert ours.allowed_collisions.keys() == theirs.allowed_collisions.keys()
 
 
 def test_the_run_really_lifted_the_box_between_the_fingers(walked):

@@ -1,0 +1,140 @@
+"""A robot's own files as a folder of ours: robot.yaml, with the URDF and SRDF as they are used."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from harness.core.errors import RobotError
+from harness.core.geometry import Mesh
+from harness.robot.compose import Part
+from harness.robot.description import Joint
+from harness.robot.import_robot import read_robot
+from harness.robot.imported_part import names_own_gripper
+from harness.robot.load import load_robot
+from harness.robot.srdf import write_srdf
+from harness.robot.write_urdf import package_name, write_urdf
+from harness.spec.scenario import RobotSpec
+
+WIDTH = 100  # characters of a line
+DIGITS = 10
+
+
+@dataclass(frozen=True)
+class RobotFolder:
+    """What a folder would hold.
+
+    Attributes:
+        name: Of the robot.
+        files: Their text by name.
+        notes: What was left out or assumed.
+    """
+
+    name: str
+    files: dict[str, str]
+    notes: tuple[str, ...]
+
+
+def robot_folder(spec: RobotSpec, base_dir: Path, folder: Path) -> RobotFolder:
+    """The files that make `model: folder` the robot that a scenario's `robot:` is.
+
+    URDF and SRDF are written anew: xacro rendered, the fingers of a gripper coupled and its TCP
+    frame added, pairs and states of what is not there left out.
+
+    Args:
+        spec: A `urdf`, `xacro` or `mjcf` with its `srdf`.
+        base_dir: Where its relative names start.
+        folder: Where the files will be: meshes are named from there.
+
+    Raises:
+        SpecError: A file says what cannot be meant.
+        RobotError: A file is not found, or an option does not fit it.
+    """
+    part = read_robot(spec, base_dir)
+    if spec.gripper is not None and not names_own_gripper(spec.gripper, part.srdf):
+        raise RobotError(
+            f"robot.gripper: the SRDF has no group '{spec.gripper}'; a bundled gripper is named"
+            " by the scenario, beside `model`"
+        )
+    description = load_robot(spec, base_dir)
+    name = part.urdf.name or part.name
+    outside = [Path(os.path.relpath(each, folder)).as_posix() for each in _outside(part)]
+    facts = _facts(part, name, description.joints, outside)
+    text = yaml.safe_dump(
+        {key: value for key, value in facts.items() if value or key == "robot"},
+        sort_keys=False,
+        width=WIDTH,
+        default_flow_style=None,
+        allow_unicode=True,
+    )
+    notes = [f"#   {note}" for note in description.notes]
+    told = ["# Taken or assumed:", *notes] if notes else []
+    files = {
+        "robot.yaml": "\n".join([f"# From {_sources(spec)}", *told, text]),
+        f"{name}.urdf": write_urdf(name, part.urdf.links, part.urdf.joints, folder),
+        f"{name}.srdf": write_srdf(name, part.srdf),
+    }
+    return RobotFolder(name, files, description.notes)
+
+
+def _sources(spec: RobotSpec) -> str:
+    given = (spec.urdf or spec.xacro or spec.mjcf, spec.srdf)
+    return " and ".join(each for each in given if each)
+
+
+def _facts(part: Part, name: str, joints: Iterable[Joint], outside: list[str]) -> dict[str, Any]:
+    """What robot.yaml says, in the order in which people read it."""
+    facts = part.facts
+    gripper = None if facts.gripper is None else facts.gripper.model_dump(mode="json")
+    return {
+        "robot": name,
+        "kind": "arm",
+        "urdf": f"{name}.urdf",
+        "srdf": f"{name}.srdf",
+        "packages": outside,
+        "arm_group": facts.arm_group,
+        "tcp_link": facts.tcp_link,
+        "flange_link": facts.flange_link,
+        "ik_solver": facts.ik_solver,
+        "start_state": {"joints": dict(facts.start_state.joints or {})},
+        "max_acceleration": facts.max_acceleration,
+        "joints": {
+            joint.name: {
+                "max_acceleration": _short(joint.acceleration),
+                **({"effort_source": joint.effort_source} if joint.effort_source else {}),
+            }
+            for joint in joints
+            if joint.is_movable
+        },
+        "gripper": _short(gripper),
+    }
+
+
+def _short(value: Any) -> Any:
+    """The same with numbers of ten digits: measured ones have no more that matter."""
+    match value:
+        case dict():
+            return {key: _short(item) for key, item in value.items()}
+        case list():
+            return [_short(item) for item in value]
+        case float():
+            return float(f"{value:.{DIGITS}g}")
+        case _:
+            return value
+
+
+def _outside(part: Part) -> tuple[Path, ...]:
+    """Folders of mesh files that no package name leads to, sorted."""
+    return tuple(sorted({path.parent for path in _meshes(part) if not package_name(path)}))
+
+
+def _meshes(part: Part) -> Iterator[Path]:
+    for link in part.urdf.links:
+        for shape in (*link.visuals, *link.collisions):
+            if isinstance(shape.geometry, Mesh):
+                yield shape.geometry.path
