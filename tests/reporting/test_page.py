@@ -283,3 +283,70 @@ def test_a_saved_run_gets_the_same_page_again(failed_run, tmp_path, capsys):
     written = (failed_run / "report.html").read_text()
     assert (folder / "report.html").read_text() == written
     assert main(["view", str(tmp_path), "--no-open"]) == 2
+
+
+CONTRASTS = """() => {
+  const pen = document.createElement('canvas').getContext('2d', {willReadFrequently: true});
+  const rgba = (colour) => {
+    pen.clearRect(0, 0, 1, 1);
+    pen.fillStyle = colour;
+    pen.fillRect(0, 0, 1, 1);
+    const [r, g, b, a] = pen.getImageData(0, 0, 1, 1).data;
+    return [r, g, b, a / 255];
+  };
+  const over = ([r, g, b, a], under) => [r, g, b].map((v, i) => a * v + (1 - a) * under[i]);
+  const light = (rgb) => rgb.map((v) => v / 255)
+    .map((v) => (v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4))
+    .reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0);
+  const found = [];
+  for (const element of document.querySelectorAll('#app *')) {
+    const own = [...element.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim());
+    if (!own || !element.checkVisibility() || element.closest('canvas, option')) continue;
+    const chain = [];
+    for (let each = element; each; each = each.parentElement) chain.unshift(each);
+    let [back, solid] = [[255, 255, 255], 1];
+    for (const each of chain) {
+      back = over(rgba(getComputedStyle(each).backgroundColor), back);
+      solid *= Number(getComputedStyle(each).opacity);
+    }
+    const colour = rgba(getComputedStyle(element).color);
+    const front = over([...colour.slice(0, 3), colour[3] * solid], back);
+    const [a, b] = [light(front), light(back)].sort((x, y) => y - x);
+    found.push([(a + 0.05) / (b + 0.05), `${element.tagName}.${element.className}`]);
+  }
+  return found;
+}"""
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_text_stands_out_from_what_is_behind_it(visit, failed_run, scheme):
+    """Contrast of 4.5, as WCAG 2.1 asks for (1.4.3); what is switched off may have less."""
+    page = visit(failed_run / "report.html", color_scheme=scheme).page
+    for tab in ("expect", "planner", "findings", "source", "joints", "environment"):
+        page.click(f"#tab-{tab}")
+        found = page.evaluate(CONTRASTS)
+        assert len(found) > 50
+        weak = {name for contrast, name in found if contrast < 4.5}
+        assert not weak, (tab, weak)
+
+
+def test_everything_that_can_be_used_has_a_name_and_can_be_reached_by_keys(opened):
+    page = opened.page
+    kinds = ("button", "select", "canvas", "[role=slider]", "[role=img]")
+    used = page.locator(", ".join(f"#app {kind}" for kind in kinds))
+    nameless = used.evaluate_all(
+        """all => all.filter(e => !e.closest('[aria-hidden=true]') && !e.ariaLabel && !e.title
+             && !e.innerText?.trim() && !(e.closest('.camera'))).map(e => e.outerHTML)"""
+    )
+    assert nameless == []
+    page.evaluate("document.activeElement.blur()")
+    reached = set()
+    for _ in range(120):
+        page.keyboard.press("Tab")
+        reached.add(
+            page.evaluate(
+                "(document.activeElement.closest('#steps, #view, #timeline, #tabs, #panels,"
+                " #plots, .buttons') ?? document.activeElement).id || 'buttons'"
+            )
+        )
+    assert {"steps", "view", "timeline", "tabs", "panels", "plots", "buttons"} <= reached

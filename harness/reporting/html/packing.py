@@ -35,11 +35,11 @@ class Packer:
         return name
 
     def text(self, run: Mapping[str, Any]) -> str:
-        """Everything as base64 text; equal bytes for equal content."""
+        """Everything as base64 text; equal bytes for equal content, no half characters."""
         head = json.dumps(
             {"buffers": self._places, "run": run},
             ensure_ascii=False, allow_nan=False, separators=(",", ":"),
-        ).encode()  # fmt: skip
+        ).encode(errors="replace")  # fmt: skip
         head += b" " * (-(len(head) + 4) % ALIGNMENT)
         whole = b"".join([struct.pack("<I", len(head)), head, *self._parts])
         return base64.b64encode(gzip.compress(whole, LEVEL, mtime=0)).decode("ascii")

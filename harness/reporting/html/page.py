@@ -32,7 +32,7 @@ def page_html(stored: StoredRun, pictures: Sequence[Picture] = ()) -> str:
         stored: The run, judged.
         pictures: For the summary.
     """
-    return Template(bundle.skeleton()).substitute(
+    text = Template(bundle.skeleton()).substitute(
         title=escape(f"{stored.outcome}: {stored.run.scenario}"),
         style=bundle.style(),
         script=bundle.script(),
@@ -46,6 +46,7 @@ def page_html(stored: StoredRun, pictures: Sequence[Picture] = ()) -> str:
         ),
         data=_data(stored),
     )
+    return text.encode(errors="replace").decode()  # names of files may have half characters
 
 
 def _short(value: str) -> str:
