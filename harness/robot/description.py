@@ -70,6 +70,7 @@ class Joint:
         effort: Limit from a data sheet.
         effort_source: Where the effort limit is from.
         mimic: Set when the joint follows another.
+        command_interfaces: What ros2_control commands of it; here it is driven by its effort.
     """
 
     name: str
@@ -87,6 +88,7 @@ class Joint:
     damping: float = 0.0
     friction: float = 0.0
     mimic: Mimic | None = None
+    command_interfaces: tuple[str, ...] = ()
 
     @property
     def is_movable(self) -> bool:

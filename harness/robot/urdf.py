@@ -9,6 +9,7 @@ from pathlib import Path
 
 from harness.robot.description import Joint, Link
 from harness.robot.packages import PackagePath
+from harness.robot.ros2_control import with_interfaces
 from harness.robot.tree import Elements, in_tree_order
 from harness.robot.urdf_joints import read_joint, resolved_mimics
 from harness.robot.urdf_links import LinkReader
@@ -79,7 +80,7 @@ def parse_urdf(
         root.refuse("there is no <link> in it: this describes no robot")
     if len(links) > MOST_LINKS:
         root.refuse(f"{len(links)} links; at most {MOST_LINKS} are read")
-    joints = resolved_mimics(joints, elements)
+    joints = with_interfaces(resolved_mimics(joints, elements), root, notes)
     ordered = in_tree_order(links, joints, source, elements)
     return Urdf(root.get("name"), *ordered, (*_ignored(root.children), *notes), elements, root)
 

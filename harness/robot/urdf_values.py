@@ -22,6 +22,14 @@ def number(element: XmlElement, name: str, default: float | None = None) -> floa
     return values[0]
 
 
+def text_number(element: XmlElement) -> float:
+    """A finite number that is an element's text."""
+    values = _floats(element.text)
+    if values is None or len(values) != 1:
+        element.refuse(f"'{element.text.strip()}' is no finite number")
+    return values[0]
+
+
 def three(element: XmlElement, name: str, default: Three | None = None) -> Three:
     """Three finite numbers in an attribute."""
     if default is not None and name not in element.attributes:

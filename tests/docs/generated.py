@@ -10,6 +10,7 @@ from harness.spec.expectations_reference import expectations_reference
 from harness.spec.language import VERBS
 from harness.spec.reference import scenario_reference, steps_reference
 from harness.spec.schema import schema_text, world_schema_text
+from tests.docs.robot_formats import robot_formats_page
 
 del harness
 
@@ -27,6 +28,7 @@ def generated():
         "scenarios/STEPS.md": steps_reference(executed),
         "scenarios/EXPECTATIONS.md": expectations_reference(EXECUTED),
         "worlds/FORMATS.md": formats_page(),
+        "robots/FORMATS.md": robot_formats_page(),
     }
 
 
