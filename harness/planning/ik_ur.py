@@ -12,6 +12,7 @@ from harness.core.types import FloatArray
 from harness.robot.description import Joint
 
 _EXACT = 1e-9  # [1] how far a cosine may be above one and still count as one
+_NEARLY = 1e-3  # [1] how far above one it still gets a try, see `solve_ur`
 _WRIST_SINGULAR = 1e-7  # [rad] below, joints 4 and 6 turn about the same axis
 
 
@@ -38,6 +39,11 @@ class UrGeometry:
             d5=float(-origin[4][1]),
             d6=float(origin[5][1]),
         )
+
+    @property
+    def spans(self) -> tuple[float, float]:
+        """Least and largest distance that upper arm and forearm can span [m]."""
+        return abs(abs(self.a2) - abs(self.a3)), abs(self.a2) + abs(self.a3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +91,9 @@ def solve_ur(geometry: UrGeometry, T_base_wrist3: SE3, wrist_3_seed: float) -> U
 
     With z the common axis of joints 2, 3 and 4, seen from wrist 3 as (s5 c6, -s5 s6, c5), the
     shoulder follows from the wrist centre, the wrist from z, the elbow from a planar two-link arm.
+    Descriptions have their right angles rounded (1.570796327), which the division by s5 turns into
+    much more beside the wrist's singularity: a stretched arm may then seem a little too short. It
+    is answered all the same, and whoever refines the answer finds whether it was.
 
     Args:
         geometry: The arm's lengths.
@@ -112,18 +121,24 @@ def solve_ur(geometry: UrGeometry, T_base_wrist3: SE3, wrist_3_seed: float) -> U
         sine = float(np.hypot(z[0], z[1]))
         q5 = wrist * np.arctan2(sine, z[2])
         is_singular = sine < _WRIST_SINGULAR
-        q6 = wrist_3_seed if is_singular else np.arctan2(-wrist * z[1], wrist * z[0])
         if is_singular and wrist < 0:
             continue  # both wrist branches are one
-        plane = _shoulder_pose(g, q1).inverse() @ T_base_wrist3 @ _wrist_pose(g, q5, q6).inverse()
+        T_shoulder_wrist3 = _shoulder_pose(g, q1).inverse() @ T_base_wrist3
+        if is_singular:
+            q6 = _free_wrist_3(g, T_shoulder_wrist3, q5, wrist_3_seed)
+        else:
+            q6 = float(np.arctan2(-wrist * z[1], wrist * z[0]))
+        plane = T_shoulder_wrist3 @ _wrist_pose(g, q5, q6).inverse()
         x, y = plane.translation[0], plane.translation[1]
         reach = float(np.hypot(x, y))
         bend = (x * x + y * y - g.a2**2 - g.a3**2) / (2 * g.a2 * g.a3)
         if abs(bend) > 1 + _EXACT:
-            longest, shortest = abs(g.a2) + abs(g.a3), abs(abs(g.a2) - abs(g.a3))
+            shortest, longest = g.spans
             excesses.append(reach - longest if reach > longest else shortest - reach)
+        else:
+            excesses.append(0.0)
+        if abs(bend) > 1 + _NEARLY:
             continue
-        excesses.append(0.0)
         turn = np.arctan2(plane.rotation[1, 0], plane.rotation[0, 0])
         for elbow in (1, -1):
             q3 = elbow * np.arccos(np.clip(bend, -1, 1))
@@ -131,6 +146,31 @@ def solve_ur(geometry: UrGeometry, T_base_wrist3: SE3, wrist_3_seed: float) -> U
             angles = np.array([q1, q2, q3, turn - q2 - q3, q5, q6])
             branches.append(UrBranch(shoulder, wrist, elbow, _wrapped(angles)))
     return UrAnswer(tuple(branches), min(excesses, default=0.0), 0.0)
+
+
+def _free_wrist_3(g: UrGeometry, T_shoulder_wrist3: SE3, q5: float, seed: float) -> float:
+    """The angle nearest to a seed at which the arm can span the way to joint 4, which q6 moves.
+
+    With joints 4 and 6 parallel, joint 4 lies on a circle about joint 6, and the square of the way
+    is `middle + cosine cos(q6) + sine sin(q6)`. The seed, where no angle will do.
+    """
+
+    def squared_way(q6: float) -> float:
+        plane = T_shoulder_wrist3 @ _wrist_pose(g, q5, q6).inverse()
+        return float(plane.translation[0] ** 2 + plane.translation[1] ** 2)
+
+    shortest, longest = g.spans
+    if shortest**2 <= squared_way(seed) <= longest**2:
+        return seed
+    east, north, west = (squared_way(angle) for angle in (0.0, np.pi / 2, np.pi))
+    middle = 0.5 * (east + west)
+    cosine, sine = 0.5 * (east - west), north - middle
+    swing, phase = float(np.hypot(cosine, sine)), float(np.arctan2(sine, cosine))
+    shares = [(length**2 - middle) / max(swing, 1e-12) for length in (shortest, longest)]
+    turns = [np.arccos(np.clip(share, -1, 1)) for share in shares if abs(share) < 1 + _NEARLY]
+    angles = [phase + side * turn for turn in turns for side in (1, -1)]
+    away = [float(np.remainder(angle - seed + np.pi, 2 * np.pi) - np.pi) for angle in angles]
+    return seed + min(away, key=abs, default=0.0)
 
 
 def _shoulder_pose(g: UrGeometry, q1: float) -> SE3:

@@ -98,6 +98,23 @@ def test_all_branches_of_a_ur_are_found_exact_and_inside_the_limits(model):
                 assert min(np.abs(wrapped(mine - q)).max() for mine in found) < 1e-5
 
 
+@pytest.mark.parametrize("model", ["ur3e", "ur5e", "ur10e"])
+def test_a_stretched_ur_is_solved_beside_and_at_the_singularity_of_its_wrist(model):
+    """Rounded right angles seem to shorten the arm; at the singularity joint 6 must give way."""
+    description = ur(model)
+    kinematics = PinocchioKinematics(description)
+    zero = np.zeros(len(description.joint_names))
+    for wrist_2 in (0.0, 1e-9, 1e-6, -1e-4, 1e-2):
+        for wrist_3 in (0.0, 0.05, -1.0, 3.0):
+            arm = [0.3, -0.5, 0.0, -0.2, wrist_2, wrist_3]
+            pose = kinematics.link_pose(whole(description, arm), TCP)
+            found = kinematics.solve(ARM, PoseGoal(TCP, pose), zero, 0)
+            assert found, (wrist_2, wrist_3)
+            for q in found:
+                reached = kinematics.link_pose(whole(description, q), TCP)
+                assert max(pose.distance_to(reached)) < 1e-6
+
+
 def test_solutions_are_turned_next_to_the_seed():
     description = ur("ur5e")
     kinematics = PinocchioKinematics(description)
