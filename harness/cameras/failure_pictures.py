@@ -6,27 +6,21 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 
+from harness.cameras.caption import write_captioned
+from harness.cameras.marks import GOAL, ORANGE, RED, frame_mark, mark, way_mark
 from harness.cameras.picture_model import PictureModel, build_picture_model
 from harness.cameras.recorded_scene import floor_height, poses_at
 from harness.cameras.renderer import make_renderer
 from harness.cameras.robot_poses import link_poses
-from harness.cameras.stills import HEIGHT, INK, WIDTH
+from harness.cameras.stills import HEIGHT, WIDTH
 from harness.cameras.viewpoint import fit_viewpoint
-from harness.core.geometry import Capsule, Rgba, Shape, Sphere, bounding_radius
-from harness.core.spatial import SE3, rotation_from_rpy
+from harness.core.geometry import Shape, Sphere, bounding_radius
+from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.recording.run import Run, StepRecord
 from harness.robot.description import RobotDescription
-
-GOAL, WAY = "goal of the failed step", "from the nearest pose to the goal"
-"""Bodies that stand for what is missed; a person's object will hardly have these names."""
-
-AXIS_LENGTH, AXIS_RADIUS = 0.12, 0.006  # [m] of the goal's frame
-RED, GREEN, BLUE = (0.85, 0.1, 0.1, 1.0), (0.1, 0.6, 0.1, 1.0), (0.1, 0.2, 0.85, 1.0)
-ORANGE: Rgba = (0.95, 0.45, 0.05, 1.0)
 
 ARM_SIZE = 0.12  # [m] a link's share of the view
 
@@ -78,7 +72,7 @@ def draw_failure(
         pixels = renderer.render(fit_viewpoint(points, radii, WIDTH, HEIGHT).view)
     finally:
         renderer.close()
-    _write(file, pixels, f"{step.error_code}: {nearest['shows']}{_missed_by(nearest)}")
+    write_captioned(file, pixels, f"{step.error_code}: {nearest['shows']}{_missed_by(nearest)}")
 
 
 def _tint(picture: PictureModel, nearest: Mapping[str, Any]) -> None:
@@ -97,40 +91,11 @@ def _marks(nearest: Mapping[str, Any]) -> list[WorldObject]:
         return []
     point = np.array(target[:3], dtype=float)
     if len(target) == 7:
-        marks = [_mark(GOAL, SE3.from_vector(target), *_frame())]
+        marks = [frame_mark(SE3.from_vector(target))]
     else:
-        marks = [_mark(GOAL, SE3.from_xyz_rpy(point), Shape(Sphere(0.02), rgba=ORANGE))]
-    here = np.array(nearest["pose"][:3], dtype=float)
-    away = float(np.linalg.norm(point - here))
-    if away > 0.005:
-        along = Shape(Capsule(0.003, away), rgba=ORANGE)
-        marks.append(_mark(WAY, SE3(_along(point - here), 0.5 * (point + here)), along))
-    return marks
-
-
-def _frame() -> list[Shape]:
-    half = 0.5 * AXIS_LENGTH
-    turns = ((0, np.pi / 2, 0), (-np.pi / 2, 0, 0), (0, 0, 0))
-    return [
-        Shape(
-            Capsule(AXIS_RADIUS, AXIS_LENGTH),
-            SE3(rotation_from_rpy(turn), rotation_from_rpy(turn) @ np.array([0.0, 0.0, half])),
-            rgba,
-        )
-        for turn, rgba in zip(turns, (RED, GREEN, BLUE), strict=True)
-    ]
-
-
-def _along(direction: np.ndarray) -> np.ndarray:
-    """A rotation whose z axis points along a direction."""
-    z = direction / np.linalg.norm(direction)
-    other = np.eye(3)[int(np.argmin(np.abs(z)))]
-    x = np.cross(other, z) / np.linalg.norm(np.cross(other, z))
-    return np.stack([x, np.cross(z, x), z], axis=1)
-
-
-def _mark(name: str, pose: SE3, *shapes: Shape) -> WorldObject:
-    return WorldObject(name, shapes, pose, True, 0.0, np.zeros(3), np.zeros((3, 3)))
+        marks = [mark(GOAL, SE3.from_xyz_rpy(point), Shape(Sphere(0.02), rgba=ORANGE))]
+    way = way_mark(np.array(nearest["pose"][:3], dtype=float), point)
+    return marks if way is None else [*marks, way]
 
 
 def _in_view(
@@ -139,9 +104,9 @@ def _in_view(
     """Centres and radii of what must be seen: the arm and the marks."""
     points = [poses[link.name].translation for link in description.links if link.name != "world"]
     radii = [ARM_SIZE] * len(points)
-    for mark in marks:
-        points.append(mark.pose.translation)
-        radii.append(max(bounding_radius(shape) for shape in mark.shapes))
+    for each in marks:
+        points.append(each.pose.translation)
+        radii.append(max(bounding_radius(shape) for shape in each.shapes))
     return np.array(points), np.array(radii)
 
 
@@ -156,11 +121,3 @@ def _missed_by(nearest: Mapping[str, Any]) -> str:
         how = "deep" if touch["distance"] < 0 else "apart"
         return f", {' and '.join(touch['pair'])} {1000 * abs(touch['distance']):.1f} mm {how}"
     return ""
-
-
-def _write(file: Path, pixels: np.ndarray, caption: str) -> None:
-    picture = np.ascontiguousarray(pixels[:, :, ::-1])
-    picture[-26:] = (0.25 * picture[-26:] + 0.75 * 255).astype(np.uint8)
-    font, line = cv2.FONT_HERSHEY_SIMPLEX, cv2.LINE_AA
-    cv2.putText(picture, caption[:110], (10, HEIGHT - 9), font, 0.45, INK["failed"], 1, line)
-    cv2.imwrite(str(file), picture, [cv2.IMWRITE_JPEG_QUALITY, 92])

@@ -82,6 +82,8 @@ def _parser() -> argparse.ArgumentParser:
     _export_options(command("export", "write a saved run as a rosbag2, and its robot as a URDF"))
     _import_options(command("import", "write files of other programs as ours", module="importing"))
     _robot_options(command("robot", "look a robot over, or draw it"))
+    _ik_test_options(command("ik-test", "test a function that solves inverse kinematics",
+                             module="ik_test"))  # fmt: skip
     _bench_options(command("bench", "compare planners on the motions of scenarios"))
     _schema_options(command("schema", "print the JSON Schema of scenario files"))
     return parser
@@ -235,6 +237,28 @@ def _import_options(importing: argparse.ArgumentParser) -> None:
     add_robot_options(importing, has_srdf=False)
 
 
+def _ik_test_options(test: argparse.ArgumentParser) -> None:
+    add = test.add_argument
+    add("solver", metavar="SOLVER", help="module:function or file.py:function; `own` is ours")
+    add("--robot", metavar="ROBOT", required=True, help=ROBOT)
+    add_robot_options(test)
+    add("--link", metavar="LINK", default="", help="that is placed (default: the TCP)")
+    add("--branches", action="store_true", help="it claims to find every way to a target")
+    add("--examples", metavar="N", type=_count, default=100,
+        help="cases of each property (default: 100)")  # fmt: skip
+    add("--seed", metavar="N", type=int, default=0, help="of the cases (default: 0)")
+    add("--position-tolerance", metavar="M", type=_metres, default=1e-4,
+        help="of answers [m] (default: 0.0001)")  # fmt: skip
+    add("--orientation-tolerance", metavar="RAD", type=_radians, default=1e-3,
+        help="of answers [rad] (default: 0.001)")  # fmt: skip
+    add("--call-limit", metavar="SECONDS", type=_seconds, default=5.0,
+        help="wall time after which a call hangs (default: 5)")  # fmt: skip
+    add("--report-dir", metavar="DIR", default="reports",
+        help="where reports go (default: reports)")  # fmt: skip
+    add("--no-report", action="store_true", help="no report and no pictures")
+    add("--json", action="store_true", help="one JSON document on stdout")
+
+
 def _robot_options(robot: argparse.ArgumentParser) -> None:
     actions = robot.add_subparsers(dest="action", metavar="ACTION", required=True)
     check = actions.add_parser(
@@ -304,6 +328,14 @@ def _count(text: str) -> int:
     if not text.isdigit() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"'{text}' is not a number from 1")
     return int(text)
+
+
+def _metres(text: str) -> float:
+    return _positive(text, "metres")
+
+
+def _radians(text: str) -> float:
+    return _positive(text, "radians")
 
 
 def _seconds(text: str) -> float:

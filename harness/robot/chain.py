@@ -27,6 +27,7 @@ class Chain:
         upper: Shape (dof,); pi for a continuous joint.
         is_turning: False for prismatic joints, shape (dof,).
         home: Named state `home`, or where runs start, shape (dof,).
+        way: All joints between the world and the link, fixed ones included.
         before: Pose of each joint's frame in the one before it, that joint at zero.
         axes: Of the joints, in their frames, shape (dof, 3).
         tip: Pose of the link in the last joint's frame.
@@ -39,6 +40,7 @@ class Chain:
     upper: FloatArray
     is_turning: BoolArray
     home: FloatArray
+    way: tuple[Joint, ...]
     before: tuple[SE3, ...]
     axes: FloatArray
     tip: SE3
@@ -51,6 +53,8 @@ class Chain:
             RobotError: There is no such group or link, or the group does not carry the link.
         """
         group, link = group or description.arm_group, link or description.tcp_link
+        if not group:
+            raise RobotError(f"'{description.name}' has no arm")
         if group not in description.groups:
             raise RobotError(f"no group '{group}'; groups: {', '.join(description.groups)}")
         if link not in description.link_names:
@@ -59,7 +63,8 @@ class Chain:
         start = description.start_positions()
         before: list[SE3] = []
         pose = SE3.identity()
-        for joint in _carriers(description, link):
+        way = _way_to(description, link)
+        for joint in way:
             pose = pose @ joint.pose
             if joint.name in names:
                 before.append(pose)
@@ -85,6 +90,7 @@ class Chain:
             np.array([high for _, high in bounded]),
             np.array([joint.kind != "prismatic" for joint in joints]),
             np.array([home.get(n, start[description.joint_index[n]]) for n in names]),
+            way,
             tuple(before),
             np.array([joint.axis for joint in joints]),
             pose,
@@ -176,11 +182,11 @@ def rotations_about(axis: FloatArray, angles: FloatArray) -> FloatArray:
     return np.eye(3) + sine * K + (1.0 - cosine) * (K @ K)
 
 
-def _carriers(description: RobotDescription, link: str) -> list[Joint]:
+def _way_to(description: RobotDescription, link: str) -> tuple[Joint, ...]:
     """The joints between the world and a link, in this order."""
     before = {joint.child: joint for joint in description.joints}
     found: list[Joint] = []
     while link in before:
         found.append(before[link])
         link = before[link].parent
-    return found[::-1]
+    return tuple(found[::-1])

@@ -58,12 +58,12 @@ def test_links_of_a_page_lead_somewhere(page):
 def test_the_command_table_is_what_the_program_offers(capsys):
     with pytest.raises(SystemExit):
         main(["--help"])
-    offered = re.findall(r"(?m)^    (\w+) +\w+", capsys.readouterr().out)
-    assert re.findall(r"(?m)^\| `harness (\w+)", README) == offered
+    offered = re.findall(r"(?m)^    ([\w-]+) +\w+", capsys.readouterr().out)
+    assert re.findall(r"(?m)^\| `harness ([\w-]+)", README) == offered
 
 
 def test_options_named_in_the_command_table_exist(capsys):
-    for command, text in re.findall(r"(?m)^\| `harness (\w+).*?\| (.*) \|$", README):
+    for command, text in re.findall(r"(?m)^\| `harness ([\w-]+).*?\| (.*) \|$", README):
         with pytest.raises(SystemExit):
             main([command, "--help"])
         said = capsys.readouterr().out

@@ -1,0 +1,9 @@
+"""Property-based tests of anybody's inverse kinematics.
+
+`check_ik` is for tests, `run_ik_test` for programs, `harness ik-test` for the command line.
+"""
+
+from harness.iktest.kit import IkTest, check_ik, run_ik_test
+from harness.iktest.report import Finding, IkReport, PropertyResult
+
+__all__ = ["Finding", "IkReport", "IkTest", "PropertyResult", "check_ik", "run_ik_test"]

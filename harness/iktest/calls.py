@@ -1,0 +1,88 @@
+"""One call of a function under test, and everything that can come of it."""
+
+from __future__ import annotations
+
+import builtins
+import sys
+import traceback
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import Any, Literal
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.iktest.contract import Value
+
+Kind = Literal["answered", "refused", "raised", "unreadable", "hung", "died"]
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What came of a call.
+
+    Attributes:
+        kind: What happened.
+        answers: Joint positions, shape (dof,) each; they may hold anything, NaN too.
+        seconds: Wall time of the call.
+        text: Of an exception, a signal, or what was returned instead of joint positions.
+        place: File and line where an exception was raised.
+    """
+
+    kind: Kind
+    answers: tuple[FloatArray, ...] = ()
+    seconds: float = 0.0
+    text: str = ""
+    place: str = ""
+
+
+def call(function: Callable[..., Any], arguments: Mapping[str, Value], dof: int) -> Outcome:
+    """Call a function and read what it returns; never raises but for Ctrl-C."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # a NaN is found where it is returned
+        start = perf_counter()
+        try:
+            returned = function(**arguments)
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # noqa: BLE001 - whatever it raises is a result
+            return _raised(error, perf_counter() - start)
+        seconds = perf_counter() - start
+        return read_answers(returned, dof, seconds)
+
+
+def read_answers(returned: Any, dof: int, seconds: float = 0.0) -> Outcome:
+    """Joint positions from None, one vector, or a list of vectors."""
+    if returned is None:
+        return Outcome("refused", seconds=seconds)
+    try:
+        values = np.array(returned, dtype=float)
+    except (TypeError, ValueError):
+        return Outcome("unreadable", seconds=seconds, text=f"returned {_short(returned)}")
+    if values.size == 0:
+        return Outcome("refused", seconds=seconds)
+    if values.shape == (dof,):
+        return Outcome("answered", (values,), seconds)
+    if values.ndim == 2 and values.shape[1] == dof:
+        return Outcome("answered", tuple(values), seconds)
+    shape = " x ".join(map(str, values.shape)) or "one"
+    return Outcome("unreadable", seconds=seconds, text=f"returned {shape} numbers")
+
+
+def _raised(error: BaseException, seconds: float) -> Outcome:
+    """A refusal where the exception's class is neither Python's nor NumPy's."""
+    module = type(error).__module__.partition(".")[0]
+    if module not in ("numpy", builtins.__name__) and module not in sys.stdlib_module_names:
+        return Outcome("refused", seconds=seconds)
+    frames = traceback.extract_tb(error.__traceback__)[1:]  # the first is the call above
+    place = f"{Path(frames[-1].filename).name}:{frames[-1].lineno}" if frames else ""
+    words = " ".join(str(error).split())
+    return Outcome("raised", (), seconds, f"{type(error).__name__}: {words[:200]}", place)
+
+
+def _short(value: object) -> str:
+    text = f"{type(value).__name__} {value!r}"
+    return text if len(text) < 120 else f"{text[:117]}..."

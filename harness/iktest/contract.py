@@ -1,0 +1,125 @@
+"""What a function under test is given and may return: its parameters' names say it."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import Any
+
+import numpy as np
+
+from harness.core.spatial import SE3, xyzw_from_wxyz
+from harness.core.types import FloatArray
+from harness.strategies.tasks import Task, pitch_of
+from harness.suite.discovery import UsageError
+
+Value = float | FloatArray
+
+
+class UnusableSolver(UsageError):
+    """The function cannot be tested: it is not there, or speaks in words that nobody knows."""
+
+
+@dataclass(frozen=True)
+class Word:
+    """A parameter's name.
+
+    Attributes:
+        says: What its argument is.
+        fixes: Parts of the target that it tells: x, y, z, pitch, turn; or none.
+        value: Of a target T_world_link and a seed.
+    """
+
+    says: str
+    fixes: str
+    value: Callable[[SE3, FloatArray], Value]
+
+
+WORDS: dict[str, Word] = {
+    "x": Word("target's x [m], a float", "x", lambda T, _: float(T.translation[0])),
+    "y": Word("target's y [m], a float", "y", lambda T, _: float(T.translation[1])),
+    "z": Word("target's z [m], a float", "z", lambda T, _: float(T.translation[2])),
+    "position": Word("x, y, z [m], shape (3,)", "x y z", lambda T, _: np.array(T.translation)),
+    "pitch": Word(
+        "angle of the link's x axis below the horizontal [rad], -pi/2 to pi/2, a float",
+        "pitch",
+        lambda T, _: pitch_of(T),
+    ),
+    "quat_wxyz": Word("unit quaternion w, x, y, z", "turn", lambda T, _: T.quat_wxyz),
+    "quat_xyzw": Word(
+        "unit quaternion x, y, z, w", "turn", lambda T, _: xyzw_from_wxyz(T.quat_wxyz)
+    ),
+    "rotation": Word("rotation matrix, shape (3, 3)", "turn", lambda T, _: np.array(T.rotation)),
+    "matrix": Word("homogeneous matrix, shape (4, 4)", "x y z turn", lambda T, _: T.matrix()),
+    "pose": Word("the same as `matrix`", "x y z turn", lambda T, _: T.matrix()),
+    "seed": Word(
+        "joint positions to start from, shape (dof,); home, or the last answer on a line",
+        "",
+        lambda _, seed: np.array(seed),
+    ),
+}
+
+
+def parameter_words(function: Callable[..., Any]) -> tuple[str, ...]:
+    """The words that a function's parameters are; those with other names keep their defaults.
+
+    Raises:
+        UnusableSolver: A parameter without a default has another name.
+    """
+    try:
+        parameters = inspect.signature(function).parameters.values()
+    except (TypeError, ValueError) as error:
+        raise UnusableSolver(
+            f"the parameters of {function!r} cannot be read; wrap it: def ik(matrix): ..."
+        ) from error
+    words: list[str] = []
+    for each in parameters:
+        if each.name in WORDS and each.kind not in (each.VAR_POSITIONAL, each.VAR_KEYWORD):
+            if each.kind is each.POSITIONAL_ONLY:
+                raise UnusableSolver(f"parameter `{each.name}` is positional only: drop the `/`")
+            words.append(each.name)
+        elif each.kind in (each.VAR_POSITIONAL, each.VAR_KEYWORD) or each.default is not each.empty:
+            continue
+        else:
+            near = get_close_matches(each.name.lower(), WORDS, 1)
+            hint = f"did you mean `{near[0]}`? " if near else ""
+            raise UnusableSolver(
+                f"no argument is known for the parameter `{each.name}`; {hint}"
+                f"names: {', '.join(WORDS)}"
+            )
+    task_of(words)
+    return tuple(words)
+
+
+def task_of(words: Sequence[str]) -> Task:
+    """What a function with such parameters is asked for.
+
+    Raises:
+        UnusableSolver: They do not tell where the target is.
+    """
+    told = set(" ".join(WORDS[word].fixes for word in words).split())
+    if not {"x", "y", "z"} <= told:
+        raise UnusableSolver(
+            "the function is not told where the target is: it needs the parameters "
+            "`x, y, z`, `position` or `matrix`"
+        )
+    return "pose" if "turn" in told else "position and pitch" if "pitch" in told else "position"
+
+
+def arguments_of(words: Sequence[str], target: SE3, seed: FloatArray) -> dict[str, Value]:
+    """What a function is called with, made anew for every call."""
+    return {word: WORDS[word].value(target, seed) for word in words}
+
+
+def call_text(name: str, arguments: dict[str, Value]) -> str:
+    """A call as Python, numbers to a billionth."""
+    told = ", ".join(f"{word}={_number_text(value)}" for word, value in arguments.items())
+    return f"{name}({told})"
+
+
+def _number_text(value: Any) -> str:
+    if isinstance(value, np.ndarray):
+        return f"[{', '.join(_number_text(each) for each in value)}]"
+    return repr(round(float(value), 9) + 0.0)

@@ -1,0 +1,100 @@
+"""The function that `module:function` or `file.py:function` names."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import inspect
+import sys
+import traceback
+from collections.abc import Callable
+from difflib import get_close_matches
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from harness.iktest.contract import UnusableSolver
+
+OWN = "own"
+"""In place of a function's name: the solver that this program plans with."""
+
+
+def find_function(name: str) -> Callable[..., Any]:
+    """Import a function.
+
+    Args:
+        name: `module:function` or `file.py:function`; `module:Class.method` too.
+
+    Raises:
+        UnusableSolver: There is no such file, module or function, or importing fails.
+    """
+    place, colon, attribute = name.rpartition(":")
+    if not colon or not place or not attribute:
+        raise UnusableSolver(f"'{name}' is not module:function or file.py:function")
+    module = _from_file(Path(place)) if place.endswith(".py") else _from_name(place)
+    found: Any = module
+    for part in attribute.split("."):
+        if not hasattr(found, part):
+            offers = _offers(module, part)
+            raise UnusableSolver(f"'{place}' has no function '{attribute}'; {offers}")
+        found = getattr(found, part)
+    if not callable(found):
+        raise UnusableSolver(f"'{name}' is a {type(found).__name__}, not a function")
+    return found
+
+
+def _from_file(path: Path) -> ModuleType:
+    if not path.is_file():
+        raise UnusableSolver(f"no such file: '{path}'")
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules.setdefault(path.stem, module)
+    sys.path.insert(0, str(path.parent.resolve()))
+    with _Told(str(path)):
+        spec.loader.exec_module(module)
+    return module
+
+
+def _from_name(name: str) -> ModuleType:
+    try:
+        missing = importlib.util.find_spec(name) is None
+    except (ImportError, ValueError):
+        missing = True
+    if missing:
+        raise UnusableSolver(
+            f"no module '{name}' in this folder or among the installed packages; "
+            "a file is named with its ending: my_ik.py:ik"
+        )
+    with _Told(name):
+        return importlib.import_module(name)
+
+
+class _Told:
+    """Whatever an import raises, told as the import's failure."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __enter__(self) -> None: ...
+
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
+        if error is None or isinstance(error, KeyboardInterrupt):
+            return
+        last = traceback.extract_tb(error.__traceback__)[-1]
+        at = f"{last.filename}:{last.lineno}"
+        if isinstance(error, SyntaxError):
+            at = f"{error.filename}:{error.lineno}"
+        words = error.msg if isinstance(error, SyntaxError) else str(error)
+        raise UnusableSolver(
+            f"'{self._name}' cannot be imported: {at}: {type(error).__name__}: {words}"
+        ) from error
+
+
+def _offers(module: ModuleType, wanted: str) -> str:
+    names = [name for name, value in vars(module).items()
+             if inspect.isfunction(value) and value.__module__ == module.__name__]  # fmt: skip
+    near = get_close_matches(wanted, names, 1)
+    hint = f"did you mean '{near[0]}'? " if near else ""
+    return f"{hint}functions there: {', '.join(names) or 'none'}"

@@ -1,0 +1,269 @@
+"""The whole test of a function: every property tried, every kind of flaw shrunk."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.iktest.contract import UnusableSolver, arguments_of, call_text, task_of
+from harness.iktest.offset import common_offset
+from harness.iktest.properties import BRANCHES, PROPERTIES, Property, within_reach
+from harness.iktest.report import Finding, IkReport, PropertyResult, Speed
+from harness.iktest.search import draw, shrink
+from harness.iktest.solver import InProcess, Isolated, Solver
+from harness.iktest.text import report_lines
+from harness.iktest.trial import HANGS, Flaw, Trial
+from harness.robot.chain import Chain
+from harness.session.robot_source import RobotSource, load
+from harness.strategies.poses import Target
+from harness.strategies.tasks import ROWS
+
+MOST_FINDINGS = 4
+"""Kinds of flaws that are shrunk for one property, the most frequent first."""
+
+
+@dataclass(frozen=True)
+class IkTest:
+    """How a function is tested.
+
+    Attributes:
+        solver: `module:function`, `file.py:function` or `own`, called in a process of its own
+            that is ended when it hangs; or a function, called in this process.
+        robot: A bundled name, a folder, a file; or with more words about it.
+        link: That is placed; by default the TCP.
+        branches: The function claims to answer every way to reach a target.
+        examples: Cases of each property.
+        seed: Of the cases; the same seed draws the same ones.
+        position_tolerance: That answers may miss their targets by [m].
+        orientation_tolerance: The same of orientation or pitch [rad].
+        patience: Wall time after which a call counts as hanging [s].
+        report_dir: Where pictures and `ik_test.json` go; None writes nothing.
+    """
+
+    solver: str | Callable[..., Any]
+    robot: str | RobotSource
+    link: str = ""
+    branches: bool = False
+    examples: int = 100
+    seed: int = 0
+    position_tolerance: float = 1e-4
+    orientation_tolerance: float = 1e-3
+    patience: float = 5.0
+    report_dir: Path | None = None
+
+    @property
+    def source(self) -> RobotSource:
+        """The arm, with all its words."""
+        return RobotSource(self.robot) if isinstance(self.robot, str) else self.robot
+
+
+def run_ik_test(test: IkTest) -> IkReport:
+    """Test a function.
+
+    Raises:
+        UnusableSolver: The function is not there, cannot be called, or answers in another form
+            than joint positions.
+        RobotError: There is no such robot, group or link.
+    """
+    started = perf_counter()
+    chain = Chain.of(load(test.source), link=test.link)
+    solver = _solver(test, chain)
+    try:
+        trial = Trial(chain, task_of(solver.words), solver, test.position_tolerance,
+                      test.orientation_tolerance)  # fmt: skip
+        if test.branches and ROWS[trial.task] != chain.dof:
+            raise UnusableSolver(
+                f"a {trial.task} is {ROWS[trial.task]} numbers and the arm has {chain.dof} joints: "
+                "the ways to reach it cannot be counted, so --branches does not apply"
+            )
+        _probe(trial)
+        properties = (*PROPERTIES, BRANCHES) if test.branches else PROPERTIES
+        results, findings, speed = _Search(trial, test).run(properties)
+    finally:
+        solver.close()
+    name = test.solver if isinstance(test.solver, str) else solver.name
+    report = IkReport(
+        solver=name,
+        robot=chain.description.name,
+        task=trial.task,
+        link=chain.link,
+        joint_names=chain.joint_names,
+        home=chain.home,
+        properties=results,
+        findings=findings,
+        speed=speed,
+        seed=test.seed,
+        seconds=perf_counter() - started,
+    )
+    if test.report_dir is None:
+        return report
+    from harness.iktest.write import write_report
+
+    return write_report(report, chain, test.report_dir)
+
+
+def check_ik(
+    solver: str | Callable[..., Any], robot: str | RobotSource, **options: Any
+) -> IkReport:
+    """Test a function, for tests: raise AssertionError with everything that was found.
+
+    Args:
+        solver: As in `IkTest`.
+        robot: As in `IkTest`.
+        **options: Other attributes of `IkTest`.
+    """
+    __tracebackhide__ = True
+    report = run_ik_test(IkTest(solver, robot, **options))
+    if not report.has_passed:
+        raise AssertionError("\n".join(report_lines(report)))
+    return report
+
+
+def _solver(test: IkTest, chain: Chain) -> Solver:
+    if not isinstance(test.solver, str):
+        return InProcess(test.solver, chain.dof)
+    return Isolated(test.solver, test.source, test.link, chain.dof, test.patience)
+
+
+def _probe(trial: Trial) -> None:
+    """Ask for a few poses within reach, and refuse a function whose answers cannot be read.
+
+    Raises:
+        UnusableSolver: None of its answers has the shape of joint positions.
+    """
+    chain = trial.chain
+    rng = np.random.default_rng(0)
+    states = [chain.home, *rng.uniform(chain.lower, chain.upper, (4, chain.dof))]
+    for state in states:
+        outcome = trial.ask(Target(chain.link_pose(state), state))
+        if outcome.kind == "unreadable":
+            raise UnusableSolver(
+                f"{trial.solver.name} {outcome.text}; it must return {chain.dof} joint positions "
+                f"({', '.join(chain.joint_names)}), a list of such answers, or None"
+            )
+        if outcome.kind == "answered":
+            return
+
+
+class _Search:
+    """One pass over the properties; a kind of flaw is shrunk where it first shows."""
+
+    def __init__(self, trial: Trial, test: IkTest) -> None:
+        self._trial, self._test = trial, test
+        self._findings: list[Finding] = []
+        self._known: dict[str, int] = {}
+
+    def run(
+        self, properties: tuple[Property, ...]
+    ) -> tuple[tuple[PropertyResult, ...], tuple[Finding, ...], Speed | None]:
+        """Results, findings and speed."""
+        speed = self._time()
+        self._learn_offset()
+        results: list[PropertyResult] = []
+        for each in properties:
+            if HANGS in self._known:
+                results.append(PropertyResult(each.name, each.says, note="not tried: it hangs"))
+            else:
+                results.append(self._try(each))
+        return tuple(results), tuple(self._findings), speed
+
+    def _time(self) -> Speed | None:
+        """Times of calls for targets within reach."""
+        times: list[float] = []
+
+        def visit(target: Target) -> bool:
+            outcome = self._trial.ask(target)
+            if outcome.kind in ("answered", "refused"):
+                times.append(outcome.seconds)
+            return not self._trial.has_hung
+
+        draw(within_reach(self._trial), visit, self._test.examples, self._test.seed)
+        if not times:
+            return None
+        median, slow = np.quantile(times, [0.5, 0.95])
+        return Speed(float(median), float(slow), max(times), len(times))
+
+    def _learn_offset(self) -> None:
+        """Whether answers are off by the same wherever asked."""
+        trial, misses = self._trial, []
+
+        def visit(target: Target) -> bool:
+            for answer in trial.ask(target).answers:
+                if trial.misses(target, answer) is not None:
+                    misses.append((target.pose, trial.chain.link_pose(answer)))
+            return not trial.has_hung
+
+        if not trial.has_hung:
+            draw(within_reach(trial), visit, self._test.examples, self._test.seed)
+        trial.offset = common_offset(trial.task, misses)
+
+    def _try(self, each: Property) -> PropertyResult:
+        """Draw cases, count what they show, shrink what is new."""
+        trial = self._trial
+        kinds: Counter[str] = Counter()
+        smallest: dict[str, tuple[tuple[float, ...], Flaw]] = {}
+        tried = flawed = 0
+
+        def visit(case: Any) -> bool:
+            nonlocal tried, flawed
+            flaws = each.flaws(trial, case)
+            tried += 1
+            flawed += bool(flaws)
+            kinds.update(sorted({flaw.kind for flaw in flaws}))
+            size = each.size(trial, case)
+            for flaw in flaws:
+                if flaw.kind not in smallest or size < smallest[flaw.kind][0]:
+                    smallest[flaw.kind] = size, flaw
+            return HANGS not in kinds
+
+        count = max(10, round(each.share * self._test.examples))
+        draw(each.cases(trial), visit, count, self._test.seed)
+        everywhere = "" if trial.offset is None else trial.offset.text()
+        frequent = sorted(kinds, key=lambda kind: (kind != everywhere, -kinds[kind], kind))
+        new = [kind for kind in frequent if kind not in self._known][:MOST_FINDINGS]
+        for kind in new:
+            flaw = self._shrunk(each, kind, tried) or smallest[kind][1]
+            self._known[kind] = len(self._findings) + 1
+            self._findings.append(self._finding(each, flaw, kinds[kind], tried))
+        found = sorted(self._known[kind] for kind in kinds if kind in self._known)
+        return PropertyResult(each.name, each.says, tried, flawed, tuple(found))
+
+    def _shrunk(self, each: Property, kind: str, tried: int) -> Flaw | None:
+        """The smallest flaw of a kind; None when it does not show again."""
+        trial = self._trial
+
+        def shows(case: Any) -> Flaw | None:
+            return next((flaw for flaw in each.flaws(trial, case) if flaw.kind == kind), None)
+
+        trial.take_cost()
+        return shrink(each.cases(trial), shows, lambda case: each.size(trial, case),
+                      tried, self._test.seed, trial.take_cost)  # fmt: skip
+
+    def _finding(self, each: Property, flaw: Flaw, shown: int, tried: int) -> Finding:
+        trial = self._trial
+        arguments = arguments_of(trial.solver.words, flaw.target.pose, flaw.seed)
+        return Finding(
+            number=len(self._findings) + 1,
+            property=each.name,
+            kind=flaw.kind,
+            detail=flaw.detail,
+            shown=shown,
+            tried=tried,
+            call=call_text(trial.solver.name, arguments),
+            target=flaw.target,
+            answer=flaw.answer,
+            reached=_reached(trial.chain, flaw.answer),
+        )
+
+
+def _reached(chain: Chain, answer: FloatArray | None) -> FloatArray | None:
+    if answer is None or not np.all(np.isfinite(answer)):
+        return None
+    return chain.link_pose(answer).as_vector()

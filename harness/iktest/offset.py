@@ -1,0 +1,105 @@
+"""An error that is the same wherever one asks: a wrong base height, a wrong tool, a turned base."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.strategies.tasks import Task
+
+SAME = 5e-4  # [m, rad] that two errors may differ by and still be one
+APART = 0.02  # [m] between targets that count as different
+LEAST_COUNT, LEAST_SHARE = 5, 0.15
+
+
+@dataclass(frozen=True, eq=False)
+class Offset:
+    """What answers are off by.
+
+    Attributes:
+        frame: `world`, or `link`: the reached link's own.
+        error: Shift [m], then for poses the turn's rotation vector [rad]; shape (3,) or (6,).
+    """
+
+    frame: Literal["world", "link"]
+    error: FloatArray
+
+    def explains(self, task: Task, asked: SE3, reached: SE3) -> bool:
+        """Whether a miss is this one."""
+        return bool(np.abs(_error(self.frame, task, asked, reached) - self.error).max() < SAME)
+
+    def text(self) -> str:
+        """The kind of flaw that this is."""
+        millimetres = numbers_text(1000 * self.error[:3], 1)
+        parts = [f"off by ({millimetres}) mm"]
+        angle = float(np.linalg.norm(self.error[3:]))
+        if angle > SAME:
+            axis = numbers_text(self.error[3:] / angle, 2)
+            turn = f"turned by {np.degrees(angle):.1f} deg about ({axis})"
+            parts = [*(parts if np.linalg.norm(self.error[:3]) > SAME else []), turn]
+        where = "the world's axes" if self.frame == "world" else "the link's own axes"
+        return f"is {' and '.join(parts)} in {where}, wherever asked"
+
+
+def common_offset(task: Task, misses: Sequence[tuple[SE3, SE3]]) -> Offset | None:
+    """The error that many misses share, if one does.
+
+    Args:
+        task: What was asked for.
+        misses: Poses asked for and reached.
+    """
+    best: tuple[int, Offset] | None = None
+    frames: tuple[Literal["world", "link"], ...] = ("world", "link")
+    for frame in frames:
+        if not misses:
+            return None
+        errors = np.array([_error(frame, task, asked, reached) for asked, reached in misses])
+        alike = np.abs(errors[:, None] - errors[None]).max(axis=2) < SAME
+        counts = alike.sum(axis=1)
+        winner = int(np.argmax(counts))
+        count = int(counts[winner])
+        places = [misses[int(index)][0].translation for index in np.flatnonzero(alike[winner])]
+        is_common = count >= LEAST_SHARE * len(misses) and _different(places) >= LEAST_COUNT
+        if is_common and (best is None or count > best[0]):
+            best = count, Offset(frame, np.median(errors[alike[winner]], axis=0))
+    return None if best is None else best[1]
+
+
+def _different(places: Sequence[FloatArray]) -> int:
+    """How many of some points lie apart; Hypothesis tries a target and others next to it."""
+    kept: list[FloatArray] = []
+    for place in places:
+        if all(float(np.linalg.norm(place - other)) > APART for other in kept):
+            kept.append(place)
+    return len(kept)
+
+
+def _error(frame: str, task: Task, asked: SE3, reached: SE3) -> FloatArray:
+    """Shift of the link's origin, and for poses the whole change as one motion."""
+    if task != "pose":
+        shift = reached.translation - asked.translation
+        return shift if frame == "world" else reached.rotation.T @ shift
+    change = reached @ asked.inverse() if frame == "world" else asked.inverse() @ reached
+    return np.concatenate([change.translation, rotation_vector(change.rotation)])
+
+
+def rotation_vector(rotation: FloatArray) -> FloatArray:
+    """Axis times angle [rad] of a rotation; of a half turn, the axis whose largest part is > 0."""
+    w, *xyz = SE3(rotation, np.zeros(3)).quat_wxyz
+    axis = np.array(xyz)
+    sine = float(np.linalg.norm(axis))
+    if sine < 1e-12:
+        return np.zeros(3)
+    if w < 1e-6 and axis[int(np.argmax(np.abs(axis)))] < 0:
+        axis = -axis
+    return 2.0 * float(np.arctan2(sine, w)) * axis / sine
+
+
+def numbers_text(values: FloatArray, digits: int) -> str:
+    """Numbers with so many digits behind the point, none of them a negative zero."""
+    return ", ".join(f"{round(float(value), digits) + 0.0:.{digits}f}" for value in values)

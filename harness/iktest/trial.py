@@ -1,0 +1,155 @@
+"""A function under test on one arm: asking it, and measuring what it answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.iktest.calls import Outcome
+from harness.iktest.contract import arguments_of
+from harness.iktest.offset import Offset, numbers_text
+from harness.iktest.solver import Solver
+from harness.robot.chain import Chain
+from harness.strategies.poses import Target
+from harness.strategies.tasks import Task, miss
+
+LIMIT_SLACK = 1e-9  # [rad or m] that rounding may put an answer beyond a limit
+HANGS = "does not come back"
+COSTS = {"hung": 75, "died": 6}
+"""What calls cost of a search's budget, beside 1 for others."""
+
+
+@dataclass(frozen=True, eq=False)
+class Flaw:
+    """Something wrong with what a function does for one target.
+
+    Attributes:
+        kind: By which equal flaws are told.
+        detail: The numbers of this one; may be empty.
+        target: That was asked for.
+        seed: That was given with it.
+        answer: What came back, if joint positions did.
+    """
+
+    kind: str
+    detail: str
+    target: Target
+    seed: FloatArray
+    answer: FloatArray | None = None
+
+
+@dataclass(eq=False)
+class Trial:
+    """A function under test.
+
+    Attributes:
+        chain: Of the arm.
+        task: What the function is asked for.
+        solver: The function.
+        position_tolerance: That an answer may miss its target by [m].
+        orientation_tolerance: The same of orientation or pitch [rad].
+        offset: What answers are off by wherever asked, once that is known.
+        last_cost: Of what was asked since it was last read.
+        has_hung: Whether it ever was.
+    """
+
+    chain: Chain
+    task: Task
+    solver: Solver
+    position_tolerance: float
+    orientation_tolerance: float
+    offset: Offset | None = None
+    has_hung: bool = False
+    _cost: int = 0
+    _known: dict[bytes, Outcome] = field(default_factory=dict[bytes, Outcome])
+
+    def ask(
+        self, target: Target, seed: FloatArray | None = None, *, afresh: bool = False
+    ) -> Outcome:
+        """Call the function for a target; the seed is home by default.
+
+        What was asked before is remembered, unless it is asked afresh.
+        """
+        start = self.chain.home if seed is None else seed
+        key = target.pose.matrix().tobytes() + start.tobytes()
+        if key not in self._known or afresh:
+            outcome = self.solver(arguments_of(self.solver.words, target.pose, start))
+            self._known.setdefault(key, outcome)
+            self.has_hung = self.has_hung or outcome.kind == "hung"
+            self._cost += COSTS.get(outcome.kind, 1)
+            return outcome
+        return self._known[key]
+
+    def take_cost(self) -> int:
+        """What was spent since this was last called, at least 1."""
+        spent, self._cost = max(self._cost, 1), 0
+        return spent
+
+    def misses(self, target: Target, answer: FloatArray) -> Flaw | None:
+        """How an answer misses its target, if it does; None for what is not finite."""
+        if not np.all(np.isfinite(answer)):
+            return None
+        reached = self.chain.link_pose(answer)
+        shift, turn = miss(self.task, target.pose, reached)
+        off, turned = shift > self.position_tolerance, turn > self.orientation_tolerance
+        if not off and not turned:
+            return None
+        what = "orientation" if self.task == "pose" else "pitch"
+        if self.offset is not None and self.offset.explains(self.task, target.pose, reached):
+            kind = self.offset.text()
+        else:
+            kind = "misses the position" if off else f"misses the {what}"
+        parts = [shift_text(target.pose, reached)] if off else []
+        parts += [f"{what} off by {np.degrees(turn):.3g} deg"] if turned else []
+        return self.flaw(kind, "; ".join(parts), target, answer)
+
+    def outside(self, target: Target, answer: FloatArray) -> Flaw | None:
+        """Which limits an answer breaks, if any."""
+        chain = self.chain
+        excess = np.maximum(chain.lower - answer, answer - chain.upper)
+        if not np.any(excess > LIMIT_SLACK):
+            return None
+        index = int(np.argmax(excess))
+        low, high, value = chain.lower[index], chain.upper[index], answer[index]
+        unit = "rad" if chain.is_turning[index] else "m"
+        return self.flaw(
+            "leaves the joint limits",
+            f"{chain.joint_names[index]} at {value:.5g} {unit}, limits {low:.5g} to {high:.5g}",
+            target,
+            answer,
+        )
+
+    def breakdown(self, target: Target, outcome: Outcome) -> Flaw | None:
+        """What is neither an answer nor a refusal."""
+        match outcome.kind:
+            case "raised":
+                at = f" at {outcome.place}" if outcome.place else ""
+                name = outcome.text.partition(":")[0]
+                return self.flaw(f"raises {name}{at}", outcome.text, target)
+            case "unreadable":
+                return self.flaw("answers with what is no joint positions", outcome.text, target)
+            case "hung":
+                return self.flaw(HANGS, outcome.text, target)
+            case "died":
+                return self.flaw("ends the process", outcome.text, target)
+            case _:
+                for answer in outcome.answers:
+                    if not np.all(np.isfinite(answer)):
+                        return self.flaw("answers with NaN or infinity", "", target, answer)
+                return None
+
+    def flaw(
+        self, kind: str, detail: str, target: Target, answer: FloatArray | None = None
+    ) -> Flaw:
+        """A flaw of a call that had home for its seed."""
+        return Flaw(kind, detail, target, self.chain.home, answer)
+
+
+def shift_text(asked: SE3, reached: SE3) -> str:
+    """How far a pose is from where it should be, in words."""
+    shift = reached.translation - asked.translation
+    parts = numbers_text(1000 * shift, 2)
+    return f"position off by {1000 * float(np.linalg.norm(shift)):.3g} mm, ({parts})"

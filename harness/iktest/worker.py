@@ -1,0 +1,53 @@
+"""The process that a function under test lives in: it answers calls until the caller hangs up."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from typing import Any
+
+from harness.iktest.calls import call
+from harness.iktest.contract import UnusableSolver, parameter_words
+from harness.iktest.find_function import OWN, find_function
+from harness.session.robot_source import RobotSource
+
+
+def serve(name: str, robot: RobotSource, tip: str, dof: int, address: str, _notify: object) -> bool:
+    """Load a function, then call it with whatever arguments come.
+
+    Sends ("unusable", why) or ("ready", parameter words), then an `Outcome` for each mapping of
+    arguments that it receives.
+
+    Args:
+        name: As `find_function` takes it, or `own`.
+        robot: The arm, for `own`.
+        tip: The link that is placed, for `own`; empty for the TCP.
+        dof: Its joints.
+        address: Of the caller's Unix socket.
+    """
+    link = socket.socket(socket.AF_UNIX)
+    link.connect(address)
+    with Connection(link.detach()) as connection:
+        try:
+            function = load(name, robot, tip)
+            words = parameter_words(function)
+        except UnusableSolver as error:
+            connection.send(("unusable", str(error)))
+            return True
+        connection.send(("ready", words))
+        while True:
+            try:
+                arguments = connection.recv()
+            except EOFError:
+                return True
+            connection.send(call(function, arguments, dof))
+
+
+def load(name: str, robot: RobotSource, tip: str) -> Callable[..., Any]:
+    """The function of a name; this program's own solver for `own`."""
+    if name != OWN:
+        return find_function(name)
+    from harness.session.own_ik import own_solver
+
+    return own_solver(robot, tip)
