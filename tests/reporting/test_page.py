@@ -209,6 +209,12 @@ def test_tabs_show_planner_source_joints_and_environment(opened):
     page = opened.page
     page.click("#tab-planner")
     assert "state checks" in opened.text("#panel-planner")
+    page.click("#steps .step >> nth=2")
+    panel, part = (
+        page.locator(name).bounding_box() for name in ("#panels", "#panel-planner [data-step='2']")
+    )
+    assert panel["y"] <= part["y"] + 1 < panel["y"] + panel["height"], "what was planned for it"
+    page.locator("#tab-planner").focus()
     page.keyboard.press("ArrowRight")
     assert page.locator("#panel-findings").is_visible()
     page.click("#tab-source")

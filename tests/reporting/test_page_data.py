@@ -18,11 +18,12 @@ from harness.recording.run import Finding, MeshRecord, Verdict
 from harness.recording.store import StoredRun
 from harness.reporting.html import bundle
 from harness.reporting.html.extremes import thin
+from harness.reporting.html.groups import LEAST, groups_of
 from harness.reporting.html.meshes import pack_mesh
 from harness.reporting.html.packing import Packer
 from harness.reporting.html.page import page_html
 from harness.reporting.html.story import last_line, ordered_steps
-from tests.assertions.synthetic_run import lift_run, make_run, step, thing
+from tests.assertions.synthetic_run import at, lift_run, make_run, step, thing
 
 VALUES = st.one_of(st.just(float("nan")), st.floats(-1e6, 1e6))
 SIGNALS = arrays(float, array_shapes(min_dims=2, max_dims=2, max_side=60), elements=VALUES)
@@ -61,6 +62,35 @@ def test_a_blow_between_two_frames_is_kept():
     columns = from_differences(buffer(press["buffer"], np.uint16), 1).astype(np.int16)[:, 0]
     assert columns[:3] * press["units"][0] == pytest.approx([0.3, -0.2, 0.1], abs=1e-4)
     assert columns[3:] * press["units"][1] == pytest.approx([0, 0, 400], rel=1e-4)
+
+
+def test_every_recorded_signal_has_a_plot():
+    n = 200
+    turning = at(n, (0.0, 0.0, 0.02))
+    angle = np.linspace(0, np.pi / 2, n)
+    turning[:, 0] = np.linspace(0, 0.05, n)
+    turning[:, 3], turning[:, 6] = np.cos(angle / 2), np.sin(angle / 2)
+    run = lift_run(
+        object_poses={"box": turning},
+        tcp_pose=turning,
+        frames={"palm": turning},
+        clearances={("robot", "box"): np.full(n, 0.03)},
+        planned_clearances={("robot", "box"): np.full(n, 0.02)},
+        joint_command_velocities=np.full((n, len(lift_run().robot.joints)), 0.5),
+    )
+    groups = {group.id: group for group in groups_of(run)}
+    assert groups["planned_clearance"].series["robot and box"] == pytest.approx(20.0)
+    assert groups["tcp_turn"].series["turn"][-1] == pytest.approx(90.0)
+    assert groups["turn"].series["box"][-1] == pytest.approx(90.0)
+    assert groups["frame"].series["palm"][-1] == pytest.approx(50.0)
+    assert all(
+        values == pytest.approx(np.full(n, values[0]))
+        for values in groups["velocity_error"].series.values()
+    )
+    arm = set(run.robot.groups[run.robot.arm_group])
+    others = {joint.name for joint in run.robot.joints} - arm
+    assert set(groups["other_position"].series) == others
+    assert set(groups) <= set(LEAST)
 
 
 @given(SIGNALS, st.integers(1, 40))

@@ -27,6 +27,14 @@ export function byId(id) {
   return document.getElementById(id);
 }
 
+/** Scroll a list, and only the list, so far that an item is seen. */
+export function scrollInto(list, item) {
+  if (!item || list.scrollHeight <= list.clientHeight) return;
+  const [top, bottom] = [item.offsetTop - list.offsetTop, item.offsetTop - list.offsetTop + item.offsetHeight];
+  if (top < list.scrollTop) list.scrollTop = top;
+  else if (bottom > list.scrollTop + list.clientHeight) list.scrollTop = bottom - list.clientHeight;
+}
+
 /** The value of a colour of the style sheet, as it is in the present theme. @param {string} name `--accent` */
 export function themeColor(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();

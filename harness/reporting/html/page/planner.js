@@ -10,7 +10,7 @@ const LABELS = {
   waypoints: "waypoints", vertices: "tree vertices", resolution: "resolution", duration: "duration",
 };
 const UNITS = { path_length: "rad", raw_path_length: "rad", resolution: "rad", duration: "s" };
-const DRAWN = new Set(["path", "raw_path", "raw_waypoints", "waypoint_positions"]);
+const DRAWN = ["path", "raw_path", "raw_waypoints", "waypoint_positions"];
 
 /**
  * @param {import("./payload.js").Payload} payload
@@ -28,11 +28,11 @@ export function plannerView({ run }, select) {
 function planned(step, index, select) {
   const { ik_solutions: solutions, ik_method: method, stages, advice, nearest, picture, ...rest } = step.explanation;
   return element(
-    `section.${tone(step.status)}`, {},
+    `section.${tone(step.status)}`, { "data-step": index },
     element("h3", {}, element("button.link", { type: "button", onclick: () => select(index) }, `${index + 1}. ${step.summary}`)),
     step.message && element("p.why", {}, step.message),
     shortening(step.planner),
-    facts(step.planner),
+    facts(step.planner, isShortened(step.planner) ? [...DRAWN, "path_length", "raw_path_length"] : [...DRAWN, "raw_path_length"]),
     stages?.length ? stageList(stages) : null,
     advice && element("p.advice", {}, element("b", {}, "What to do: "), advice),
     nearest?.shows && element("p.remark", {}, element("b", {}, "Drawn in orange: "), nearest.shows),
@@ -41,9 +41,14 @@ function planned(step, index, select) {
   );
 }
 
+function isShortened({ path_length: after, raw_path_length: before }) {
+  return after > 0 && before > after * (1 + 1e-6);
+}
+
 /** Bars of the path's length before and after it was shortened. */
-function shortening({ path_length: after, raw_path_length: before }) {
-  if (!(before > 0) || !(after > 0)) return null;
+function shortening(planner) {
+  if (!isShortened(planner)) return null;
+  const { path_length: after, raw_path_length: before } = planner;
   const row = (label, length) => {
     const bar = element("i");
     bar.style.width = `${(100 * length) / Math.max(before, after)}%`;
@@ -69,8 +74,9 @@ function stageList(stages) {
   );
 }
 
-function facts(planner) {
-  const shown = Object.entries(planner).filter(([key]) => !DRAWN.has(key));
+/** @param {string[]} told keys that are shown in another way */
+function facts(planner, told) {
+  const shown = Object.entries(planner).filter(([key]) => !told.includes(key));
   if (!shown.length) return null;
   return element(
     "dl", {},

@@ -1,6 +1,6 @@
 // The list of steps: what each did, how long it took, where it is in the file, why it failed.
 
-import { byId, element } from "./dom.js";
+import { byId, element, scrollInto } from "./dom.js";
 import { STATUS } from "./units.js";
 
 /**
@@ -35,12 +35,4 @@ export function makeSteps({ run }, select) {
     scrollInto(byId("steps"), items[index]);
     current = index;
   };
-}
-
-/** Scroll a list, and only the list, so far that an item is seen. */
-function scrollInto(list, item) {
-  if (!item || list.scrollHeight <= list.clientHeight) return;
-  const [top, bottom] = [item.offsetTop - list.offsetTop, item.offsetTop - list.offsetTop + item.offsetHeight];
-  if (top < list.scrollTop) list.scrollTop = top;
-  else if (bottom > list.scrollTop + list.clientHeight) list.scrollTop = bottom - list.clientHeight;
 }

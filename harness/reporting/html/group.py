@@ -1,0 +1,33 @@
+"""A group of series that one plot shows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from harness.core.types import FloatArray
+
+MOST_SERIES = 10
+
+
+@dataclass(frozen=True, eq=False)
+class Limit:
+    """A dashed line.
+
+    Attributes:
+        series: Whose limit it is; None for everybody's.
+    """
+
+    value: float
+    series: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Series of one plot, shape (samples,) each."""
+
+    id: str
+    title: str
+    unit: str
+    series: Mapping[str, FloatArray]
+    limits: Sequence[Limit] = field(default_factory=list[Limit])

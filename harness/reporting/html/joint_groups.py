@@ -1,0 +1,146 @@
+"""What joints and gripper did, for the plots."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.recording.run import GripperRecord, JointRecord, Run
+from harness.reporting.html.group import MOST_SERIES, Group, Limit
+
+
+def _arm(run: Run) -> list[tuple[int, JointRecord]]:
+    """Columns and records of the arm's joints; of all of them where no group is the arm's."""
+    names = run.robot.groups.get(run.robot.arm_group) or [j.name for j in run.robot.joints]
+    return [(i, joint) for i, joint in enumerate(run.robot.joints) if joint.name in names]
+
+
+def _angle_unit(joints: Sequence[tuple[int, JointRecord]]) -> str:
+    kinds = {joint.kind == "prismatic" for _, joint in joints}
+    return {frozenset({True}): "mm", frozenset({False}): "°"}.get(frozenset(kinds), "° or mm")
+
+
+def _factor(joint: JointRecord) -> float:
+    return 1e3 if joint.kind == "prismatic" else 180 / math.pi
+
+
+def _joint_series(run: Run, array: FloatArray) -> dict[str, FloatArray]:
+    return {joint.name: _factor(joint) * array[:, column] for column, joint in _arm(run)}
+
+
+def positions(run: Run) -> Group:
+    """Measured positions of the arm, with each joint's limits."""
+    limits = [
+        Limit(_factor(joint) * value, number)
+        for number, (_, joint) in enumerate(_arm(run))
+        for value in (joint.lower, joint.upper)
+        if math.isfinite(value)
+    ]
+    series = _joint_series(run, run.signals.joint_positions)
+    return Group("position", "joint position", _angle_unit(_arm(run)), series, limits)
+
+
+def commands(run: Run) -> Group:
+    """Commanded positions of the arm."""
+    series = _joint_series(run, run.signals.joint_commands)
+    return Group("command", "commanded position", _angle_unit(_arm(run)), series)
+
+
+def _of_limit(run: Run, array: FloatArray, limit: str) -> dict[str, FloatArray]:
+    return {
+        joint.name: 100 * array[:, column] / getattr(joint, limit)
+        for column, joint in _arm(run)
+        if 0 < getattr(joint, limit) < math.inf
+    }
+
+
+def velocities(run: Run) -> Group:
+    """Velocities of the arm against their limits."""
+    series = _of_limit(run, run.signals.joint_velocities, "velocity")
+    return Group("velocity", "velocity", "% of limit", series, [Limit(-100.0), Limit(100.0)])
+
+
+def efforts(run: Run) -> Group:
+    """Efforts of the arm against their limits."""
+    series = _of_limit(run, run.signals.joint_efforts, "effort")
+    return Group("effort", "effort", "% of limit", series, [Limit(-100.0), Limit(100.0)])
+
+
+def plain_velocities(run: Run) -> Group:
+    """Velocities of the arm, also of joints without a limit."""
+    series = _joint_series(run, run.signals.joint_velocities)
+    return Group("plain_velocity", "joint velocity", f"{_angle_unit(_arm(run))}/s", series)
+
+
+def plain_efforts(run: Run) -> Group:
+    """Efforts of the arm, also of joints without a limit."""
+    series = {joint.name: run.signals.joint_efforts[:, column] for column, joint in _arm(run)}
+    return Group("plain_effort", "joint effort", "N m or N", series)
+
+
+def tracking(run: Run) -> Group:
+    """Measured less commanded positions of the arm."""
+    errors = run.signals.joint_positions - run.signals.joint_commands
+    return Group("tracking", "tracking error", _angle_unit(_arm(run)), _joint_series(run, errors))
+
+
+def gripper(run: Run) -> Group | None:
+    """The gap between the pads where it is known, else the joint's position."""
+    hand = run.robot.gripper
+    names = [joint.name for joint in run.robot.joints]
+    if hand is None or hand.joint not in names:
+        return None
+    column = names.index(hand.joint)
+    actual = run.signals.joint_positions[:, column]
+    command = run.signals.joint_commands[:, column]
+    if not hand.widths:
+        factor = _factor(run.robot.joints[column])
+        unit = "mm" if run.robot.joints[column].kind == "prismatic" else "°"
+        series = {"measured": factor * actual, "commanded": factor * command}
+        return Group("gripper", "gripper", unit, series)
+    opening, commanded = _opening(hand, actual), _opening(hand, command)
+    series = {"opening": opening, "commanded": np.where(np.isnan(command), np.nan, commanded)}
+    return Group("gripper", "gripper opening", "mm", series)
+
+
+def _opening(hand: GripperRecord, positions: FloatArray) -> FloatArray:
+    """Gap between the pads at joint positions [mm]."""
+    table = np.array(hand.widths)
+    return np.asarray(1e3 * np.interp(positions, table[:, 0], table[:, 1]), dtype=float)
+
+
+def gripper_effort(run: Run) -> Group | None:
+    """Effort of the gripper's joint, against its limit if it has one."""
+    hand = run.robot.gripper
+    joints = [
+        joint for joint in enumerate(run.robot.joints) if hand and joint[1].name == hand.joint
+    ]
+    if not joints:
+        return None
+    column, joint = joints[0]
+    is_limited = 0 < joint.effort < math.inf
+    effort = run.signals.joint_efforts[:, column] * (100 / joint.effort if is_limited else 1.0)
+    unit = "% of limit" if is_limited else "N m or N"
+    limits = [Limit(-100.0), Limit(100.0)] if is_limited else []
+    return Group("gripper_effort", "gripper effort", unit, {joint.name: effort}, limits)
+
+
+def velocity_errors(run: Run) -> Group:
+    """Measured less commanded velocities of the arm."""
+    errors = run.signals.joint_velocities - run.signals.joint_command_velocities
+    unit = f"{_angle_unit(_arm(run))}/s"
+    return Group("velocity_error", "velocity error", unit, _joint_series(run, errors))
+
+
+def other_positions(run: Run) -> Group:
+    """Positions of the joints that are not the arm's: fingers and their followers."""
+    arm = {column for column, _ in _arm(run)}
+    others = [(i, joint) for i, joint in enumerate(run.robot.joints) if i not in arm]
+    series = {
+        joint.name: _factor(joint) * run.signals.joint_positions[:, i]
+        for i, joint in others[:MOST_SERIES]
+    }
+    return Group("other_position", "other joints' position", _angle_unit(others), series)

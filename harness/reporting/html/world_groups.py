@@ -1,0 +1,152 @@
+"""What the tool, objects and contacts did, for the plots."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from harness.core.pose_arrays import compose, conjugate, quat_product, rotation_angle
+from harness.core.types import FloatArray
+from harness.recording.link_poses import link_poses
+from harness.recording.run import Pair, Run
+from harness.reporting.html.group import MOST_SERIES, Group
+
+
+def clearances(run: Run) -> Group:
+    """The pairs that came nearest."""
+    return Group("clearance", "clearance", "mm", _nearest(run, run.signals.clearances))
+
+
+def planned_clearances(run: Run) -> Group:
+    """The same, had the arm been at its commands."""
+    series = _nearest(run, run.signals.planned_clearances)
+    return Group("planned_clearance", "clearance of the commands", "mm", series)
+
+
+def _nearest(run: Run, clearances: Mapping[Pair, FloatArray]) -> dict[str, FloatArray]:
+    """Pairs by how near they came; those never nearer than the observer looks are left out."""
+    lowest = {
+        pair: float(np.nanmin(values))
+        for pair, values in clearances.items()
+        if np.isfinite(values).any()
+    }
+    seen = [pair for pair in lowest if lowest[pair] < run.signals.clearance_cutoff - 1e-9]
+    nearest = sorted(seen, key=lambda pair: (lowest[pair], pair))[:MOST_SERIES]
+    return {_pair_name(pair): 1e3 * clearances[pair] for pair in nearest}
+
+
+def _pair_name(pair: tuple[str, str]) -> str:
+    return f"{pair[0]} and itself" if pair[0] == pair[1] else f"{pair[0]} and {pair[1]}"
+
+
+def contacts(run: Run) -> Group:
+    """Forces between bodies; the robot's first, then the hardest."""
+    links = set(run.robot.link_names)
+    peaks = {pair: float(np.max(force)) for pair, force in run.signals.contact_forces.items()}
+    order = sorted(peaks, key=lambda pair: (not links & set(pair), -peaks[pair], pair))
+    series = {
+        _pair_name(pair): run.signals.contact_forces[pair]
+        for pair in order[:MOST_SERIES]
+        if peaks[pair] > 0
+    }
+    return Group("contact", "contact force", "N", series)
+
+
+def slip(run: Run) -> Group:
+    """How far a held object is from where the planner believes it to be."""
+    times = run.signals.times
+    series: dict[str, FloatArray] = {}
+    for held in run.attachments:
+        actual = run.signals.object_poses.get(held.represents)
+        if actual is None or not any(p.link == held.link for p in run.robot.placements):
+            continue
+        rows = np.flatnonzero((times >= held.start_time) & (times <= held.end_time))
+        if not len(rows):
+            continue
+        carrier = link_poses(run.robot, run.signals.joint_positions[rows], [held.link])[held.link]
+        believed = compose(carrier, np.array(held.pose_in_link))
+        distance = np.full(len(times), np.nan)
+        distance[rows] = 1e3 * np.linalg.norm(actual[rows, :3] - believed[:, :3], axis=1)
+        stands_for = "" if held.object == held.represents else f" ({held.represents})"
+        name = held.object + stands_for
+        series[name] = np.fmax(series[name], distance) if name in series else distance
+    return Group("slip", "held object, off its place in the plan", "mm", series)
+
+
+def tcp_position(run: Run) -> Group:
+    """Where the tool was."""
+    series = {axis: 1e3 * run.signals.tcp_pose[:, i] for i, axis in enumerate("xyz")}
+    return Group("tcp", "TCP position in world", "mm", series)
+
+
+def tcp_speed(run: Run) -> Group | None:
+    """How fast the tool moved."""
+    times = run.signals.times
+    if len(times) < 3:
+        return None
+    speed = np.linalg.norm(np.gradient(run.signals.tcp_pose[:, :3], times, axis=0), axis=1)
+    return Group("tcp_speed", "TCP speed", "mm/s", {"speed": 1e3 * speed})
+
+
+def _moving(run: Run) -> dict[str, FloatArray]:
+    """Simulated objects that moved, those that moved most first."""
+    found: dict[str, tuple[float, FloatArray]] = {}
+    for obj in run.objects:
+        poses = run.signals.object_poses.get(obj.name)
+        if poses is None or obj.is_static or not obj.in_simulation:
+            continue
+        known = poses[np.isfinite(poses).all(axis=1), :3]
+        travel = float(np.ptp(known, axis=0).max()) if len(known) else 0.0
+        if travel > 1e-3:
+            found[obj.name] = (travel, poses)
+    order = sorted(found, key=lambda name: (-found[name][0], name))[:MOST_SERIES]
+    return {name: found[name][1] for name in order}
+
+
+def heights(run: Run) -> Group:
+    """How far objects rose."""
+    series = {name: 1e3 * (poses[:, 2] - _first(poses)[2]) for name, poses in _moving(run).items()}
+    return Group("height", "object height gained", "mm", series)
+
+
+def displacements(run: Run) -> Group:
+    """How far objects are from where they stood first."""
+    series = {
+        name: 1e3 * np.linalg.norm(poses[:, :3] - _first(poses)[:3], axis=1)
+        for name, poses in _moving(run).items()
+    }
+    return Group("displacement", "object displacement", "mm", series)
+
+
+def _first(poses: FloatArray) -> FloatArray:
+    return poses[int(np.isfinite(poses).all(axis=1).argmax())]
+
+
+def tcp_turn(run: Run) -> Group:
+    """How far the tool has turned from its orientation at the begin."""
+    quats = run.signals.tcp_pose[:, 3:]
+    series = {"turn": _turned(quats, quats[0])}
+    return Group("tcp_turn", "TCP orientation, turned from the start", "°", series)
+
+
+def turns(run: Run) -> Group:
+    """How far objects have turned from how they stood first."""
+    series = {
+        name: _turned(poses[:, 3:], _first(poses)[3:]) for name, poses in _moving(run).items()
+    }
+    return Group("turn", "object turned from the start", "°", series)
+
+
+def _turned(quats: FloatArray, first: FloatArray) -> FloatArray:
+    """Angle of orientations from one of them [deg]."""
+    return np.rad2deg(rotation_angle(quat_product(conjugate(first), quats)))
+
+
+def frame_travel(run: Run) -> Group:
+    """How far links that expectations observe are from where they began."""
+    series = {
+        name: 1e3 * np.linalg.norm(poses[:, :3] - poses[0, :3], axis=1)
+        for name, poses in list(run.signals.frames.items())[:MOST_SERIES]
+    }
+    return Group("frame", "observed link, from the start", "mm", series)
