@@ -11,6 +11,7 @@ from harness.core.camera import Camera
 from harness.recording.run import CaptureRecord, VideoRecord
 from harness.recording.store import StoredRun
 from harness.reporting.html.page import page_html
+from harness.reporting.terminal import failure_place
 from harness.session.run_case import run_case
 from tests.assertions.synthetic_run import lift_run
 
@@ -26,6 +27,7 @@ scenario: Too far
 robot: {model: ur3e, base: {xyz: [0, 0, 1.02]}}
 world: lesson_ur
 steps:
+  - ptp: {joints: {shoulder_pan_joint: 0.1}}
   - move_to: {pose: {frame: base_link, xyz: [0.9, 0, 0.3], quat_wxyz: [1, 0, 0, 0]}}
 """
 
@@ -131,7 +133,8 @@ def test_a_failure_shows_its_stages_and_the_nearest_state(visit, tmp_path):
     file.write_text(UNREACHABLE)
     result = run_case(file, report_dir=tmp_path / "run", stills=False)
     assert result.outcome == "failed"
-    page = visit(result.page, "#tab=planner").page
+    page = visit(result.page, f"{failure_place(result)}&tab=planner").page
+    assert page.locator("#steps .bad[aria-current]").count() == 1, "the terminal's link leads to it"
     assert page.locator(".stages li").count() == 5
     assert page.locator(".stages .bad b").first.inner_text() == "reach"
     assert "What to do" in page.inner_text("#panel-planner")

@@ -21,6 +21,7 @@ import { makeTimeline, stepAt } from "./timeline.js";
 import { verdictList } from "./verdicts.js";
 import { Viewer } from "./viewer.js";
 
+const ROUNDING = 0.0051; // of times in an address [s]
 const PRESSES_TOLD = 3;
 const GRIP = 20; // a force [N] at which a body in contact glows fully
 
@@ -142,11 +143,20 @@ async function start() {
     if (failed >= 0 || (!run.verdicts.length && run.steps.some(({ status }) => status === "expected_error"))) showTab("planner");
   }
 
+  /** The step that failed at a time that the terminal rounded. */
+  function selectFailureAt(time) {
+    const failed = run.steps.findIndex(({ status, hasChildren, end }) => status === "failed" && !hasChildren && Math.abs(end - time) <= ROUNDING);
+    if (time === null || failed < 0) return false;
+    selectStep(failed);
+    return true;
+  }
+
   function goTo(hash) {
     const place = readAddress(hash);
     if (place.tab && document.getElementById(`tab-${place.tab}`)) showTab(place.tab);
     if (place.expect !== null && run.verdicts[place.expect]) selectVerdict(place.expect);
     else if (place.step !== null && run.steps[place.step]) selectStep(place.step);
+    else if (selectFailureAt(place.time)) return;
     if (place.time !== null) clock.seek(place.time);
   }
 
