@@ -171,6 +171,8 @@ def recorded_distances(run: Run, first: str, second: str) -> dict[Key, FloatArra
 
 def _names_of(run: Run, word: str) -> list[str]:
     """A name, and those that stand for it, or that it stands for, while attached."""
+    if "attachments" in run.unrecorded:
+        return [word]
     names = {word}
     for record in run.attachments:
         if word in (record.object, record.represents):

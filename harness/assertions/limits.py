@@ -31,6 +31,8 @@ def gripper_joints(run: Run) -> frozenset[str]:
 def resting_joints(run: Run) -> frozenset[str]:
     """Joints that may lean on their stops: the gripper's, followers, and idle ones off the arm."""
     names = gripper_joints(run) | {joint.name for joint in run.robot.joints if joint.is_mimic}
+    if "joint_commands" in run.unrecorded:
+        return names
     others = names | set(run.robot.groups.get(run.robot.arm_group, ()))
     for column, joint in enumerate(run.robot.joints):
         if joint.name in others:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any, cast
 
 from harness.assertions.window import NotObservable
-from harness.recording.run import Run, Signals
+from harness.recording.run import AttachmentRecord, Run, Signals
 
 WORDS = {
     "joint_velocities": "the velocities of the joints",
@@ -33,8 +34,19 @@ class _Guarded:
         return getattr(self._signals, name)
 
 
+class _NoAttachments(tuple[AttachmentRecord, ...]):
+    """What the planner attached, where nobody recorded it; looking at it raises NotObservable."""
+
+    __slots__ = ()
+
+    def __iter__(self) -> Iterator[AttachmentRecord]:
+        raise NotObservable("what the planning scene attached was not recorded")
+
+
 def guarded(run: Run) -> Run:
     """The same run; a signal that it does not have cannot be read as if nothing had happened."""
     if not run.unrecorded:
         return run
+    if "attachments" in run.unrecorded:
+        run = replace(run, attachments=_NoAttachments())
     return replace(run, signals=cast("Signals", _Guarded(run.signals, run.unrecorded)))

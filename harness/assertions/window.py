@@ -53,11 +53,14 @@ def window_of(run: Run, step_id: str) -> Window:
 
     Raises:
         NotReached: There is no such step, it was not reached, or nothing was recorded in it.
+        NotObservable: Nobody recorded when steps ran.
     """
     if not step_id:
         window = Window(run, 0, len(run.signals.times))
     else:
         step = next((step for step in run.steps if step_id in (step.id, step.path)), None)
+        if step is None and "steps" in run.unrecorded:
+            raise NotObservable(f"when step '{step_id}' ran was not recorded")
         if step is None:
             raise NotReached(f"there is no step '{step_id}' in this run")
         if step.status == "not_reached":

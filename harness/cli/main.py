@@ -77,6 +77,7 @@ def _parser() -> argparse.ArgumentParser:
     _list_options(command("list", "list what a scenario may name", module="listing"))
     _view_options(command("view", "open the page of a run"))
     _judge_options(command("judge", "judge a saved run again"))
+    _grade_options(command("grade", "grade a recording of another program by a scenario"))
     _compare_options(command("compare", "tell what changed from one saved run to another"))
     _new_options(command("new", "write a commented scenario that passes"))
     _export_options(command("export", "write a saved run as a rosbag2, and its robot as a URDF"))
@@ -193,6 +194,22 @@ def _judge_options(judge: argparse.ArgumentParser) -> None:
     judge.add_argument("--with", metavar="FILE", dest="with_file",
                        help="by the expectations of this scenario")  # fmt: skip
     judge.add_argument("--json", action="store_true", help="one JSON document on stdout")
+
+
+def _grade_options(grade: argparse.ArgumentParser) -> None:
+    grade.add_argument("scenario", metavar="SCENARIO", help="a scenario file, or a bundled name")
+    grade.add_argument("bag", metavar="BAG", help="a rosbag2 folder, an .mcap or a .db3 file")
+    grade.add_argument("--joint-states", metavar="TOPIC", default="/joint_states",
+                       help="where the joints are (default: /joint_states)")  # fmt: skip
+    grade.add_argument("--objects", metavar="TOPIC", action="append", default=[],
+                       help="a topic with poses of objects by name: TFMessage, as Gazebo's bridge"
+                       " sends them, or ModelStates")  # fmt: skip
+    grade.add_argument("--object", metavar="NAME=TOPIC", dest="object_poses", action="append",
+                       type=_object_topic, default=[],
+                       help="the topic with the pose of one object")  # fmt: skip
+    grade.add_argument("--set", metavar="PATH=VALUE", dest="overrides", action="append",
+                       type=_override, default=[], help="change a value of the file")  # fmt: skip
+    grade.add_argument("--json", action="store_true", help="one JSON document on stdout")
 
 
 def _compare_options(compare: argparse.ArgumentParser) -> None:
@@ -322,6 +339,13 @@ def _names(text: str) -> list[str]:
     if not names:
         raise argparse.ArgumentTypeError("no planner is named")
     return list(dict.fromkeys(names))
+
+
+def _object_topic(text: str) -> tuple[str, str]:
+    name, equals, topic = text.partition("=")
+    if not equals or not name.strip() or not topic.strip():
+        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=TOPIC, as in red_box=/red_box/pose")
+    return name.strip(), topic.strip()
 
 
 def _count(text: str) -> int:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import PurePath
 from typing import Any
 
+from harness.recording.plain import to_plain
 from harness.recording.run import Run, StepRecord, Verdict
 from harness.recording.store import StoredRun
 from harness.reporting.rosbag.messages import Log, String, stamp
@@ -57,7 +58,8 @@ def events(stored: StoredRun) -> list[Event]:
     first, last = float(run.signals.times[0]), float(run.signals.times[-1])
     head = {"event": "run_started", "scenario": run.scenario, "case": run.case, "seed": run.seed}
     tail = {"event": "run_finished", "outcome": stored.outcome, "digest": stored.digest}
-    told = [*_steps(run), *_findings(run, last), *(_verdict(v, last) for v in stored.verdicts)]
+    told = [*_steps(run), *_attachments(run), *_findings(run, last)]
+    told += [_verdict(verdict, last) for verdict in stored.verdicts]
     return [
         Event(first, f"run: {run.scenario}", Log.INFO, head),
         *sorted(told, key=lambda event: event.time),
@@ -99,6 +101,7 @@ def _started(step: StepRecord) -> Event:
 def _finished(step: StepRecord) -> Event:
     content = _step("step_finished", step) | {"status": step.status}
     content |= {"error_code": step.error_code, "message": step.message}
+    content |= {"result": to_plain(step.result)}
     said = f"{step.id}: {step.status}"
     said += f": {step.error_code}: {step.message}" if step.error_code else ""
     return Event(step.end_time, said, _level(step.status != "failed"), content)
@@ -107,6 +110,22 @@ def _finished(step: StepRecord) -> Event:
 def _not_reached(step: StepRecord, end: float) -> Event:
     said = f"{step.id}: not reached"
     return Event(end, said, Log.WARN, _step("step_not_reached", step))
+
+
+def _attachments(run: Run) -> list[Event]:
+    """What the planning scene fixed to a link, and let go."""
+    told: list[Event] = []
+    for record in run.attachments:
+        content = {"object": record.object, "link": record.link, "represents": record.represents}
+        pose = {"pose_in_link": list(record.pose_in_link)}
+        begin = {"event": "attached", **content, **pose}
+        said = f"{record.object} attached to {record.link}"
+        told.append(Event(record.start_time, said, Log.INFO, begin))
+        if math.isfinite(record.end_time):
+            end = {"event": "detached", **content}
+            said = f"{record.object} detached from {record.link}"
+            told.append(Event(record.end_time, said, Log.INFO, end))
+    return told
 
 
 def _findings(run: Run, last: float) -> list[Event]:

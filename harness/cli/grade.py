@@ -1,0 +1,86 @@
+"""`harness grade`: a recording of another program, by a scenario's expectations."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from harness.cli.output import guarded, only_json_on_stdout, say
+from harness.suite.discovery import UsageError, discover
+from harness.suite.outcome import EXIT_CODES
+
+if TYPE_CHECKING:
+    from harness.session.grade import Grade, Graded
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Judge a recording and print points with reasons."""
+    return guarded(lambda: _run(arguments))
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    scenarios = discover([arguments.scenario])
+    if len(scenarios) != 1:
+        raise UsageError(f"'{arguments.scenario}' holds {len(scenarios)} scenarios; name one")
+    from harness.importers.bag.content import BagTopics
+    from harness.session.grade import grade_bag
+
+    topics = BagTopics(
+        arguments.joint_states, tuple(arguments.objects), dict(arguments.object_poses)
+    )
+    if arguments.json:
+        with only_json_on_stdout() as write_json:
+            grade = grade_bag(scenarios[0], Path(arguments.bag), topics, dict(arguments.overrides))
+            write_json(_document(grade))
+        return _code(grade)
+    grade = grade_bag(scenarios[0], Path(arguments.bag), topics, dict(arguments.overrides))
+    _tell(grade)
+    return _code(grade)
+
+
+def _code(grade: Grade) -> int:
+    """0 when every point is earned; what is worth none decides nothing."""
+    is_full = bool(grade.rows) and all(row.earned == row.points for row in grade.rows)
+    return 0 if is_full else EXIT_CODES["failed"]
+
+
+def _tell(grade: Grade) -> None:
+    from harness.reporting.terminal import Style, measure_text, verdict_line
+
+    style = Style.of(sys.stdout)
+    for note in grade.notes:
+        say(f"note: {note}")
+    for row in grade.rows:
+        verdict = row.verdict
+        place = f"line {verdict.line}: " if verdict.line else ""
+        is_seen = verdict.status != "not observable"
+        mark = style.mark(verdict.status == "passed") if is_seen else "?"
+        say(f"{mark} {_points(row):>9}  {place}{verdict.expectation}: {verdict_line(verdict)}")
+        if verdict.status == "failed":
+            for measure in verdict.measures:
+                say(f"{'':15}{measure_text(measure)}")
+    text = f"{grade.earned:g} of {grade.points:g} points"
+    if grade.open:
+        text += f"; {grade.open:g} of them cannot be seen in this recording"
+    say(text)
+
+
+def _points(row: Graded) -> str:
+    if row.verdict.status == "not observable":
+        return f"?/{row.points:g}"
+    return f"{row.earned:g}/{row.points:g}"
+
+
+def _document(grade: Grade) -> object:
+    return {
+        "format": "armharness-grade/1",
+        "exit_code": _code(grade),
+        "recording": grade.run.file,
+        "points": grade.points,
+        "earned": grade.earned,
+        "not_observable": grade.open,
+        "rows": grade.rows,
+        "notes": grade.notes,
+    }

@@ -1,0 +1,127 @@
+"""Steps and attachments that a recording's events tell of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, get_args
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.importers.bag.clocks import Timeline
+from harness.importers.bag.content import BagContent
+from harness.recording.run import AttachmentRecord, StepRecord, StepStatus
+
+RESOLUTION = 1e-6
+"""Of times that are compared [s]; stamps are whole nanoseconds."""
+STATUSES: Mapping[str, StepStatus] = {status: status for status in get_args(StepStatus)}
+Timed = tuple[float, dict[str, Any]]
+
+
+def timed_events(content: BagContent, timeline: Timeline) -> list[Timed]:
+    """Every event with its time [s], in order."""
+    logged = np.array([time for time, _ in content.events], dtype=np.int64)
+    moments = timeline.at_logged(logged).tolist() if len(logged) else []
+    timed = zip(moments, (event for _, event in content.events), strict=True)
+    return sorted(((time, event) for time, event in timed if time >= -RESOLUTION), key=_moment)
+
+
+def steps_of(
+    events: list[Timed], times: FloatArray, known: Mapping[str, tuple[int, str]]
+) -> tuple[StepRecord, ...]:
+    """Steps that began; one whose end nobody tells lasts to the next one's begin, or to the end.
+
+    Args:
+        events: In order of time.
+        times: Of the run's samples [s].
+        known: Line and summary of the scenario's steps, by id and by path.
+    """
+    events = [(time, event) for time, event in events if "step" in event]
+    steps: list[StepRecord] = []
+    for number, (begin, event) in enumerate(events):
+        if event.get("event") == "step_not_reached":
+            steps.append(_step(event, known, (begin, begin), times, "not_reached"))
+        elif event.get("event") == "step_started":
+            end, told = _end(event, events[number + 1 :], float(times[-1]))
+            said = str(told.get("status"))
+            status: StepStatus = STATUSES.get(said, "passed")
+            steps.append(_step({**event, **told}, known, (begin, end), times, status))
+    return tuple(steps)
+
+
+def attachments_of(events: list[Timed]) -> tuple[AttachmentRecord, ...]:
+    """What the planner fixed to links."""
+    records: list[AttachmentRecord] = []
+    for number, (begin, event) in enumerate(events):
+        pose: Any = event.get("pose_in_link")
+        if event.get("event") != "attached" or not _is_pose(pose):
+            continue
+        name = str(event.get("object"))
+        ends = (
+            time
+            for time, other in events[number + 1 :]
+            if other.get("event") == "detached" and str(other.get("object")) == name
+        )
+        records.append(
+            AttachmentRecord(
+                object=name,
+                link=str(event.get("link")),
+                start_time=begin,
+                end_time=next(ends, float("inf")),
+                pose_in_link=tuple(float(value) for value in pose),
+                represents=str(event.get("represents", name)),
+            )
+        )
+    return tuple(records)
+
+
+def _end(event: dict[str, Any], later: list[Timed], last: float) -> Timed:
+    """When a step ended, and what was said of it then."""
+    for time, other in later:
+        if other.get("event") == "step_finished" and _path(other) == _path(event):
+            return time, other
+    begins = (time for time, other in later if other.get("event") == "step_started")
+    return next(begins, last), {}
+
+
+def _is_pose(value: object) -> bool:
+    return (
+        isinstance(value, list)
+        and len(value) == 7
+        and all(isinstance(each, int | float) for each in value)
+    )
+
+
+def _moment(timed: Timed) -> float:
+    return timed[0]
+
+
+def _path(event: Mapping[str, Any]) -> str:
+    return str(event.get("path", event["step"]))
+
+
+def _step(
+    event: Mapping[str, Any],
+    known: Mapping[str, tuple[int, str]],
+    span: tuple[float, float],
+    times: FloatArray,
+    status: StepStatus,
+) -> StepRecord:
+    name, path = str(event["step"]), _path(event)
+    line, summary = known.get(name, known.get(path, (0, "")))
+    begin, end = span
+    return StepRecord(
+        id=name,
+        path=path,
+        verb=str(event.get("verb", "")),
+        summary=str(event.get("summary", summary)),
+        line=line,
+        status=status,
+        start_time=begin,
+        end_time=end,
+        start_index=int(np.searchsorted(times, begin - RESOLUTION)),
+        end_index=int(np.searchsorted(times, end + RESOLUTION)),
+        error_code=str(event.get("error_code", "")),
+        message=str(event.get("message", "")),
+        result=event["result"] if isinstance(event.get("result"), dict) else {},
+    )

@@ -1,0 +1,139 @@
+"""Joints of a recording in the robot's order, at the times of the arm's messages."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.core.pose_arrays import relative, rotation_vector
+from harness.core.types import FloatArray
+from harness.importers.bag.clocks import Timeline
+from harness.importers.bag.content import BagContent, Track, Tracks
+from harness.importers.bag.sampling import rows_at
+from harness.recording.run import LinkPlacement
+from harness.robot.description import RobotDescription
+
+
+@dataclass(frozen=True, eq=False)
+class JointRows:
+    """Joints at each sample, in description order, shape (N, n); NaN where nothing is known."""
+
+    positions: FloatArray
+    velocities: FloatArray
+    efforts: FloatArray
+
+
+def reference_track(content: BagContent, description: RobotDescription) -> Track | None:
+    """The messages that give the run its samples: those with most of the arm's joints.
+
+    Where there are no joint states, those of the frame that an arm's joint moves.
+    """
+    arm = set(description.groups[description.arm_group].joint_names)
+    known = [
+        (len(arm & set(names)), len(track.logged), names) for names, track in content.joints.items()
+    ]
+    best = max(known, default=(0, 0, ()))
+    if best[0]:
+        return content.joints[best[2]]
+    for joint in description.joints:
+        if joint.name in arm and (joint.parent, joint.child) in content.edges:
+            return content.edges[joint.parent, joint.child]
+    return None
+
+
+def sample_times(reference: Track, timeline: Timeline) -> FloatArray:
+    """Times of the run's samples [s], rising, from 0."""
+    times, is_judged = timeline.rows(reference, "joint states")
+    return np.unique(times[is_judged])
+
+
+def joint_rows(
+    tracks: Tracks, description: RobotDescription, timeline: Timeline, times: FloatArray, name: str
+) -> JointRows:
+    """Every joint that messages name; of several publishers each gives its own.
+
+    A joint that follows another and is in no message is where that one puts it.
+    """
+    joints = description.movable_joints
+    values = np.full((3, len(times), len(joints)), np.nan)
+    for column, joint in enumerate(joints):
+        seconds, rows = _rows_of(joint.name, tracks, timeline, name)
+        for kind in range(3):
+            known = ~np.isnan(rows[:, kind])
+            if known.any():
+                found = rows_at(seconds[known], rows[known, kind : kind + 1], times)
+                values[kind, :, column] = found[:, 0]
+    index = description.joint_index
+    for column, joint in enumerate(joints):
+        if joint.mimic is not None and np.isnan(values[0, :, column]).all():
+            followed = values[:, :, index[joint.mimic.joint]]
+            values[0, :, column] = joint.mimic.multiplier * followed[0] + joint.mimic.offset
+            values[1, :, column] = joint.mimic.multiplier * followed[1]
+    return JointRows(*values)
+
+
+def _rows_of(
+    joint: str, tracks: Tracks, timeline: Timeline, name: str
+) -> tuple[FloatArray, FloatArray]:
+    """Times and (position, velocity, effort) of a joint in all messages that name it."""
+    times: list[FloatArray] = []
+    rows: list[FloatArray] = []
+    for names, track in tracks.items():
+        if joint in names:
+            place, count = names.index(joint), len(names)
+            seconds, is_judged = timeline.rows(track, name)
+            times.append(seconds[is_judged])
+            rows.append(track.rows()[is_judged][:, [place, count + place, 2 * count + place]])
+    if not times:
+        return np.zeros(0), np.zeros((0, 3))
+    return np.concatenate(times), np.concatenate(rows)
+
+
+def joints_of_frames(
+    content: BagContent,
+    placements: Mapping[str, LinkPlacement],
+    description: RobotDescription,
+    timeline: Timeline,
+    times: FloatArray,
+) -> JointRows:
+    """Joint positions from the frames that the joints move, where there are no joint states."""
+    positions = np.full((len(times), len(description.movable_joints)), np.nan)
+    for column, joint in enumerate(description.movable_joints):
+        track = content.edges.get((joint.parent, joint.child))
+        if track is None:
+            continue
+        placement = placements[joint.child]
+        moved = relative(np.array([placement.pose]), track.rows())
+        axis = np.array(placement.axis)
+        values = (moved[:, :3] if placement.slides else rotation_vector(moved[:, 3:])) @ axis
+        seconds, is_judged = timeline.rows(track, "/tf")
+        if is_judged.any():
+            order = np.argsort(seconds[is_judged], kind="stable")
+            turned = values[is_judged][order]
+            turned = turned if placement.slides else np.unwrap(turned)
+            positions[:, column] = rows_at(seconds[is_judged][order], turned[:, None], times)[:, 0]
+    unknown = np.full_like(positions, np.nan)
+    return JointRows(positions, unknown, unknown.copy())
+
+
+def foreign_links(content: BagContent, placements: Mapping[str, LinkPlacement]) -> list[str]:
+    """What the recording's frames say against this robot being the one that was recorded.
+
+    How a link hangs on its parent does not change while its joint turns, but for its rotation.
+    """
+    told: list[str] = []
+    for edges in (content.edges, content.static_edges):
+        for (parent, child), track in sorted(edges.items()):
+            placement = placements.get(child)
+            if placement is None or placement.parent != parent or placement.slides:
+                continue
+            place, recorded = np.array(placement.pose[:3]), track.rows()[0, :3]
+            apart = float(np.linalg.norm(recorded - place))
+            if apart > 0.005:
+                told.append(
+                    f"{child} hangs {1000 * apart:.0f} mm elsewhere on {parent} in the recording"
+                    " than on this robot: is it the same robot, on the same base?"
+                )
+    return told

@@ -1,0 +1,99 @@
+"""Messages of an MCAP file, record by record, in the order in which the file holds them.
+
+QoS metadata is not looked at: its many dialects are no reason to refuse a recording.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import zstandard
+from lz4.frame import LZ4FrameDecompressor
+from mcap.exceptions import EndOfFile, McapError
+from mcap.records import Channel, Chunk, Message, Schema
+from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
+
+from harness.core.errors import HarnessError
+from harness.importers.bag.raw import LARGEST_RECORD, RawMessage, bag_error, unzstd
+
+RECOVER = "`mcap recover FILE -o WHOLE.mcap` saves what is whole"
+"""What to do with an MCAP file that its recorder did not close."""
+
+
+def mcap_messages(file: Path, named: Path) -> Iterator[RawMessage]:
+    """Every message of an MCAP file.
+
+    Args:
+        file: To be read.
+        named: As the user knows it; the same, unless it was unpacked for this.
+
+    Raises:
+        SpecError: It is empty, damaged, or not of its kind.
+    """
+    if not file.stat().st_size:
+        raise bag_error(named, "is empty")
+    schemas: dict[int, str] = {}
+    channels: dict[int, Channel] = {}
+    with file.open("rb") as stream:
+        try:
+            for record in _mcap_records(stream, named):
+                if isinstance(record, Schema):
+                    schemas[record.id] = record.name
+                elif isinstance(record, Channel):
+                    channels[record.id] = record
+                elif isinstance(record, Message):
+                    channel = channels[record.channel_id]
+                    msgtype = schemas.get(channel.schema_id, "")
+                    if channel.message_encoding == "cdr":
+                        yield RawMessage(channel.topic, msgtype, record.log_time, record.data)
+        except HarnessError:
+            raise
+        except EndOfFile as error:
+            raise bag_error(
+                named, f"is cut off after {file.stat().st_size} bytes", RECOVER
+            ) from error
+        except CRCValidationError as error:
+            place = f"near byte {stream.tell()}"
+            raise bag_error(named, f"is damaged {place}: a checksum is wrong", RECOVER) from error
+        except (
+            McapError,
+            KeyError,
+            ValueError,
+            IndexError,
+            OverflowError,
+            UnicodeDecodeError,
+        ) as error:
+            place = f"near byte {stream.tell()}"
+            raise bag_error(named, f"is damaged {place}, or no MCAP file: {error}") from error
+        except (zstandard.ZstdError, RuntimeError, OSError) as error:
+            place = f"near byte {stream.tell()}"
+            raise bag_error(named, f"cannot be read {place}: {error}") from error
+
+
+def _mcap_records(stream: Any, named: Path) -> Iterator[Any]:
+    """Records, those of chunks after their chunk was unpacked within bounds."""
+    reader = StreamReader(stream, emit_chunks=True, record_size_limit=LARGEST_RECORD)
+    for record in reader.records:
+        if isinstance(record, Chunk):
+            yield from breakup_chunk(_unpacked_chunk(record, named), validate_crc=True)
+        else:
+            yield record
+
+
+def _unpacked_chunk(chunk: Chunk, named: Path) -> Chunk:
+    size = chunk.uncompressed_size
+    if size > LARGEST_RECORD:
+        raise bag_error(named, f"has a chunk of {size} bytes; {LARGEST_RECORD} are read")
+    match chunk.compression:
+        case "":
+            data = chunk.data
+        case "zstd":
+            data = unzstd(chunk.data, size, named)
+        case "lz4":
+            data = LZ4FrameDecompressor().decompress(chunk.data, max_length=size)
+        case other:
+            raise bag_error(named, f"has chunks compressed by '{other}'; known: zstd, lz4")
+    return replace(chunk, compression="", data=data)

@@ -1,0 +1,207 @@
+"""A recording as a run: what it holds, in the nouns that expectations are judged by."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from harness.core.types import BoolArray, FloatArray
+from harness.core.world import WorldObject
+from harness.importers.bag.clocks import Timeline
+from harness.importers.bag.content import BagContent, BagTopics
+from harness.importers.bag.events import Timed, attachments_of, steps_of, timed_events
+from harness.importers.bag.frames import Frames
+from harness.importers.bag.joints import (
+    foreign_links,
+    joint_rows,
+    joints_of_frames,
+    reference_track,
+    sample_times,
+)
+from harness.importers.bag.raw import bag_error
+from harness.importers.bag.reader import read_bag
+from harness.recording.link_poses import link_poses
+from harness.recording.run import (
+    Finding,
+    ObjectRecord,
+    RobotRecord,
+    Run,
+    Signals,
+)
+from harness.robot.description import RobotDescription
+
+NEVER_THERE = ("contact_forces", "grip_forces", "clearances", "planned_clearances")
+"""Signals that no recording has."""
+JOINT_SIGNALS = (
+    "joint_velocities",
+    "joint_efforts",
+    "joint_commands",
+    "joint_command_velocities",
+)
+FINDING = "recording"
+
+
+@dataclass(frozen=True, eq=False)
+class Recorded:
+    """What a scenario knows of what was recorded.
+
+    Attributes:
+        robot: The robot, as records have it.
+        description: The same, in full.
+        objects: Those of the world, then those that steps add.
+        at_start: Names of those of the world.
+        frames: Links whose poses expectations need.
+        steps: Line and summary by id and by path.
+    """
+
+    robot: RobotRecord
+    description: RobotDescription
+    objects: Sequence[WorldObject]
+    at_start: frozenset[str]
+    frames: Sequence[str]
+    steps: Mapping[str, tuple[int, str]]
+    title: str
+    gravity: tuple[float, float, float]
+
+
+def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
+    """Read a recording as a run; what it lacks is named in `unrecorded`, and in findings.
+
+    Raises:
+        SpecError: It cannot be read, or holds no joints of this robot.
+    """
+    content = read_bag(path, topics)
+    reference = reference_track(content, known.description)
+    if reference is None:
+        raise _no_joints(path, topics, content, known)
+    timeline = Timeline(reference)
+    times = sample_times(reference, timeline)
+    if len(times) < 2:
+        raise bag_error(path, "has joints at one moment only; there is nothing to judge")
+    placements = {placement.link: placement for placement in known.robot.placements}
+    if content.joints:
+        measured = joint_rows(
+            content.joints, known.description, timeline, times, topics.joint_states
+        )
+    else:
+        content.notes.append("there are no joint states; the joints are read from /tf")
+        measured = joints_of_frames(content, placements, known.description, timeline, times)
+    commanded = joint_rows(content.commands, known.description, timeline, times, "/joint_commands")
+    links = link_poses(known.robot, measured.positions)
+    frames = Frames(content, links, timeline, times)
+    poses = {obj.name: frames.pose(obj.name) for obj in known.objects if frames.knows(obj.name)}
+    signals = Signals(
+        times=times,
+        joint_positions=measured.positions,
+        joint_velocities=measured.velocities,
+        joint_efforts=measured.efforts,
+        joint_commands=commanded.positions,
+        joint_command_velocities=commanded.velocities,
+        tcp_pose=_whole(links[known.robot.tcp_link], times),
+        frames={name: _whole(links[name], times) for name in known.frames if name in links},
+        object_poses=poses,
+    )
+    events = timed_events(content, timeline)
+    steps, attachments = steps_of(events, times, known.steps), attachments_of(events)
+    notes = [
+        *content.notes,
+        *timeline.notes,
+        *frames.notes,
+        *foreign_links(content, placements),
+        *_gaps(known, signals),
+    ]
+    return Run(
+        scenario=known.title,
+        file=str(path),
+        case="",
+        seed=0,
+        robot=known.robot,
+        objects=tuple(_object_record(obj, known, poses, times) for obj in known.objects),
+        attachments=attachments,
+        steps=steps,
+        signals=signals,
+        gravity=known.gravity,
+        timestep=float(np.median(np.diff(times))),
+        findings=tuple(Finding(FINDING, note) for note in notes),
+        unrecorded=_unrecorded(signals, events, has_steps=bool(steps)),
+    )
+
+
+def _unrecorded(signals: Signals, events: list[Timed], *, has_steps: bool) -> tuple[str, ...]:
+    """What the recording lacks; events of a run of ours are whole, others' may say only steps."""
+    names = [name for name in JOINT_SIGNALS if np.isnan(getattr(signals, name)).all()]
+    if not any(event.get("event") == "run_started" for _, event in events):
+        names += ["attachments"] if has_steps else ["attachments", "steps"]
+    return (*names, *NEVER_THERE)
+
+
+def _object_record(
+    obj: WorldObject, known: Recorded, poses: Mapping[str, FloatArray], times: FloatArray
+) -> ObjectRecord:
+    """An object whose pose no topic gives is where the scenario puts it, if it cannot move."""
+    is_known = obj.name not in poses and obj.is_static and obj.name in known.at_start
+    return ObjectRecord(
+        name=obj.name,
+        is_static=obj.is_static,
+        in_planning=obj.in_planning,
+        in_simulation=obj.in_simulation,
+        shapes=obj.visuals or obj.shapes,
+        present=((float(times[0]), float(times[-1])),),
+        pose=tuple(float(value) for value in obj.pose.as_vector()) if is_known else (),
+        mass=obj.mass,
+    )
+
+
+def _gaps(known: Recorded, signals: Signals) -> list[str]:
+    """Joints and objects of which something is missing."""
+    told: list[str] = []
+    unknown: BoolArray = np.isnan(signals.joint_positions)
+    names = [joint.name for joint in known.robot.joints]
+    without = [
+        name for name, gone in zip(names, np.all(unknown, axis=0).tolist(), strict=True) if gone
+    ]
+    if without:
+        told.append(f"nothing is recorded of the joints {', '.join(without)}")
+    for column, name in enumerate(names):
+        gone = unknown[:, column]
+        if gone.any() and name not in without:
+            told.append(f"{name} is not known from t={signals.times[gone][0]:.3f} s on for a while")
+    for name, poses in sorted(signals.object_poses.items()):
+        gone = np.isnan(poses[:, 0])
+        if gone.any():
+            share = 100 * float(gone.mean())
+            first = signals.times[gone][0]
+            told.append(f"{name}: no pose for {share:.0f} % of the time, first at t={first:.3f} s")
+    dynamic = [obj.name for obj in known.objects if not obj.is_static]
+    lost = [name for name in dynamic if name not in signals.object_poses]
+    if lost:
+        told.append(f"nobody recorded where {', '.join(lost)} stood")
+    return told
+
+
+def _whole(poses: FloatArray, times: FloatArray) -> FloatArray:
+    return np.array(np.broadcast_to(poses, (len(times), 7)))
+
+
+def _no_joints(path: Path, topics: BagTopics, content: BagContent, known: Recorded) -> Exception:
+    wanted = known.robot.groups[known.robot.arm_group]
+    if content.joints:
+        seen = sorted({name for names in content.joints for name in names})
+        return bag_error(
+            path,
+            f"{topics.joint_states} names none of the arm's joints, but {', '.join(seen[:12])}",
+            f"this robot's: {', '.join(wanted)}",
+        )
+    others = [n for n, (kind, _) in sorted(content.topics.items()) if kind.endswith("/JointState")]
+    if others:
+        hint = f"joint states there: {', '.join(others)} (--joint-states TOPIC)"
+    else:
+        hint = (
+            f"its topics: {', '.join(sorted(content.topics)[:20])}"
+            if content.topics
+            else "it holds no messages"
+        )
+    return bag_error(path, f"has no {topics.joint_states} and no frames of this robot in /tf", hint)
