@@ -13,6 +13,7 @@ from typing import Any
 from harness.core.errors import RobotError
 from harness.core.resources import data_folder
 from harness.robot.acceleration import with_possible_accelerations
+from harness.robot.bare_arm import without_gripper
 from harness.robot.calibration import calibrated
 from harness.robot.compose import Part, compose
 from harness.robot.description import Joint, RobotDescription
@@ -74,6 +75,8 @@ def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
         if tool is not None:
             raise RobotError(f"robot.model: '{spec.model}' is a gripper and carries no other one")
         main, tool = None, main
+    if main is not None and tool is not None:
+        main = without_gripper(main)
     if spec.kinematics is not None:
         main = _calibrated(main, find_file(spec.kinematics, "kinematics", base_dir, ()))
     description = compose(main, tool, spec.base.se3())

@@ -81,6 +81,12 @@ class Mount(Placement):
     tcp: ToolCenterPoint
 
 
+class Flange(Placement):
+    """Where another gripper goes in place of the arm's own; grippers point along its +z."""
+
+    link: Name
+
+
 class CameraFacts(CameraFields):
     """A camera on a link, in the words of SDF's camera sensor; looks along +x of its pose."""
 
@@ -100,7 +106,8 @@ class RobotYaml(SpecModel):
     """A robot's folder.
 
     Attributes of an arm: `arm_group`, `tcp_link`, `flange_link` (where grippers go; absent when
-    none can), `ik_solver`. Of a gripper: `mount`. Either may have a `gripper` section.
+    none can), `flange` (where one goes in place of its own), `ik_solver`. Of a gripper: `mount`.
+    Either may have a `gripper` section.
     """
 
     robot: Name
@@ -116,6 +123,7 @@ class RobotYaml(SpecModel):
     arm_group: Name | None = None
     tcp_link: Name | None = None
     flange_link: Name | None = None
+    flange: Flange | None = None
     ik_solver: IkSolver = "numeric"
     start_state: StartState = StartState()
     max_acceleration: Annotated[float, Field(gt=0)] = Field(

@@ -6,7 +6,11 @@ import numpy as np
 import pytest
 
 from harness.core.geometry import Box
+from harness.robot.load import gripper_names, robot_names
+from tests.engine.front_door import failures, run
 from tests.robot.models import Arm, robot
+
+SWAPPED = {"model": "open_manipulator_x", "gripper": "rh_p12_rn_a"}
 
 # ROBOTIS: position of rh_r1_joint and gap between the pads [m], tip height over the base [m].
 GAPS = [
@@ -131,3 +135,59 @@ def test_a_mounted_gripper_moves_the_groups_tip_to_its_tcp():
     arm = Arm(mounted)
     assert arm.pose("end_effector_link", {}, "tool0").translation == pytest.approx([0, 0, 0.125])
     assert arm.pose("rh_p12_rn_ee", {}, "end_effector_link").isIdentity(1e-12)
+
+
+def test_a_gripper_takes_the_place_of_the_arms_own():
+    own, other = robot(model="open_manipulator_x"), robot(**SWAPPED)
+    assert other.gripper.group == "gripper"
+    assert other.gripper.palm_link == "rh_p12_rn_base"
+    assert other.tcp_link == other.groups["arm"].tip_link == "end_effector_link"
+    gone = {"gripper_left_link", "gripper_right_link"}
+    assert gone <= set(own.link_names)
+    assert not gone & set(other.link_names)
+    assert "open" in other.states_of("gripper")
+    assert other.states_of("arm") == own.states_of("arm")
+    # Out of the front of link5 and 0.125 m on, as the mount says; the gripper points along +z.
+    T_link5_tcp = Arm(other).pose("end_effector_link", {}, "link5")
+    assert T_link5_tcp.translation == pytest.approx([0.0684 + 0.125, 0, 0.0074], abs=1e-12)
+    assert T_link5_tcp.rotation @ [0, 0, 1] == pytest.approx([1, 0, 0], abs=1e-12)
+
+
+@pytest.mark.parametrize("gripper", gripper_names())
+@pytest.mark.parametrize("model", [name for name in robot_names() if name not in gripper_names()])
+def test_every_gripper_goes_on_every_arm(model, gripper):
+    description = robot(model=model, gripper=gripper)
+    assert description.gripper is not None
+    assert set(description.gripper.links) <= set(description.link_names)
+    arm = Arm(description)
+    for state in description.states_of(description.arm_group).values():
+        assert arm.touching(state.positions) is None, state.name
+
+
+def test_the_small_arm_lifts_a_part_with_the_other_gripper(tmp_path):
+    reach = {"joint2": -0.6, "joint3": 0.4, "joint4": 0.2}
+    x, _, z = Arm(robot(**SWAPPED)).pose("end_effector_link", reach).translation
+    height = z - 0.035
+    steps = f"""
+        - gripper: open
+        - move_to: {{joints: {reach}}}
+        - add_object:
+            name: post
+            static: true
+            box: {{size: [0.04, 0.04, {height}]}}
+            pose: {{xyz: [{x}, 0, {height / 2}]}}
+        - add_object:
+            name: part
+            cylinder: {{radius: 0.03, length: 0.07}}
+            mass: 0.05
+            pose: {{xyz: [{x}, 0, {z}]}}
+        - grasp: {{object: part, position: 0.59}}
+        - move_to: {{joints: {{joint3: 0.1, joint4: 0.5}}}}
+          expect: [grasped: {{object: part}}]
+    """
+    rest = "expect: [always: within_limits]"
+    chosen = "{model: open_manipulator_x, gripper: rh_p12_rn_a}"
+    result, saved = run(tmp_path, steps, robot=chosen, rest=rest)
+    assert result.outcome == "passed", [*failures(result), *(s.message for s in result.steps)]
+
+    assert saved.signals.object_poses["part"][-1, 2] > z + 0.02

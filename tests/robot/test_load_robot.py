@@ -21,7 +21,6 @@ from tests.robot.models import robot
         ({"model": "ur3e", "gripper": "rh_p12"}, ["robot.gripper", "did you mean 'rh_p12_rn_a'"]),
         ({"model": "ur3e", "gripper": "ur5e"}, ["'ur5e' is an arm", "rh_p12_rn_a"]),
         ({"model": "rh_p12_rn_a", "gripper": "rh_p12_rn_a"}, ["is a gripper"]),
-        ({"model": "open_manipulator_x", "gripper": "rh_p12_rn_a"}, ["no flange"]),
         ({"model": "./nowhere"}, ["nowhere has no robot.yaml"]),
         ({"urdf": "arm.urdf"}, ["robot.urdf: there is no file arm.urdf"]),
         ({"model": "ur3e", "srdf": "a.srdf"}, ["robot.srdf goes with a robot's file"]),

@@ -1,0 +1,59 @@
+"""An arm of a folder without its own gripper, so that another one can take its place."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from harness.core.spatial import SE3
+from harness.robot.compose import Part
+from harness.robot.description import Joint, Link
+from harness.robot.srdf import Srdf
+
+FLANGE = "flange"
+
+
+def without_gripper(part: Part) -> Part:
+    """The arm whose fingers and TCP are taken off, with a flange where its robot.yaml puts one.
+
+    The arm's chain ends at the flange then; what spoke of the gripper's links and joints goes.
+    An arm without a gripper of its own, or without such a place, stays as it is.
+    """
+    hand, place = part.facts.gripper, part.facts.flange
+    if hand is None or place is None:
+        return part
+    gone = {link for side in hand.sides.values() for link in side.links}
+    gone.add(part.facts.tcp_link or "")
+    for joint in part.urdf.joints:  # parents before children
+        if joint.parent in gone:
+            gone.add(joint.child)
+    links = tuple(link for link in part.urdf.links if link.name not in gone)
+    joints = tuple(joint for joint in part.urdf.joints if joint.child not in gone)
+    held = SE3.from_xyz_rpy(place.xyz, place.rpy)
+    flange = Joint(f"{FLANGE}_joint", "fixed", place.link, FLANGE, held, np.array([1.0, 0.0, 0.0]))
+    urdf = replace(part.urdf, links=(*links, Link(FLANGE, None)), joints=(*joints, flange))
+    facts = part.facts.model_copy(
+        update={"gripper": None, "tcp_link": FLANGE, "flange_link": FLANGE, "ik_solver": "auto"}
+    )
+    srdf = _srdf(part.srdf, hand.group, gone, {joint.name for joint in joints})
+    return replace(part, urdf=urdf, srdf=srdf, facts=facts)
+
+
+def _srdf(srdf: Srdf, hand: str, gone: set[str], joints: set[str]) -> Srdf:
+    groups = tuple(
+        replace(
+            group,
+            chains=tuple((base, FLANGE if tip in gone else tip) for base, tip in group.chains),
+        )
+        for group in srdf.groups
+        if group.name != hand
+    )
+    return replace(
+        srdf,
+        groups=groups,
+        states=tuple(state for state in srdf.states if state.group != hand),
+        end_effectors=tuple(tool for tool in srdf.end_effectors if tool.group != hand),
+        passive=tuple(name for name in srdf.passive if name in joints),
+        disabled={pair: why for pair, why in srdf.disabled.items() if not gone & set(pair)},
+    )
