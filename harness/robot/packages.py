@@ -116,9 +116,11 @@ class PackagePath:
             yield from (each for each in _packages_below(folder) if _is_package(each, name))
 
     def _around(self) -> Iterator[Path]:
-        """Where a package's neighbours are: beside it."""
+        """Where a package's neighbours are: beside it, or in install folders beside its own."""
         if (self.home / MANIFEST).is_file():
             yield self.home.parent
+            if self.home.parent.name == "share":
+                yield self.home.parents[2]
 
 
 def environment_folders() -> tuple[Path, ...]:
@@ -129,7 +131,7 @@ def environment_folders() -> tuple[Path, ...]:
 
 def _inside(folder: Path, name: str) -> Iterator[Path]:
     """As colcon's `src`, `install` and merged `install` folders hold a package."""
-    for path in (folder / name, folder / "share" / name, folder / name / "share" / name):
+    for path in (folder / name / "share" / name, folder / "share" / name, folder / name):
         if path.is_dir():
             yield path
 

@@ -5,7 +5,9 @@ import pinocchio as pin
 import pytest
 
 from harness.core.errors import RobotError, SpecError
+from harness.planning.kinematics import PinocchioKinematics
 from harness.robot.urdf import parse_urdf
+from tests.engine.front_door import run
 from tests.robot.arm_files import INERTIAL, SHAPE, SRDF, URDF, load_arm, write_arm
 
 
@@ -127,3 +129,29 @@ def test_a_joint_without_effort_limit_is_written_so_that_others_read_it(tmp_path
     assert np.isinf(arm.joint_by_name["bend"].effort)
     assert pin.buildModelFromXML(arm.urdf).nq == 4  # a continuous joint has two numbers
     assert np.isinf(parse_urdf(arm.urdf, tmp_path, "again").joints[2].effort)
+
+
+def test_a_mimic_is_followed_in_planning_and_in_physics(tmp_path):
+    mimic = '<mimic joint="bend" multiplier="0.1" offset="0.05"/><limit lower="0"'
+    write_arm(tmp_path, URDF.replace('<limit lower="0"', mimic), SRDF.replace("reach", "bend", 1))
+    arm = load_arm(tmp_path, srdf=None)
+    assert arm.groups["arm"].joint_names == ("turn", "bend")
+    steps = "- move_to: {joints: {turn: 1.2, bend: 0.9}}"
+    result, saved = run(tmp_path, steps, robot="{urdf: arm.urdf}")
+    assert result.outcome == "passed"
+    _, bend, reach = saved.signals.joint_positions.T
+    assert np.abs(reach - (0.1 * bend + 0.05)).max() < 2e-3
+    positions = arm.with_mimics(np.array([1.2, 0.9, 0.0]))
+    planned = PinocchioKinematics(arm).link_pose(positions, "tool").translation
+    assert saved.signals.tcp_pose[-1, :3] == pytest.approx(planned, abs=3e-3)
+
+
+def test_an_imported_arm_is_carried_by_feed_forward(tmp_path):
+    write_arm(tmp_path, URDF.replace('<mass value="1"/>', '<mass value="3"/>'))
+    steps = "- move_to: {joints: {turn: 2.0, bend: 1.5, reach: 0.15}}"
+    result, saved = run(tmp_path, steps, robot="{urdf: arm.urdf, srdf: arm.srdf}")
+    assert result.outcome == "passed"
+    errors = np.abs(saved.signals.joint_positions - saved.signals.joint_commands)
+    efforts = np.abs(saved.signals.joint_efforts).max(axis=0)
+    assert efforts[1] > 5, "gravity pulls"
+    assert np.nanmax(errors) < 1e-3

@@ -1,0 +1,125 @@
+"""Where package:// leads: folders given, the robot's own package and those beside it, Python's."""
+
+import pytest
+
+from harness.cli.main import main
+from harness.core.errors import RobotError, SpecError
+from harness.core.geometry import Mesh
+from harness.robot.load import load_robot
+from harness.spec.scenario import RobotSpec
+from tests.importers.sdf_files import TETRAHEDRON
+from tests.robot.arm_files import SHAPE, SRDF, URDF
+
+LOOK = '<visual><geometry><mesh filename="package://looks/meshes/part.obj"/></geometry></visual>'
+
+
+def package(folder, name, *, manifest=True):
+    """A package's folder, by its manifest called as `name`."""
+    folder.mkdir(parents=True)
+    if manifest:
+        (folder / "package.xml").write_text(f"<package><name>{name}</name></package>")
+    return folder
+
+
+def looks(folder, **words):
+    """A package with a mesh."""
+    made = package(folder, "looks", **words) / "meshes"
+    made.mkdir()
+    (made / "part.obj").write_text(TETRAHEDRON)
+    return folder
+
+
+def arm(folder):
+    """A package with an arm that is drawn by the mesh of another one."""
+    (package(folder, "arm") / "urdf").mkdir()
+    (folder / "urdf" / "arm.urdf").write_text(URDF.replace(SHAPE, SHAPE + LOOK))
+    (folder / "urdf" / "arm.srdf").write_text(SRDF)
+    return folder / "urdf" / "arm.urdf"
+
+
+def mesh(base, urdf, **words):
+    """The file that draws the arm's first link."""
+    found = load_robot(RobotSpec.model_validate({"urdf": str(urdf), **words}), base)
+    (seen,) = next(link for link in found.links if link.name == "upper").visuals
+    assert isinstance(seen.geometry, Mesh)
+    return seen.geometry.path
+
+
+@pytest.mark.parametrize(
+    ("place", "given"),
+    [
+        ("given/looks", "given"),
+        ("given/looks", "given/looks"),
+        ("given/src/group/called_otherwise", "given"),
+        ("given/share/looks", "given"),
+        ("given/looks/share/looks", "given"),
+    ],
+)
+def test_a_given_folder_holds_packages_or_is_one(tmp_path, monkeypatch, place, given):
+    urdf = arm(tmp_path / "arm")
+    folder = looks(tmp_path / place)
+    expected = folder / "meshes" / "part.obj"
+    assert mesh(tmp_path, urdf, packages=[given]) == expected
+    monkeypatch.setenv("HARNESS_PACKAGE_PATH", str(tmp_path / given))
+    assert mesh(tmp_path, urdf) == expected
+
+
+def test_a_package_beside_the_robots_own_is_found(tmp_path):
+    urdf = arm(tmp_path / "src" / "arm")
+    folder = looks(tmp_path / "src" / "looks", manifest=False)
+    assert mesh(tmp_path, urdf) == folder / "meshes" / "part.obj"
+
+
+def test_a_package_installed_apart_beside_the_robots_own_is_found(tmp_path):
+    urdf = arm(tmp_path / "install" / "arm" / "share" / "arm")
+    folder = looks(tmp_path / "install" / "looks" / "share" / "looks")
+    assert mesh(tmp_path, urdf) == folder / "meshes" / "part.obj"
+
+
+def test_the_robots_own_package_is_known_by_its_manifest(tmp_path):
+    urdf = arm(tmp_path / "called_otherwise")
+    folder = tmp_path / "called_otherwise"
+    (folder / "meshes").mkdir()
+    (folder / "meshes" / "part.obj").write_text(TETRAHEDRON)
+    urdf.write_text(urdf.read_text().replace("package://looks", "package://arm"))
+    assert mesh(tmp_path, urdf) == folder / "meshes" / "part.obj"
+
+
+def test_an_installed_python_package_is_found(tmp_path):
+    found = load_robot(RobotSpec(urdf="package://airo_models/arms/ur5e/ur5e.urdf"), tmp_path)
+    assert found.groups["arm"].tip_link == "tool0"
+
+
+def test_a_folder_is_given_with_set_on_the_command_line(tmp_path, capsys):
+    urdf = arm(tmp_path / "arm")
+    looks(tmp_path / "elsewhere" / "looks")
+    scenario = tmp_path / "cell.scenario.yaml"
+    scenario.write_text(
+        f"scenario: Look\nrobot: {{urdf: {urdf}}}\n"
+        "steps: [{move_to: {joints: {bend: 0.3}}}]\n"
+    )
+    assert main(["check", str(scenario)]) == 2
+    assert "the package 'looks' is not found; give" in capsys.readouterr().out
+    given = f"robot.packages=[{tmp_path / 'elsewhere'}]"
+    assert main(["check", str(scenario), "--set", given]) == 0, capsys.readouterr().out
+
+
+def test_what_is_nowhere_is_told_with_the_ways_out(tmp_path):
+    urdf = arm(tmp_path / "arm")
+    with pytest.raises(SpecError) as caught:
+        mesh(tmp_path, urdf)
+    problem = caught.value.problems[0]
+    assert (problem.path, problem.line) == (str(urdf), 4)
+    assert "the package 'looks' is not found; give the folder that holds it" in problem.message
+    with pytest.raises(RobotError, match="there is no folder"):
+        mesh(tmp_path, urdf, packages=["gone"])
+
+
+def test_a_link_out_of_the_packages_is_not_followed(tmp_path):
+    urdf = arm(tmp_path / "src" / "arm")
+    (tmp_path / "secret.obj").write_text(TETRAHEDRON)
+    inside = package(tmp_path / "src" / "looks", "looks") / "meshes"
+    inside.mkdir()
+    (inside / "part.obj").symlink_to(tmp_path / "secret.obj")
+    with pytest.raises(SpecError, match="lies outside the robot's folder"):
+        mesh(tmp_path, urdf)
