@@ -24,12 +24,16 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run(arguments: argparse.Namespace) -> int:
     files = discover(arguments.paths)
+    from harness.reporting.suite.cause import short_problem
+    from harness.reporting.suite.github import problem_annotation
     from harness.reporting.terminal import Style
     from harness.session.check import check_file
 
     style = Style.of(sys.stdout)
     code = 0
     documents: list[object] = []
+    lines: list[str] = []
+    told_in = problem_annotation if arguments.format == "github" else short_problem
     for file, case, overrides in _cases(arguments, files):
         found = check_file(file, overrides=overrides, seed=arguments.seed)
         outcome = "invalid" if found.problems else "failed" if found.predicted else "passed"
@@ -39,14 +43,15 @@ def _run(arguments: argparse.Namespace) -> int:
                           "predicted": found.predicted,
                           "explanations": found.explanations,
                           "notes": found.notes})  # fmt: skip
-        if arguments.json:
+        if arguments.format != "full":
+            lines += [told_in(problem) for problem in (*found.problems, *found.predicted)]
             continue
         for note in found.notes:
             say(f"note: {note}")
         for problem in found.problems:
             say(str(problem))
-        for problem, lines in zip(found.predicted, found.explanations, strict=True):
-            say("\n".join([str(problem), *(f"    {line}" for line in lines)]))
+        for problem, explained in zip(found.predicted, found.explanations, strict=True):
+            say("\n".join([str(problem), *(f"    {line}" for line in explained)]))
         count = len(found.problems)
         told = {
             "invalid": f"{count} problem{'s' if count != 1 else ''}",
@@ -55,9 +60,12 @@ def _run(arguments: argparse.Namespace) -> int:
         }[outcome]
         name = f"{file} [{case}]" if case else str(file)
         say(f"{name}: {style.outcome(outcome, told)}")
-    if arguments.json:
+    if arguments.format == "json":
         with only_json_on_stdout() as write_json:
             write_json({"format": "armharness-check/1", "exit_code": code, "files": documents})
+        return code
+    for line in dict.fromkeys(lines):
+        say(line)
     return code
 
 

@@ -16,6 +16,7 @@ from harness.cli.robot_options import ROBOT, add_robot_options
 EPILOG = """exit codes: 0 passed, 1 failed, 2 invalid file or wrong usage, 3 error, 130 Ctrl-C"""
 BROKEN_PIPE_EXIT_CODE = 141  # as a shell shows SIGPIPE
 IMPORTS = ("sdf", "scene", "srdf")
+FORMATS = ("full", "short", "json", "github")
 BAGS = ("mcap", "sqlite3")
 LISTS = ("robots", "worlds", "scenarios", "steps", "expectations", "planners")
 
@@ -90,6 +91,22 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
+def _format_options(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--format",
+        choices=FORMATS,
+        default="full",
+        help="full: for people; short: a line each; json: one document; github: annotations",
+    )
+    command.add_argument(
+        "--json",
+        action="store_const",
+        const="json",
+        dest="format",
+        help="the same as --format json",
+    )
+
+
 def _run_options(run: argparse.ArgumentParser) -> None:
     _file_options(run)
     run.add_argument(
@@ -142,7 +159,13 @@ def _run_options(run: argparse.ArgumentParser) -> None:
     run.add_argument("--no-report", action="store_true", help="write no report")
     run.add_argument("--no-page", action="store_true", help="write the report without its page")
     run.add_argument("--bag", action="store_true", help="write a rosbag2 into the report too")
-    run.add_argument("--json", action="store_true", help="one JSON document on stdout")
+    run.add_argument(
+        "--history",
+        metavar="DIR",
+        default=None,
+        help="a folder of earlier results.json files, whose margins the suite's page shows",
+    )
+    _format_options(run)
     run.add_argument(
         "--hard-cap",
         metavar="SECONDS",
@@ -156,7 +179,7 @@ def _run_options(run: argparse.ArgumentParser) -> None:
 
 def _check_options(check: argparse.ArgumentParser) -> None:
     _file_options(check)
-    check.add_argument("--json", action="store_true", help="one JSON document on stdout")
+    _format_options(check)
 
 
 def _bench_options(bench: argparse.ArgumentParser) -> None:

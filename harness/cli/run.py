@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import shlex
 import sys
 import time
@@ -11,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from harness.cli.output import complain, guarded, only_json_on_stdout, say
-from harness.suite.discovery import discover
+from harness.suite.discovery import UsageError, discover
 from harness.suite.warm import WarmServer
 
 if TYPE_CHECKING:
@@ -38,11 +39,18 @@ def _run(arguments: argparse.Namespace) -> int:
         if not arguments.in_process:
             server.open()  # it imports for as long as this process takes to get ready
         suite = _suite(arguments, files)
-        if arguments.json:
+        if arguments.format == "json":
+            from harness.reporting.suite.record import results_document
+
             with only_json_on_stdout() as write_json:
                 suite.collect(server)
-                write_json(_document(suite))
+                _write(arguments, suite)
+                write_json(results_document(suite.record, suite.exit_code))
             return suite.exit_code
+        if arguments.format != "full":
+            suite.collect(server)
+            _write(arguments, suite)
+            return _tell_lines(arguments, suite)
         from harness.cli.progress import ProgressLines
         from harness.reporting.terminal import Style
 
@@ -55,7 +63,8 @@ def _run(arguments: argparse.Namespace) -> int:
             style=Style.of(sys.stdout),
         )
         suite.collect(server, progress.step, progress.result)
-    _tell(arguments, suite, time.monotonic() - start)
+    page = _write(arguments, suite)
+    _tell(arguments, suite, time.monotonic() - start, page)
     return suite.exit_code
 
 
@@ -63,6 +72,8 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
     from harness.suite.plan import Wanted, planned
     from harness.suite.suite_run import How, SuiteRun
 
+    if arguments.history and not Path(arguments.history).is_dir():
+        raise UsageError(f"--history '{arguments.history}' is no folder")
     root = None if arguments.no_report else Path(arguments.report_dir)
     plan = planned(
         files,
@@ -90,15 +101,35 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
     return SuiteRun(plan, how)
 
 
-def _document(suite: SuiteRun) -> object:
-    """Everything, for machines."""
-    return {
-        "format": "armharness-results/1",
-        "exit_code": suite.exit_code,
-        "interrupted": suite.is_interrupted,
-        "cases": list(suite.results.values()),
-        "rates": suite.rates,
-    }
+def _write(arguments: argparse.Namespace, suite: SuiteRun) -> Path | None:
+    """The files of a suite; GitHub's summary of the job where there is one."""
+    page = None
+    if not arguments.no_report and len(suite.plan) > 1 and arguments.repeat == 1:
+        from harness.reporting.suite.history import history_of
+        from harness.reporting.suite.write import write_suite
+
+        history = history_of(Path(arguments.history)) if arguments.history else {}
+        page = write_suite(Path(arguments.report_dir), suite.record, suite.exit_code, history)
+    told = os.environ.get("GITHUB_STEP_SUMMARY")
+    if told:
+        from harness.reporting.suite.github import job_summary
+
+        with Path(told).open("a", encoding="utf-8") as summary:
+            summary.write(job_summary(suite.record))
+    return page
+
+
+def _tell_lines(arguments: argparse.Namespace, suite: SuiteRun) -> int:
+    """A line for each thing that went wrong: for editors, or as GitHub's annotations."""
+    from harness.reporting.suite.cause import short_lines
+    from harness.reporting.suite.github import error_annotations
+
+    results = list(suite.results.values())
+    for line in (
+        error_annotations(results) if arguments.format == "github" else short_lines(results)
+    ):
+        say(line)
+    return suite.exit_code
 
 
 def _case_names(arguments: argparse.Namespace, jobs: Sequence[CaseJob]) -> list[str]:
@@ -112,7 +143,9 @@ def _case_names(arguments: argparse.Namespace, jobs: Sequence[CaseJob]) -> list[
     return [f"{name} #{number % arguments.repeat + 1}" for number, name in enumerate(names)]
 
 
-def _tell(arguments: argparse.Namespace, suite: SuiteRun, seconds: float) -> None:
+def _tell(
+    arguments: argparse.Namespace, suite: SuiteRun, seconds: float, page: Path | None
+) -> None:
     """Failures, rates, tables and the last lines."""
     from harness.reporting.terminal import Style, repeats, report_link, summary
 
@@ -129,9 +162,16 @@ def _tell(arguments: argparse.Namespace, suite: SuiteRun, seconds: float) -> Non
     if suite.resumed:
         say(f"{suite.resumed} of them were known from before")
     written = [result for result in suite.results.values() if result.report_dir]
-    if written:
+    if page is not None:
+        say(f"reports: {style.link(str(page), page.resolve().as_uri())}")
+    elif written:
         one = report_link(written[0], style)
         say(f"report: {one}" if len(written) == 1 else f"reports: {arguments.report_dir}")
+    if os.environ.get("GITHUB_ACTIONS") == "true":
+        from harness.reporting.suite.github import error_annotations
+
+        for line in error_annotations(list(suite.results.values())):
+            say(line)
     if suite.is_interrupted:
         complain(f"interrupted: {suite.missing} of {len(suite.jobs)} runs did not finish")
         if len(suite.jobs) > 1 and arguments.repeat == 1 and not arguments.no_report:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from harness.core.quantity import split_quantity
+from harness.recording.run import Outcome
 from harness.reporting.terminal import PLAIN, Style
 
 RateVerdict = Literal["shown", "refuted", "open"]
@@ -41,6 +42,23 @@ class Rate:
     at_least: float | None
     verdict: RateVerdict
     stopped_early: bool = False
+
+
+@dataclass(frozen=True)
+class SampledRate:
+    """The rate of one parametrised case.
+
+    Attributes:
+        file: As the user named it.
+        group: Name of the parametrised case; empty when there is one.
+        rate: Of its samples.
+        outcome: `passed` when the rate is shown.
+    """
+
+    file: str
+    group: str
+    rate: Rate
+    outcome: Outcome
 
 
 def rate_line(name: str, rate: Rate, style: Style = PLAIN) -> str:

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from harness.core.errors import SpecError
 from harness.suite.discovery import SUFFIX
 from harness.suite.variation import ONE_CASE, Variation
+
+if TYPE_CHECKING:
+    from harness.spec.source import Located
 
 VARIED = ("parametrize", "randomize", "samples", "expect_rate", "seed")
 
@@ -21,12 +25,14 @@ class Header:
         tags: Its `tags`.
         line: Of the title, from 1.
         variation: Its cases.
+        verifies: Requirements that it names.
     """
 
     title: str
     tags: tuple[str, ...] = ()
     line: int = 1
     variation: Variation = ONE_CASE
+    verifies: tuple[str, ...] = ()
 
 
 def source_lines(file: Path) -> list[str]:
@@ -50,13 +56,17 @@ def read_header(file: Path) -> Header:
         return nameless
     tags: tuple[str, ...] = ()
     if "tags" in entries:
-        values = (item.value for item in entries["tags"].value.items())
-        tags = tuple(value for value in values if isinstance(value, str) and value)
+        tags = _texts(entries["tags"].value)
+    verifies = _texts(entries["verifies"].value) if "verifies" in entries else ()
     varied = {key: entries[key].value.plain() for key in VARIED if key in entries}
     variation = Variation.of(varied)
     if "scenario" not in entries:
-        return Header(nameless.title, tags, variation=variation)
+        return Header(nameless.title, tags, 1, variation, verifies)
     key, title = entries["scenario"]
     if not isinstance(title.value, str) or not title.value.strip():
-        return Header(nameless.title, tags, key.line, variation)
-    return Header(" ".join(title.value.split()), tags, key.line, variation)
+        return Header(nameless.title, tags, key.line, variation, verifies)
+    return Header(" ".join(title.value.split()), tags, key.line, variation, verifies)
+
+
+def _texts(item: Located) -> tuple[str, ...]:
+    return tuple(each.value for each in item.items() if isinstance(each.value, str) and each.value)

@@ -3,34 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from harness.recording.run import Outcome
 from harness.reporting.result import CaseResult
-from harness.reporting.sampled import Rate
+from harness.reporting.sampled import SampledRate
 from harness.suite.plan import PlannedCase
 from harness.suite.rates import decided, rate_of
 
 Key = tuple[str, str]
-
-
-@dataclass(frozen=True)
-class SampledGroup:
-    """Samples of one parametrised case.
-
-    Attributes:
-        file: As the user named it.
-        group: Name of the parametrised case; empty when there is one.
-        indices: Of its samples in the plan, in the order of their numbers.
-        rate: Of the samples that count.
-        outcome: `passed` when the rate is shown.
-    """
-
-    file: str
-    group: str
-    indices: tuple[int, ...]
-    rate: Rate
-    outcome: Outcome
 
 
 class Sampling:
@@ -78,9 +58,9 @@ class Sampling:
             return index not in self._outcomes
         return key in self._ends and index in self._groups[key][self._ends[key] :]
 
-    def groups(self) -> list[SampledGroup]:
+    def groups(self) -> list[SampledRate]:
         """Every group with its rate, from the samples that came in without a gap."""
-        found: list[SampledGroup] = []
+        found: list[SampledRate] = []
         for key, indices in self._groups.items():
             variation = self._plan[indices[0]].variation
             rate = rate_of(
@@ -90,9 +70,8 @@ class Sampling:
                 stop_early=variation.stop_early,
                 wanted=len(indices),
             )
-            counted = tuple(indices[: rate.total])
             outcome: Outcome = "passed" if rate.verdict == "shown" else "failed"
-            found.append(SampledGroup(*key, counted, rate, outcome))
+            found.append(SampledRate(*key, rate, outcome))
         return found
 
     def counted(self, results: Mapping[int, CaseResult]) -> dict[int, CaseResult]:

@@ -9,10 +9,12 @@ from pathlib import Path
 
 from harness.recording.run import Outcome
 from harness.reporting.result import CaseResult
+from harness.reporting.sampled import SampledRate
+from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.suite.cases import CaseJob, Watcher, nobody_watches, run_here, run_isolated
 from harness.suite.outcome import EXIT_CODES, INTERRUPTED_EXIT_CODE, exit_code
 from harness.suite.plan import PlannedCase
-from harness.suite.sampling import SampledGroup, Sampling
+from harness.suite.sampling import Sampling
 from harness.suite.stream import Stream
 from harness.suite.warm import WarmServer
 
@@ -132,9 +134,18 @@ class SuiteRun:
         return sum(not self.is_needless(index) for index in range(len(self.jobs)))
 
     @property
-    def rates(self) -> list[SampledGroup]:
+    def rates(self) -> list[SampledRate]:
         """Success rates of the parametrised cases that are sampled."""
         return self._sampling.groups() if self._is_sampled else []
+
+    @property
+    def record(self) -> SuiteRecord:
+        """What the suite's files are written from."""
+        cases: list[SuiteCase] = []
+        for index, result in self.results.items():
+            case = self.plan[index // self._how.repeat]
+            cases.append(SuiteCase(result, case.values, case.header.tags, case.header.verifies))
+        return SuiteRecord(self.outcome, cases, self.rates, self.is_interrupted)
 
     def repetitions(self) -> list[list[CaseResult]]:
         """Results of the same case together, in file order."""

@@ -139,6 +139,10 @@ def test_what_is_known_is_not_computed_again_and_what_changed_is(varied):
     stream = path.parent / "reports/results.jsonl"
     lines = stream.read_text().splitlines()
     assert len(lines) == 6
+    written = json.loads((path.parent / "reports/results.json").read_text())
+    assert written == first
+    assert (path.parent / "reports/junit.xml").read_text().count("<failure ") == 2
+    assert (path.parent / "reports/index.html").stat().st_size > 10_000
     # as an interruption leaves it: two whole lines and a piece of one
     stream.write_text("\n".join([*lines[:2], lines[2][:40]]) + "\n")
     done = harness("run", path, "--no-page", "--resume", cwd=path.parent)
@@ -177,3 +181,18 @@ def test_a_mistake_of_the_file_is_told_once_not_for_every_sample(varied):
     assert done.returncode == 2
     assert done.stdout.count("did you mean 'wait'") <= 1
     assert "1 invalid of 1 case" in done.stdout
+
+
+def test_failures_are_told_in_the_format_that_is_asked_for(varied):
+    path = varied(GRID)
+    words = ("--no-report", "--case", "0.2_s-1")
+    short = harness("run", path, *words, "--format", "short", cwd=path.parent)
+    assert short.stdout.startswith(f"{path}:7:1: [0.2_s-1] duration")
+    assert len(short.stdout.splitlines()) == 1
+    told = harness("run", path, *words, "--format", "github", cwd=path.parent)
+    assert told.stdout.startswith(f"::error file={path},line=7,title=Wait [0.2_s-1]::duration")
+    path.write_text(GRID.replace("wait", "wiat"))
+    checked = harness("check", path, "--format", "short", cwd=path.parent)
+    assert checked.stdout.startswith(f"{path}:5:5: no verb is called `wiat`")
+    assert len(checked.stdout.splitlines()) == 1
+    assert (short.returncode, told.returncode, checked.returncode) == (1, 1, 2)

@@ -27,7 +27,13 @@ def script() -> str:
 @cache
 def style() -> str:
     """The style sheet."""
-    return _read("page.css")
+    return theme() + _read("page.css")
+
+
+@cache
+def theme() -> str:
+    """The colours, of this page and of others."""
+    return _read("theme.css")
 
 
 @cache

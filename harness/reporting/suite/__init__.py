@@ -1,0 +1,1 @@
+"""What many runs came to: results for machines, JUnit XML, GitHub's words, a page for people."""

@@ -1,0 +1,74 @@
+"""Why a case did not pass, in few words: what failures of many cases are grouped by."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from harness.core.errors import Problem
+from harness.reporting.result import CaseResult
+
+
+@dataclass(frozen=True)
+class Cause:
+    """The first thing that went wrong.
+
+    Attributes:
+        group: The same for cases that failed alike: `NO_IK_SOLUTION in move_to`.
+        said: Everything that is known of this one, in a line.
+        line: In the scenario file, from 1; 0 if unknown.
+        column: From 1; 0 if unknown.
+    """
+
+    group: str
+    said: str
+    line: int = 0
+    column: int = 0
+
+
+def cause_of(result: CaseResult) -> Cause | None:
+    """Of a case; None when it passed."""
+    if result.outcome == "passed":
+        return None
+    if result.outcome == "error":
+        last = (result.message.strip().splitlines() or ["no cause was told"])[-1]
+        return Cause(f"error: {_short(last)}", last)
+    if result.outcome == "invalid":
+        for problem in result.problems:
+            said = f"{problem.message}: {problem.hint}" if problem.hint else problem.message
+            return Cause(f"invalid: {_short(problem.message)}", said, problem.line, problem.column)
+        return Cause("invalid", result.message)
+    for step in result.steps:
+        if step.status == "failed":
+            code = step.error_code or "failed"
+            return Cause(f"{code} in {step.verb}", f"{step.summary}: {step.message}", step.line)
+    for verdict in result.verdicts:
+        if verdict.status != "passed":
+            said = f"{verdict.expectation}: {verdict.status}"
+            said += f": {verdict.reason}" if verdict.reason else ""
+            return Cause(f"{verdict.status}: {verdict.expectation}", said, verdict.line)
+    return Cause("failed", result.message or "no cause was told")
+
+
+def short_lines(results: Iterable[CaseResult]) -> Iterator[str]:
+    """`file:line:column: what went wrong`, as editors and ruff have it."""
+    for result in results:
+        if result.outcome == "invalid" and result.problems:
+            yield from map(short_problem, result.problems)
+            continue
+        cause = cause_of(result)
+        if cause is not None:
+            place = f"{result.file}:{cause.line}:1" if cause.line else result.file
+            name = f" [{result.case}]" if result.case else ""
+            yield f"{place}:{name} {' '.join(cause.said.split())}"
+
+
+def short_problem(problem: Problem) -> str:
+    """A mistake in a file in one line."""
+    place = f"{problem.path}:{problem.line}:{problem.column}" if problem.line else problem.path
+    said = f"{problem.message}: {problem.hint}" if problem.hint else problem.message
+    return f"{place}: {' '.join(said.split())}"
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= 80 else f"{text[:79]}…"

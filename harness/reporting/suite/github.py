@@ -1,0 +1,88 @@
+"""What GitHub's actions show: annotations at lines of files, and a summary of the job [1].
+
+References:
+    [1] GitHub, "Workflow commands for GitHub Actions".
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from harness.core.errors import Problem
+from harness.reporting.margins import margin_share, worst
+from harness.reporting.result import CaseResult
+from harness.reporting.sampled import rate_line
+from harness.reporting.suite.cause import cause_of
+from harness.reporting.suite.record import SuiteRecord
+
+MOST_ROWS = 100
+SIGNS = {"passed": "✅", "failed": "❌", "invalid": "⛔", "error": "💥"}
+
+
+def error_annotations(results: Sequence[CaseResult]) -> Iterator[str]:
+    """A line for each thing that went wrong, which GitHub shows at its place in the file."""
+    for result in results:
+        cause = cause_of(result)
+        if result.outcome == "invalid" and result.problems:
+            yield from map(problem_annotation, result.problems)
+        elif cause is not None:
+            name = f"{result.title} [{result.case}]" if result.case else result.title
+            yield _command(result.file, cause.line, cause.column, name, cause.said)
+
+
+def problem_annotation(problem: Problem) -> str:
+    """A mistake in a file, at its place."""
+    said = f"{problem.message}: {problem.hint}" if problem.hint else problem.message
+    return _command(problem.path, problem.line, problem.column, "harness", said)
+
+
+def _command(file: str, line: int, column: int, title: str, said: str) -> str:
+    place = {"file": file, "line": line, "col": column, "title": title}
+    words = ",".join(f"{key}={_property(str(value))}" for key, value in place.items() if value)
+    return f"::error {words}::{_data(said)}"
+
+
+def _data(text: str) -> str:
+    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def _property(text: str) -> str:
+    return _data(text).replace(":", "%3A").replace(",", "%2C")
+
+
+def job_summary(record: SuiteRecord) -> str:
+    """Markdown: the count, a table with the worst first, and the rates of samples."""
+    results = [case.result for case in record.cases]
+    passed = sum(result.outcome == "passed" for result in results)
+    lines = [f"## {SIGNS[record.outcome]} armharness: {passed} of {len(results)} passed", ""]
+    lines += [f"- {rate_line(_cell(f'{r.file} {r.group}'.strip()), r.rate)}" for r in record.rates]
+    lines += ["", "| | case | nearest to failing | why |", "|---|---|---|---|"]
+    order = sorted(results, key=_urgency)
+    lines += [_row(result) for result in order[:MOST_ROWS]]
+    if len(order) > MOST_ROWS:
+        lines += ["", f"and {len(order) - MOST_ROWS} more"]
+    return "\n".join(lines) + "\n"
+
+
+def _urgency(result: CaseResult) -> tuple[bool, float]:
+    nearest = worst(result.verdicts)
+    return result.outcome == "passed", math.inf if nearest is None else margin_share(nearest)
+
+
+def _row(result: CaseResult) -> str:
+    nearest, cause = worst(result.verdicts), cause_of(result)
+    name = f"{result.title} [{result.case}]" if result.case else result.title
+    margin = ""
+    if nearest is not None:
+        margin = f"{nearest.expectation}: {nearest.margin:.4g} {nearest.unit}".removesuffix(" 1")
+    cells = [SIGNS[result.outcome], name, margin, cause.said if cause else ""]
+    return f"| {' | '.join(map(_cell, cells))} |"
+
+
+def _cell(text: str) -> str:
+    """Text that stays text in a table of Markdown."""
+    text = " ".join(text.split()).replace("\\", "\\\\")
+    for sign in "|<>`*_[]":
+        text = text.replace(sign, f"\\{sign}")
+    return text

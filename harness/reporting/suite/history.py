@@ -1,0 +1,50 @@
+"""Worst margins of earlier runs, from the `results.json` files of a folder."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, cast
+
+from harness.reporting.suite.record import FORMAT
+
+MOST_RUNS = 30
+MOST_BYTES = 100_000_000
+
+Key = tuple[str, str]
+"""File and name of a case."""
+
+
+def history_of(folder: Path) -> dict[Key, list[float | None]]:
+    """For each case its worst margin in each earlier run, as a share of its limit, oldest first.
+
+    Args:
+        folder: Its `*.json` files, and `results.json` files in folders below, count in the order
+            of their names, the last `MOST_RUNS` of them. Others are left out.
+
+    Returns:
+        None where a run has no such case, or the case no margin.
+    """
+    runs = list(_runs(folder))[-MOST_RUNS:]
+    keys = dict.fromkeys(key for run in runs for key in run)
+    return {key: [run.get(key) for run in runs] for key in keys}
+
+
+def _runs(folder: Path) -> Iterator[dict[Key, float | None]]:
+    files = {*folder.glob("*.json"), *folder.glob("**/results.json")}
+    for file in sorted(files):
+        try:
+            if file.stat().st_size > MOST_BYTES:
+                continue
+            document = cast("dict[str, Any]", json.loads(file.read_text(encoding="utf-8")))
+            if document["format"] != FORMAT:
+                continue
+            yield {(case["file"], case["case"]): _share(case) for case in document["cases"]}
+        except (OSError, ValueError, KeyError, TypeError):
+            continue
+
+
+def _share(case: dict[str, Any]) -> float | None:
+    margin = case.get("worst_margin")
+    return None if margin is None else margin["share"]

@@ -1,0 +1,186 @@
+"""The page of a suite: every row is plain HTML, which a script filters, sorts and groups."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from html import escape
+from pathlib import Path
+from string import Template
+from urllib.parse import quote
+
+from harness.reporting.html import bundle
+from harness.reporting.margins import margin_share, worst
+from harness.reporting.result import CaseResult
+from harness.reporting.sampled import SampledRate, rate_line, table_lines
+from harness.reporting.suite.cause import cause_of
+from harness.reporting.suite.history import Key
+from harness.reporting.suite.record import SuiteCase, SuiteRecord
+from harness.reporting.terminal import OUTCOMES, Style, failure_place
+
+FOLDER = Path(__file__).with_name("page")
+SIGNS = Style(has_signs=True)
+SPARK_WIDTH, SPARK_HEIGHT = 90, 20  # [pixels]
+
+
+def suite_html(
+    record: SuiteRecord,
+    folder: Path,
+    history: Mapping[Key, Sequence[float | None]] | None = None,
+) -> str:
+    """One self-contained page; links to the cases' pages are relative to its folder.
+
+    Args:
+        record: What the suite came to.
+        folder: Where the page will stand.
+        history: Worst margins of earlier runs.
+    """
+    results = [case.result for case in record.cases]
+    passed = sum(result.outcome == "passed" for result in results)
+    rows = [_row(i, case, folder, history or {}) for i, case in enumerate(record.cases)]
+    return Template(_read("suite.html")).substitute(
+        title=f"{passed} of {len(results)} passed",
+        style=bundle.theme() + _read("suite.css"),
+        script=_read("suite.js"),
+        pill="good" if record.outcome == "passed" else "bad",
+        outcome=escape(record.outcome),
+        interrupted=" · interrupted" if record.is_interrupted else "",
+        outcomes=_outcomes(results),
+        causes=_causes(results),
+        rates=_rates(record.rates),
+        table=_varied(record.cases),
+        rows="\n".join(rows),
+        history="" if history else " hidden",
+    )
+
+
+def _outcomes(results: Sequence[CaseResult]) -> str:
+    counts = Counter(result.outcome for result in results)
+    return "".join(
+        f'<button type="button" data-outcome="{name}" aria-pressed="false">'
+        f'<i class="sign {name}"></i>{counts[name]} {name}</button>'
+        for name in reversed(OUTCOMES)
+        if counts[name]
+    )
+
+
+def _causes(results: Sequence[CaseResult]) -> str:
+    found = Counter(cause.group for result in results if (cause := cause_of(result)))
+    if not found:
+        return ""
+    lines = "".join(
+        f'<li><button type="button" data-cause="{escape(group)}" aria-pressed="false">'
+        f"<b>{count}</b> {escape(group)}</button></li>"
+        for group, count in found.most_common()
+    )
+    return f'<section class="panel" id="causes"><h2>Causes</h2><ol>{lines}</ol></section>'
+
+
+def _rates(rates: Sequence[SampledRate]) -> str:
+    if not rates:
+        return ""
+    lines = "".join(_rate(each) for each in rates)
+    return f'<section class="panel"><h2>Success rates of samples</h2><ul>{lines}</ul></section>'
+
+
+def _rate(sampled: SampledRate) -> str:
+    rate, name = sampled.rate, f"{sampled.file} {sampled.group}".strip()
+    share = rate.passed / rate.total if rate.total else 0.0
+    asked = "" if rate.at_least is None else (
+        f'<i class="asked" style="left:{100 * rate.at_least:.2f}%"></i>'
+    )  # fmt: skip
+    return (
+        f'<li class="rate {sampled.outcome}"><span class="interval" aria-hidden="true">'
+        f'<i class="reach" style="left:{100 * rate.low:.2f}%;'
+        f'width:{100 * (rate.high - rate.low):.2f}%"></i>'
+        f'<i class="share" style="left:{100 * share:.2f}%"></i>{asked}</span>'
+        f"{escape(rate_line(name, rate, SIGNS))}</li>"
+    )
+
+
+def _varied(cases: Sequence[SuiteCase]) -> str:
+    told = [(each.values, each.result.outcome == "passed") for each in cases if each.values]
+    lines = "\n".join(table_lines(told, SIGNS)) if told else ""
+    if not lines:
+        return ""
+    heading = "<h2>By what varies</h2>"
+    return f'<section class="panel">{heading}<pre>{escape(lines)}</pre></section>'
+
+
+def _row(
+    index: int, case: SuiteCase, folder: Path, history: Mapping[Key, Sequence[float | None]]
+) -> str:
+    result = case.result
+    nearest, cause = worst(result.verdicts), cause_of(result)
+    share = math.inf if nearest is None else margin_share(nearest)
+    name = escape(f"{result.title} [{result.case}]" if result.case else result.title)
+    link = _link(result, folder)
+    title = f'<a href="{escape(link)}">{name}</a>' if link else name
+    words = " ".join((result.title, result.case, result.file, *case.tags, *case.verifies))
+    tags = "".join(f'<span class="tag">{escape(each)}</span>' for each in case.tags)
+    said = cause.said if cause else ""
+    earlier = [*history.get((result.file, result.case), ()), None if nearest is None else share]
+    return (
+        f'<tr data-index="{index}" data-outcome="{result.outcome}"'
+        f' data-cause="{escape(cause.group) if cause else ""}"'
+        f' data-share="{share if math.isfinite(share) else 9}"'
+        f' data-name="{escape(result.title.lower())}" data-time="{result.sim_time:.3f}"'
+        f' data-words="{escape(f"{words} {said}".lower())}">'
+        f'<td><i class="sign {result.outcome}"></i><span class="quiet">{result.outcome}</span></td>'
+        f'<td>{title}{tags}<div class="quiet">{escape(result.file)}</div>'
+        f'<div class="why">{escape(said)}</div></td>'
+        f"<td>{_margin(result)}</td>"
+        f'<td class="history">{_sparkline(earlier)}</td>'
+        f'<td class="number">{result.sim_time:.1f} s</td>'
+        f'<td class="number">{result.seed}</td>'
+        f"<td><code>{escape(result.digest[:12])}</code></td></tr>"
+    )
+
+
+def _margin(result: CaseResult) -> str:
+    nearest = worst(result.verdicts)
+    if nearest is None:
+        return ""
+    share = margin_share(nearest)
+    kind = "good" if nearest.status == "passed" else "bad"
+    unit = "" if nearest.unit == "1" else f" {nearest.unit}"
+    return (
+        f'<span class="bar" aria-hidden="true"><i class="{kind}" style="width:'
+        f'{max(2.0, 100 * abs(share)):.1f}%"></i></span>'
+        f'<span class="number">{nearest.margin:.4g}{escape(unit)}</span>'
+        f'<div class="quiet">{escape(nearest.expectation)}</div>'
+    )
+
+
+def _sparkline(shares: Sequence[float | None]) -> str:
+    """Worst margins over runs as a small line; the middle is where an expectation flips."""
+    told = [(index, share) for index, share in enumerate(shares) if share is not None]
+    if len(told) < 2:
+        return ""
+    step = SPARK_WIDTH / (len(shares) - 1)
+    points = " ".join(
+        f"{index * step:.1f},{SPARK_HEIGHT * (1 - share) / 2:.1f}" for index, share in told
+    )
+    said = f"worst margin in {len(told)} runs, now {told[-1][1]:.0%} of its limit"
+    middle = SPARK_HEIGHT / 2
+    return (
+        f'<svg class="spark" role="img" aria-label="{said}" viewBox="-2 -2 {SPARK_WIDTH + 4} '
+        f'{SPARK_HEIGHT + 4}" width="{SPARK_WIDTH}" height="{SPARK_HEIGHT}"><title>{said}</title>'
+        f'<line x1="0" x2="{SPARK_WIDTH}" y1="{middle}" y2="{middle}"/>'
+        f'<polyline points="{points}"/></svg>'
+    )
+
+
+def _link(result: CaseResult, folder: Path) -> str:
+    """The case's page at its first failure, from the suite's page; its folder where it has none."""
+    target = result.page or result.report_dir
+    if not target:
+        return ""
+    path = Path(os.path.relpath(Path(target).resolve(), folder.resolve())).as_posix()
+    return f"{quote(path)}{failure_place(result) if result.page else ''}"
+
+
+def _read(name: str) -> str:
+    return (FOLDER / name).read_text(encoding="utf-8")

@@ -1,0 +1,90 @@
+// Filters, sorts and groups the rows that the page already has. The address keeps what is asked.
+
+(() => {
+  const body = document.querySelector("tbody");
+  const rows = [...body.rows];
+  const search = document.querySelector("#search input");
+  const order = document.querySelector("#order select");
+  const outcomes = [...document.querySelectorAll("#filters button")];
+  const causes = [...document.querySelectorAll("#causes button")];
+  const count = document.getElementById("count");
+
+  const pressed = (buttons, key) =>
+    buttons.filter((button) => button.getAttribute("aria-pressed") === "true").map((button) => button.dataset[key]);
+
+  /** @param {HTMLElement} row whether it is asked for */
+  function isWanted(row, words, kinds, groups) {
+    return (!kinds.length || kinds.includes(row.dataset.outcome))
+      && (!groups.length || groups.includes(row.dataset.cause))
+      && words.every((word) => row.dataset.words.includes(word));
+  }
+
+  const compare = {
+    index: (a, b) => a.dataset.index - b.dataset.index,
+    share: (a, b) => a.dataset.share - b.dataset.share,
+    time: (a, b) => b.dataset.time - a.dataset.time,
+    name: (a, b) => a.dataset.name.localeCompare(b.dataset.name),
+    cause: (a, b) => (a.dataset.cause === "") - (b.dataset.cause === "") || a.dataset.cause.localeCompare(b.dataset.cause),
+  };
+
+  /** A heading over the rows of one cause. @param {string} cause @param {number} number */
+  function heading(cause, number) {
+    const row = document.createElement("tr");
+    row.className = "group";
+    const cell = row.insertCell();
+    cell.colSpan = 7;
+    cell.textContent = `${cause || "passed"} (${number})`;
+    return row;
+  }
+
+  function show() {
+    const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
+    const kinds = pressed(outcomes, "outcome"), groups = pressed(causes, "cause");
+    const key = compare[order.value] ? order.value : "index";
+    const wanted = rows.filter((row) => isWanted(row, words, kinds, groups));
+    wanted.sort((a, b) => compare[key](a, b) || compare.index(a, b));
+    const shown = [];
+    for (const row of wanted) {
+      if (key === "cause" && row.dataset.cause !== shown.at(-1)?.dataset.cause) {
+        shown.push(heading(row.dataset.cause, wanted.filter((each) => each.dataset.cause === row.dataset.cause).length));
+      }
+      shown.push(row);
+    }
+    body.replaceChildren(...shown);
+    count.textContent = wanted.length === rows.length ? `${rows.length}` : `${wanted.length} of ${rows.length}`;
+    remember(words, kinds, groups, key);
+  }
+
+  function remember(words, kinds, groups, key) {
+    const asked = new URLSearchParams();
+    if (words.length) asked.set("search", words.join(" "));
+    kinds.forEach((kind) => asked.append("outcome", kind));
+    groups.forEach((group) => asked.append("cause", group));
+    if (key !== "index") asked.set("sort", key);
+    history.replaceState(null, "", asked.size ? `#${asked}` : location.pathname + location.search);
+  }
+
+  function recall() {
+    const asked = new URLSearchParams(location.hash.slice(1));
+    search.value = asked.get("search") ?? "";
+    order.value = compare[asked.get("sort")] ? asked.get("sort") : "index";
+    for (const [buttons, key] of [[outcomes, "outcome"], [causes, "cause"]]) {
+      const wanted = asked.getAll(key);
+      buttons.forEach((button) => button.setAttribute("aria-pressed", String(wanted.includes(button.dataset[key]))));
+    }
+  }
+
+  for (const button of [...outcomes, ...causes]) {
+    button.addEventListener("click", () => {
+      button.setAttribute("aria-pressed", String(button.getAttribute("aria-pressed") !== "true"));
+      show();
+    });
+  }
+  search.addEventListener("input", show);
+  order.addEventListener("change", show);
+  addEventListener("hashchange", () => { recall(); show(); });
+  document.body.classList.add("scripted");
+  document.documentElement.dataset.ready = "yes";
+  recall();
+  show();
+})();

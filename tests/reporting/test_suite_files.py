@@ -1,0 +1,134 @@
+"""JUnit XML, results and GitHub's words of a suite, read by others."""
+
+import json
+import math
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from harness.reporting.margins import margin_share, worst
+from harness.reporting.suite.cause import cause_of, short_lines
+from harness.reporting.suite.github import error_annotations, job_summary
+from harness.reporting.suite.history import history_of
+from harness.reporting.suite.junit import junit_xml
+from harness.reporting.suite.record import SuiteRecord
+from harness.reporting.suite.write import write_suite
+from tests.reporting.suites import BROKEN, INVALID, STUCK, failed, large_suite, passed, small_suite
+
+# element -> (required attributes, further ones, children in the order that all schemas know)
+SCHEMA = {
+    "testsuites": ({"name"}, {"tests", "failures", "errors", "skipped", "time"}, ["testsuite"]),
+    "testsuite": (
+        {"name", "tests", "failures", "errors", "skipped", "time"}, set(), ["testcase"]
+    ),
+    "testcase": (
+        {"name", "classname", "time"}, {"file"},
+        ["properties", "skipped", "error", "failure", "system-out", "system-err"],
+    ),
+    "properties": (set(), set(), ["property"]),
+    "property": ({"name", "value"}, set(), []),
+    "failure": ({"message", "type"}, set(), []),
+    "error": ({"message", "type"}, set(), []),
+    "system-out": (set(), set(), []),
+}  # fmt: skip
+
+
+def check_schema(element):
+    required, further, children = SCHEMA[element.tag]
+    assert required <= set(element.attrib) <= required | further, element.tag
+    tags = [child.tag for child in element]
+    assert tags == sorted(tags, key=children.index)
+    for child in element:
+        check_schema(child)
+
+
+def test_junit_is_what_every_reader_of_it_knows():
+    root = ET.fromstring(junit_xml(small_suite()))
+    check_schema(root)
+    assert root.attrib["tests"] == "5"
+    assert (root.attrib["failures"], root.attrib["errors"]) == ("2", "2")
+    assert [suite.attrib["name"] for suite in root][:3] == [
+        "a/pick.scenario.yaml", "b/place.scenario.yaml", "c/typo.scenario.yaml"
+    ]  # fmt: skip
+
+
+def test_junit_names_seed_digest_margins_requirements_and_report():
+    first, second, *_ = ET.fromstring(junit_xml(small_suite())).iter("testcase")
+    found = {each.attrib["name"]: each.attrib["value"] for each in first.iter("property")}
+    assert found["seed"] == "0"
+    assert found["digest"] == "d" * 64
+    assert found["verifies"] == "REQ-7"
+    assert found["value:height"] == "5 cm"
+    assert found["margin:lifted cube"] == "0.01 m"
+    assert first.attrib["time"] == "0.250"
+    assert second.find("failure").attrib["message"] == "lifted cube: failed: 30 mm"
+    said = second.find("system-out").text
+    assert "report: a/pick/c1/report.html#t=2.00&expect=2" in said
+    assert "[[ATTACHMENT|" in said
+
+
+def test_results_are_strict_json_with_the_worst_margin(tmp_path):
+    write_suite(tmp_path, small_suite(), 3)
+    found = json.loads((tmp_path / "results.json").read_text())
+    assert (found["exit_code"], found["outcome"]) == (3, "error")
+    assert found["cases"][1]["worst_margin"]["expectation"] == "lifted cube"
+    assert found["cases"][1]["worst_margin"]["margin"] == pytest.approx(-0.02)
+    assert found["cases"][1]["worst_margin"]["share"] == pytest.approx(-0.4)
+    assert found["rates"][0]["rate"]["passed"] == 8
+    assert sorted(file.name for file in tmp_path.iterdir()) == [
+        "index.html", "junit.xml", "results.json"
+    ]  # fmt: skip
+
+
+def test_history_is_read_from_earlier_results_and_other_files_are_left_out(tmp_path):
+    for number, value in enumerate((0.06, 0.08, 0.1)):
+        record = SuiteRecord("passed", [type(small_suite().cases[0])(passed(1, value))])
+        write_suite(tmp_path / f"run-{number}", record, 0)
+    (tmp_path / "other.json").write_text('{"format": "something else"}')
+    (tmp_path / "broken.json").write_text("{")
+    [(key, shares)] = history_of(tmp_path).items()
+    assert key == ("a/pick.scenario.yaml", "c1")
+    assert shares == pytest.approx([1 / 6, 3 / 8, 1 / 2])
+
+
+def test_annotations_stand_at_their_lines_and_cannot_be_broken_out_of():
+    lines = list(error_annotations([passed(0), failed(1), STUCK, INVALID, BROKEN]))
+    assert lines[0] == (
+        "::error file=a/pick.scenario.yaml,line=9,title=Pick [c1]::lifted cube: failed: 30 mm"
+    )
+    assert lines[1].startswith("::error file=b/place.scenario.yaml,line=7,title=Place::move_to far")
+    assert lines[2].startswith("::error file=c/typo.scenario.yaml,line=3,col=5,")
+    assert len(lines) == 4
+    assert all("\n" not in line for line in lines)
+
+
+def test_the_job_summary_has_the_worst_first_and_keeps_text_text():
+    lines = job_summary(small_suite()).splitlines()
+    assert lines[0] == "## 💥 armharness: 1 of 5 passed"
+    rows = [line for line in lines if line.startswith("| ")][1:]
+    assert rows[0].startswith("| ❌ | Pick")
+    assert rows[-1].startswith("| ✅ |")
+    assert all(line.replace("\\|", "").count("|") == 5 for line in rows)
+    assert not any("<script>" in line.replace("\\<", "") for line in lines)
+
+
+def test_short_lines_are_as_editors_have_them():
+    assert list(short_lines([passed(0), failed(1), INVALID])) == [
+        "a/pick.scenario.yaml:9:1: [c1] lifted cube: failed: 30 mm",
+        "c/typo.scenario.yaml:3:5: no verb is called `pikc`: did you mean",
+    ]
+
+
+def test_cases_that_fail_alike_have_one_cause():
+    assert cause_of(STUCK).group == "NO_IK_SOLUTION in move_to"
+    assert cause_of(passed(0)) is None
+    assert cause_of(failed(1)).group == cause_of(failed(2, 0.01)).group
+
+
+def test_margins_of_any_unit_are_shares_between_minus_one_and_one():
+    assert worst([]) is None
+    for record in large_suite(200).cases:
+        for verdict in record.result.verdicts:
+            share = margin_share(verdict)
+            assert -1 <= share <= 1
+            assert math.copysign(1, share) == (1 if verdict.status == "passed" else -1)

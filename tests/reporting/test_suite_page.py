@@ -1,0 +1,80 @@
+"""A suite's page in a real browser, opened from disk."""
+
+import pytest
+
+from harness.reporting.suite.write import write_suite
+from tests.reporting.suites import large_suite, small_suite
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory):
+    history = {("a/pick.scenario.yaml", "c0"): [0.5, 0.4, None, 0.3]}
+    return write_suite(tmp_path_factory.mktemp("small"), small_suite(), 3, history)
+
+
+@pytest.fixture(scope="module")
+def large(tmp_path_factory):
+    return write_suite(tmp_path_factory.mktemp("large"), large_suite(2000), 1)
+
+
+def names(page):
+    return [text.split("[")[-1].split("]")[0] for text in
+            page.locator("tbody tr:not(.group) td:nth-child(2)").all_inner_texts()]  # fmt: skip
+
+
+def test_it_tells_everything_and_hostile_names_stay_text(small, visit):
+    seen = visit(small)
+    page = seen.page
+    assert page.title() == "1 of 5 passed"
+    assert page.locator("tbody tr").count() == 5
+    assert "<script>document.title" in seen.text("tbody")
+    assert "8 of 10 samples passed, 80.0%" in seen.text("main")
+    assert page.locator("svg.spark").count() == 1
+    link = page.get_attribute("tbody a", "href")
+    assert link.endswith("a/pick/c1/report.html#t=2.00&expect=2")
+
+
+def test_filters_search_and_address(small, visit):
+    page = visit(small).page
+    page.click("[data-outcome=failed]")
+    assert page.locator("tbody tr").count() == 2
+    page.click("#causes button:has-text('NO_IK_SOLUTION')")
+    assert page.locator("tbody tr").count() == 1
+    page.click("#causes button:has-text('NO_IK_SOLUTION')")
+    page.fill("#search input", "req-7")
+    assert page.locator("tbody tr").count() == 0
+    page.click("[data-outcome=failed]")
+    assert page.locator("tbody tr").count() == 1
+    assert "search=req-7" in page.evaluate("location.hash")
+    again = visit(small, page.evaluate("location.hash")).page
+    assert again.locator("tbody tr").count() == 1
+
+
+def test_sorted_by_worst_margin_and_grouped_by_cause(small, visit):
+    page = visit(small).page
+    page.select_option("#order select", "share")
+    assert names(page)[:2] == ["c1", "c0"]
+    page.select_option("#order select", "cause")
+    heads = page.locator("tr.group").all_inner_texts()
+    assert len(heads) == 5
+    assert heads[-1].strip() == "passed (1)"
+
+
+def test_two_thousand_rows_are_searched_and_sorted(large, visit):
+    page = visit(large).page
+    assert page.locator("tbody tr").count() == 2000
+    page.fill("#search input", "c1999")
+    assert names(page) == ["c1999"]
+    page.fill("#search input", "")
+    page.select_option("#order select", "share")
+    shares = page.eval_on_selector_all("tbody tr", "rows => rows.map((row) => +row.dataset.share)")
+    assert shares == sorted(shares)
+    assert len(shares) == 2000
+
+
+def test_without_scripts_and_on_a_phone_every_row_is_there(small, visit):
+    page = visit(small, scripts=False, width=390).page
+    assert page.locator("tbody tr").count() == 5
+    assert not page.locator("#search").is_visible()
+    phone = visit(small, width=390).page
+    assert phone.evaluate("document.documentElement.scrollWidth") <= 390
