@@ -11,15 +11,21 @@ from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.checker import describe_touches, touch_facts
-from harness.planning.path_search import Effort, verified_paths
+from harness.planning.path_search import Effort, FoundPath, verified_paths
 from harness.planning.shortening import shorten
 from harness.planning.task import PlanningTask
 from harness.planning.timing import TimingError, time_blended, time_stopping, time_straight
-from harness.planning.verify import FINAL_RESOLUTION, Defect
+from harness.planning.verify import (
+    FINAL_RESOLUTION,
+    VERIFIED_RESOLUTION,
+    Defect,
+    distances_to_path,
+    find_departure,
+)
 from harness.ports import MotionPlan
 
 BLEND_DEVIATIONS = (0.05, 0.01)
-"""How far the timed path may leave a corner of the checked one [rad]; then it stops there."""
+"""How far the timed path may leave the checked one at its corners [rad]; then it stops there."""
 
 LONGEST_DETOUR = 2.0
 """A straight way to a farther solution is taken only up to this many times the nearest's length."""
@@ -70,22 +76,34 @@ def _searched(
     defect: Defect | None = None
     try:
         for found in verified_paths(task.checker, task.start, goals, task.options, effort):
-            short = shorten(found.waypoints, task.checker, FINAL_RESOLUTION, found.seed)
-            timed = _timed(task, short)
-            if isinstance(timed, JointTrajectory):
-                planner_id = found.result.planner_id
-                statistics = task.statistics(planner_id, timed, short, found.waypoints)
-                statistics |= {
-                    "attempts": found.attempt + 1,
-                    "search_checks": effort.checks,
-                    "vertices": found.result.vertices,
-                    "resolution": found.resolution,
-                }
-                return MotionPlan(timed, statistics, _chosen(explanation, short[-1]))
-            defect = timed
+            for resolution in (FINAL_RESOLUTION, VERIFIED_RESOLUTION):
+                short = shorten(found.waypoints, task.checker, resolution, found.seed)
+                timed = _timed(task, short)
+                if isinstance(timed, JointTrajectory):
+                    statistics = _statistics(task, found, effort, short, timed)
+                    return MotionPlan(timed, statistics, _chosen(explanation, short[-1]))
+                defect = timed
     except ValueError as problem:
         raise PlanningFailed("PLANNING_FAILED", str(problem)) from problem
     raise _not_found(task, goals, explanation, effort.checks, effort.gaps, defect)
+
+
+def _statistics(
+    task: PlanningTask,
+    found: FoundPath,
+    effort: Effort,
+    short: FloatArray,
+    timed: JointTrajectory,
+) -> dict[str, Any]:
+    away = distances_to_path(timed.positions, short)
+    return {
+        **task.statistics(found.result.planner_id, timed, short, found.waypoints),
+        "attempts": found.attempt + 1,
+        "search_checks": effort.checks,
+        "vertices": found.result.vertices,
+        "resolution": found.resolution,
+        "path_deviation": float(away.max()),
+    }
 
 
 def _timed(task: PlanningTask, waypoints: FloatArray) -> JointTrajectory | Defect:
@@ -99,10 +117,12 @@ def _timed(task: PlanningTask, waypoints: FloatArray) -> JointTrajectory | Defec
             trajectory = time_blended(names, waypoints, task.limits, blend)
         except TimingError:
             continue
-        if task.defect(trajectory, end) is None:
+        departure = find_departure(trajectory, waypoints, blend)
+        if departure is None and task.defect(trajectory, end) is None:
             return trajectory
     trajectory = time_stopping(names, waypoints, task.limits)
-    return task.defect(trajectory, end) or trajectory
+    departure = find_departure(trajectory, waypoints, 0.0)
+    return departure or task.defect(trajectory, end) or trajectory
 
 
 def _not_found(

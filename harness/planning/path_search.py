@@ -13,8 +13,9 @@ from harness.planning.search import Search, search
 from harness.planning.verify import FINAL_RESOLUTION
 from harness.ports import PlanningOptions
 
-PLANNING_RESOLUTIONS = (1 / 32, 1 / 64, 1 / 128)
-"""Joint-space distance between checked states while searching [rad]; finer when a path fails."""
+PLANNING_RESOLUTIONS = (1 / 32, 1 / 64, 1 / 128, 1 / 128, 1 / 128, 1 / 128)
+"""Joint-space distance between checked states while searching [rad]; finer when a path fails, then
+from other seeds."""
 
 
 @dataclass(eq=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,10 @@ from harness.planning.limits import Limits
 from harness.planning.path_constraints import HeldConstraints
 
 FINAL_RESOLUTION = 1 / 128
-"""Joint-space distance between states checked on the final trajectory [rad]."""
+"""Joint-space distance between states checked on the path that is found and shortened [rad]."""
+
+VERIFIED_RESOLUTION = FINAL_RESOLUTION / 3
+"""Between states checked on the trajectory that is commanded: finer than any planner's [rad]."""
 
 END_TOLERANCE = 1e-6
 """How far a trajectory may start or end from where it should [rad or m]."""
@@ -48,17 +52,52 @@ def find_defect(
     """The first thing that forbids a trajectory to be executed, or None.
 
     Stamps must rise, the ends be where they should and at rest, positions be inside the joint
-    limits, velocities and accelerations inside the scaled ones, efforts inside theirs; path
-    constraints must hold on every sample and midway between, and every state on the way be free.
+    limits, velocities and accelerations inside the scaled ones, jerks and efforts inside theirs;
+    path constraints must hold on every sample and midway between, and every state on the way be
+    free.
     """
     return (
         _stamps(trajectory)
         or _ends(trajectory, start, end)
         or _limits(trajectory, checker, limits)
+        or _jerks(trajectory, limits)
         or _efforts(trajectory, limits)
         or _constraints(trajectory, held)
         or _collision(trajectory, checker)
     )
+
+
+def find_departure(
+    trajectory: JointTrajectory, waypoints: FloatArray, deviation: float
+) -> Defect | None:
+    """Where a trajectory leaves its path farther than it may, or None.
+
+    Args:
+        trajectory: Timed.
+        waypoints: Of the path that was checked, shape (N, dof).
+        deviation: Largest joint-space distance from its lines [rad].
+    """
+    away = distances_to_path(trajectory.positions, waypoints)
+    row = int(np.argmax(away))
+    if away[row] <= deviation + END_TOLERANCE:
+        return None
+    time = float(trajectory.times[row])
+    return Defect(
+        f"at {time:.3f} s it would be {away[row]:.3g} rad off the path that was checked, "
+        f"{deviation:.3g} rad are allowed",
+        {"broken": "path", "time": time, "path_deviation": float(away[row])},
+    )
+
+
+def distances_to_path(positions: FloatArray, waypoints: FloatArray) -> FloatArray:
+    """Joint-space distances of rows (N, dof) from the polyline through waypoints, shape (N,)."""
+    nearest = np.full(len(positions), np.inf)
+    for first, second in pairwise(waypoints):
+        way = second - first
+        shares = (positions - first) @ way / max(float(way @ way), 1e-18)
+        feet = first + np.clip(shares, 0.0, 1.0)[:, None] * way
+        nearest = np.minimum(nearest, np.linalg.norm(positions - feet, axis=1))
+    return nearest
 
 
 def _stamps(trajectory: JointTrajectory) -> Defect | None:
@@ -103,6 +142,22 @@ def _limits(trajectory: JointTrajectory, checker: MotionChecker, limits: Limits)
     return None
 
 
+def _jerks(trajectory: JointTrajectory, limits: Limits) -> Defect | None:
+    if not np.isfinite(limits.jerk):
+        return None
+    changes = np.abs(np.diff(trajectory.accelerations, axis=0))
+    jerks = changes / np.diff(trajectory.times)[:, None]
+    row, joint = np.unravel_index(int(np.argmax(jerks)), jerks.shape)
+    if jerks[row, joint] <= limits.jerk * (1 + LIMIT_TOLERANCE):
+        return None
+    name, time = trajectory.joint_names[joint], float(trajectory.times[row])
+    return Defect(
+        f"{name} has a jerk of {jerks[row, joint]:.3g}, of at most {limits.jerk:.3g}, "
+        f"at {time:.3f} s",
+        {"broken": "jerk limit", "joint": name, "time": time},
+    )
+
+
 def _efforts(trajectory: JointTrajectory, limits: Limits) -> Defect | None:
     dynamics = limits.dynamics
     if dynamics is None:
@@ -141,7 +196,7 @@ def _collision(trajectory: JointTrajectory, checker: MotionChecker) -> Defect | 
     positions, metric = trajectory.positions, checker.space.metric
     steps = np.linalg.norm(np.diff(positions, axis=0) * metric, axis=1)
     travelled = np.concatenate([[0.0], np.cumsum(steps)])
-    count = max(1, int(np.ceil(travelled[-1] / FINAL_RESOLUTION)))
+    count = max(1, int(np.ceil(travelled[-1] / VERIFIED_RESOLUTION)))
     places = np.linspace(0.0, travelled[-1], count + 1)
     moving = np.concatenate([[True], steps > 0])
     dense = np.column_stack(

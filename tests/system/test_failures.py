@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import cv2
+import numpy as np
 import pytest
 
 from harness.core.resources import data_folder
@@ -138,6 +139,18 @@ def test_stages_come_in_order_and_the_first_that_failed_has_the_code(failed):
         assert names == [name for name in STAGES if name in names]
         codes = [stage.code for stage in stages if stage.status == "failed"]
         assert step.error_code in codes
+
+
+def test_a_motion_that_is_refused_never_moves_the_arm(failed):
+    """Refused by planning, verification included: no time passes and no command changes."""
+    _, run, _ = failed
+    for step in run.steps:
+        if step.status != "expected_error" or step.error_code in ("CONTROL_FAILED", "TIMED_OUT"):
+            continue
+        assert step.trajectory is None
+        assert step.end_time == step.start_time
+        around = run.signals.joint_commands[max(0, step.start_index - 1) : step.end_index + 1]
+        assert np.array_equal(around, np.broadcast_to(around[0], around.shape), equal_nan=True)
 
 
 def test_a_picture_shows_every_state_that_is_spoken_of(failed):
