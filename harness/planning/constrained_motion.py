@@ -87,9 +87,9 @@ def find_constrained_motion(
         )
     raise PlanningFailed(
         "PLANNING_FAILED",
-        "no free path along which the constraints hold was found in "
-        f"{task.checker.checks} state checks",
-        {**explanation, "state_checks": task.checker.checks},
+        "no free path along which the constraints hold was found in at most "
+        f"{task.options.max_state_checks} state checks",
+        {**explanation, "state_checks": task.checker.checks + held.checks},
     )
 
 
@@ -138,7 +138,15 @@ class _Search:
         self.task, self.held, self.rng, self.resolution = task, held, rng, resolution
         # a chord leaves a curve of radius 1 rad by an eighth of its length squared
         self.step = float(np.clip(np.sqrt(held.narrowest), _LEAST_STEP, LONGEST_STEP))
-        self.budget_end = task.checker.checks + task.options.max_state_checks
+        self._budget_end = self._spent + task.options.max_state_checks
+
+    @property
+    def _spent(self) -> int:
+        return self.task.checker.checks + self.held.checks
+
+    @property
+    def _is_over(self) -> bool:
+        return self._spent >= self._budget_end
 
     def connect(self, goals: Sequence[FloatArray]) -> list[FloatArray] | None:
         """Grow a tree from the start and one from the goals until they meet."""
@@ -147,7 +155,7 @@ class _Search:
         second = _Tree(list(goals), [-1] * len(goals))
         from_start = True
         for _ in range(_MOST_ROUNDS):
-            if self.task.checker.checks >= self.budget_end:
+            if self._is_over:
                 return None
             sample = random_positions(space, self.rng)
             reached = self._extend(first, first.nearest(sample, metric), sample)
@@ -173,7 +181,7 @@ class _Search:
         """States one step from each other towards a target, free and inside the constraints."""
         space, here, found = self.task.space, start, list[FloatArray]()
         left = space.distance(here, target)
-        while left > 1e-9 and self.task.checker.checks < self.budget_end:
+        while left > 1e-9 and not self._is_over:
             if left <= self.step:
                 new: FloatArray | None = target
             else:

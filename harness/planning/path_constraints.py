@@ -44,10 +44,12 @@ class HeldConstraints:
         space: The group.
         lower: Of each value, shape (m,).
         upper: Shape (m,).
+        checks: States looked at so far.
     """
 
     def __init__(self, constraints: PathConstraints, space: GroupSpace) -> None:
         self.space = space
+        self.checks = 0
         self._constraints = constraints
         names: list[str] = []
         low: list[float] = []
@@ -82,6 +84,7 @@ class HeldConstraints:
 
     def values(self, positions: FloatArray) -> FloatArray:
         """Of all constraints at group positions, shape (m,)."""
+        self.checks += 1
         parts: list[FloatArray] = []
         whole, robot = self.space.whole(positions), self.space.robot
         band, box = self._constraints.orientation, self._constraints.position

@@ -41,7 +41,8 @@ class Planning(SpecModel):
     )
     max_state_checks: Annotated[Count, Field(ge=1, le=10_000_000)] | None = Field(
         default=None,
-        description="Budget of a search: states checked for collision; default 200000.",
+        description="Budget of a search: states checked for collision and path constraints; "
+        "default 200000.",
     )
     planning_attempts: Annotated[Count, Field(ge=1, le=100)] | None = Field(
         default=None,
