@@ -15,6 +15,7 @@ from harness.engine.cell import Cell
 
 GRASP_DEPTH = 0.02  # [m] below the top of a tall object
 MAX_LEAN = 10.0  # [degrees]
+UP = np.array([0.0, 0.0, 1.0])
 
 
 def gripper_axes(cell: Cell) -> tuple[FloatArray, FloatArray]:
@@ -35,8 +36,12 @@ def gripper_axes(cell: Cell) -> tuple[FloatArray, FloatArray]:
     return approach / np.linalg.norm(approach), closing / np.linalg.norm(closing)
 
 
-def top_grasp(obj: WorldObject, object_pose: SE3, cell: Cell) -> SE3:
-    """T_world_tcp that takes an object from above, across the narrow one of its level sides.
+def top_grasps(obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:
+    """T_world_tcp of every way to take an object from above, as its shape and the gripper have it.
+
+    Across the narrow one of its level sides comes first, then half a turn of that: two fingers are
+    alike. A box is taken across its wider side too if the gripper opens so far; what is round about
+    the vertical, at every eighth of a turn.
 
     Raises:
         StepFailed: INVALID_OBJECT_NAME, when the object is too wide, leans, or its shape says too
@@ -53,22 +58,33 @@ def top_grasp(obj: WorldObject, object_pose: SE3, cell: Cell) -> SE3:
             f"'{obj.name}' leans by {lean:.0f} degrees, which is no way to take it from above:"
             " give a `grasp_pose`",
         )
-    narrow = min((axis for axis in (1, 0, 2) if axis != vertical), key=lambda axis: size[axis])
+    level = sorted((axis for axis in (1, 0, 2) if axis != vertical), key=lambda axis: size[axis])
     opening = float(cell.gripper.widths[:, 1].max())
-    if size[narrow] > opening:
+    if size[level[0]] > opening:
         raise StepFailed(
             "INVALID_OBJECT_NAME",
-            f"'{obj.name}' is {size[narrow] * 1e3:.0f} mm wide, the gripper opens"
+            f"'{obj.name}' is {size[level[0]] * 1e3:.0f} mm wide, the gripper opens"
             f" {opening * 1e3:.0f} mm: give a `grasp_pose`",
         )
     approach, closing = gripper_axes(cell)
-    side = at.rotation[:, narrow].copy()
+    side = at.rotation[:, level[0]].copy()
     side[2] = 0.0
     side /= np.linalg.norm(side)
     rotation = _align(approach, closing, np.array([0.0, 0.0, -1.0]), side)
     height = size[vertical]
-    depth = min(GRASP_DEPTH, height / 2)
-    return SE3(rotation, at.translation + np.array([0.0, 0.0, height / 2 - depth]))
+    point = at.translation + np.array([0.0, 0.0, height / 2 - min(GRASP_DEPTH, height / 2)])
+    turns = _equal_turns(shape.geometry, vertical, fits_across=size[level[1]] <= opening)
+    return [SE3(turn_about(UP, turn) @ rotation, point) for turn in turns]
+
+
+def _equal_turns(geometry: Geometry, vertical: int, *, fits_across: bool) -> list[float]:
+    """Turns about the vertical after which a grasp is as good as before, least first [rad]."""
+    upright = isinstance(geometry, Cylinder | Capsule) and vertical == 2
+    if upright or isinstance(geometry, Sphere):
+        eighths = [0, 4, 1, -1, 2, -2, 3, -3]
+    else:
+        eighths = [0, 4, 2, -2] if fits_across else [0, 4]
+    return [eighth * math.pi / 4 for eighth in eighths]
 
 
 def grasp_point(obj: WorldObject, object_pose: SE3) -> FloatArray:

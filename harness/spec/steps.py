@@ -396,7 +396,13 @@ class Travel(SpecModel):
 
 
 class Pick(StepFields):
-    """Approach, grasp, lift; expands into the steps it is made of."""
+    """Approach, grasp, lift; expands into the steps it is made of.
+
+    Without a `grasp_pose` the object's shape gives the grasps from above that are as good as each
+    other: half a turn of the gripper, a box's other side if it fits, eight turns about what is
+    round. The first that the arm can approach is taken; the step reports which `grasp` of how many
+    `grasps`.
+    """
 
     short = "object"
 

@@ -172,3 +172,50 @@ def test_what_was_welded_falls_when_it_is_detached(tmp_path):
         world="lesson_ur",
     )
     assert result.outcome == "passed", failures(result)
+
+
+PLATES = "[0.06, 0.01, 0.13]", "0.25, 0.02", "0.25, -0.12"
+
+
+@pytest.mark.parametrize(
+    ("shape", "grasps", "taken"),
+    [
+        ("box: {size: [4 cm, 5 cm, 12 cm]}", 4, 1),
+        ("box: {size: [5 cm, 4 cm, 12 cm]}", 4, 3),
+        ("cylinder: {radius: 2 cm, length: 12 cm}", 8, 3),
+        ("box: {size: [12 cm, 4 cm, 12 cm]}", 2, 0),
+    ],
+)
+def test_a_grasp_that_is_blocked_is_taken_another_way(tmp_path, shape, grasps, taken):
+    """Plates that the planner alone knows stand where fingers would go."""
+    size, *places = PLATES
+    added = "".join(
+        f"""
+            - name: {name}
+              box: {{size: {size}}}
+              pose: {{frame: base_link, xyz: [{place}, 0.07]}}
+              in: planning"""
+        for name, place in zip(("plate", "other_plate"), places, strict=True)
+    )
+    result, record = run(
+        tmp_path,
+        f"""
+        - remove_object: [green_cylinder, coke_can_steel, red_box]
+        - settle: {{}}
+        - move_to: mogi_home
+        - move_to: {{pose: {{frame: base_link, xyz: [0.25, -0.05, 0.3], rpy: [180 deg, 0, 0]}}}}
+        - add_object:{added}
+        - pick: {{object: thing, lift: {{distance: 5 cm}}}}
+          expect: [{{lifted: {{object: thing, above: 4 cm}}}}]
+        """,
+        robot=UR,
+        world="lesson_ur",
+        rest=f"""
+        objects:
+          - {{name: thing, {shape}, pose: {{frame: base_link, xyz: [0.25, -0.05, 0.06]}}}}
+        """,
+    )
+    step = record.steps[5]
+    assert step.result["grasps"] == grasps
+    assert step.result["grasp"] == max(taken, 1)
+    assert result.outcome == ("passed" if taken else "failed"), failures(result)

@@ -10,7 +10,8 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.engine.cell import Cell
 from harness.engine.goals import TcpGoal, group_of
-from harness.engine.grasping import grasp_point, gripper_axes, top_grasp
+from harness.engine.grasp_choice import first_that_goes
+from harness.engine.grasping import grasp_point, gripper_axes, top_grasps
 from harness.engine.program import ProgramStep
 from harness.engine.registry import execute
 from harness.spec.poses import Direction, Pose, Position
@@ -49,25 +50,28 @@ def pick(step: Pick, cell: Cell) -> None:
 
 def _approach(step: Pick, cell: Cell) -> list[ProgramStep]:
     """The free motion to where the approach begins, and the straight one to the grasp."""
-    target = grasp_goal(step, cell)
-    before = back_off(target, travel_distance(step.approach), step, cell)
+    distance = travel_distance(step.approach)
+    ways = [(back_off(target, distance, step, cell), target) for target in grasp_goals(step, cell)]
+    chosen = first_that_goes(ways, group_of(cell, step.group), cell)
+    cell.notes.result.update(grasps=len(ways), grasp=chosen + 1)
+    before, target = ways[chosen]
     return [
         cell.child("reach", before.move_to(step.group), f"move_to before {step.object}"),
         cell.child("approach", target.lin(step.group), f"lin to {step.object}"),
     ]
 
 
-def grasp_goal(step: Pick, cell: Cell) -> TcpGoal:
-    """Where the TCP shall be to grasp: a pose, or position and pitch for arms of fewer joints."""
+def grasp_goals(step: Pick, cell: Cell) -> list[TcpGoal]:
+    """Where the TCP may be to grasp: poses, or position and pitch for arms of fewer joints."""
     if step.grasp_pose is not None:
-        return TcpGoal(world_pose_spec(cell.world_pose(step.grasp_pose)))
+        return [TcpGoal(world_pose_spec(cell.world_pose(step.grasp_pose)))]
     object_pose = cell.frame(step.object)
     if arm_has_six_joints(cell, step.group) and step.pitch is None:
         obj = cell.presence[step.object].obj
-        return TcpGoal(world_pose_spec(top_grasp(obj, object_pose, cell)))
+        return [TcpGoal(world_pose_spec(pose)) for pose in top_grasps(obj, object_pose, cell)]
     point = grasp_point(cell.presence[step.object].obj, object_pose)
     x, y, z = (float(value) for value in point)
-    return TcpGoal(Position(xyz=(x, y, z)), step.pitch or 0.0)
+    return [TcpGoal(Position(xyz=(x, y, z)), step.pitch or 0.0)]
 
 
 def back_off(target: TcpGoal, distance: float, step: Pick, cell: Cell) -> TcpGoal:
