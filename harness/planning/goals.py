@@ -141,15 +141,22 @@ def _constraints_violated(
 ) -> PlanningFailed:
     """The arm reaches what its joints can choose, and misses the rest of the pose."""
     turned_by = angle(missed.turn)
-    tolerance = goal.orientation_tolerance if isinstance(goal, PoseGoal) else goal.pitch_tolerance
     write = "`position` and `pitch`" if "pitch" in study.answer.task else "`position`"
     return PlanningFailed(
         "GOAL_CONSTRAINTS_VIOLATED",
         f"with {space.dof} joints {goal.link} reaches the {study.answer.task} of the pose, but is "
-        f"then turned {turned_by} away from it, and {angle(tolerance)} are allowed: "
+        f"then turned {turned_by} away from it, and {_allowed_turn(goal)} are allowed: "
         f"give {write} instead of `pose`, or a wider `tolerance`",
         study.facts() | {"position_error": missed.shift, "orientation_error": missed.turn},
     )
+
+
+def _allowed_turn(goal: PoseGoal | PositionGoal) -> str:
+    if isinstance(goal, PositionGoal):
+        return angle(goal.pitch_tolerance)
+    if goal.axis_tolerances is None:
+        return angle(goal.orientation_tolerance)
+    return ", ".join(map(angle, goal.axis_tolerances)) + " about x, y, z"
 
 
 def _nearest_limit(space: GroupSpace, outside: Sequence[LimitedSolution]) -> str:

@@ -23,6 +23,7 @@ from harness.planning.ik_open_manipulator import (
 from harness.planning.ik_ur import UrGeometry, is_ur_like, solve_ur
 from harness.planning.nearest_pose import distance_to_goal
 from harness.planning.robot_model import GroupSpace, RobotModel
+from harness.planning.turns import is_within, turn_from
 from harness.ports import PoseGoal, PositionGoal
 from harness.robot.description import Joint, RobotDescription
 
@@ -261,7 +262,12 @@ def meets_tolerance(goal: LinkGoal, pose: SE3) -> bool:
     """Whether a link pose is within the goal's tolerances."""
     if isinstance(goal, PoseGoal):
         shift, angle = goal.pose.distance_to(pose)
-        return shift <= goal.position_tolerance and angle <= goal.orientation_tolerance
+        if shift > goal.position_tolerance:
+            return False
+        if goal.axis_tolerances is None:
+            return angle <= goal.orientation_tolerance
+        turn = turn_from(goal.pose.rotation, pose.rotation, goal.axis_tolerances)
+        return is_within(turn, goal.axis_tolerances)
     shift = float(np.linalg.norm(goal.position - pose.translation))
     if shift > goal.position_tolerance:
         return False

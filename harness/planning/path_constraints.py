@@ -7,13 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from harness.core.spatial import quat_wxyz_from_rotation
 from harness.core.types import FloatArray
 from harness.planning.robot_model import GroupSpace
-from harness.ports import OrientationBand, PathConstraints, PositionBox
-
-FREE = np.pi - 1e-6
-"""A tolerance about one axis from which on any turn about it is allowed [rad]."""
+from harness.planning.turns import FREE, turn_from
+from harness.ports import PathConstraints, PositionBox
 
 INNER_SHARE = 0.8
 """Of every tolerance that projected states keep to, so that the lines between them hold it too."""
@@ -89,7 +86,8 @@ class HeldConstraints:
         whole, robot = self.space.whole(positions), self.space.robot
         band, box = self._constraints.orientation, self._constraints.position
         if band is not None:
-            parts.append(_turn(band, robot.link_pose(whole, band.link).rotation))
+            rotation = robot.link_pose(whole, band.link).rotation
+            parts.append(turn_from(band.rotation, rotation, band.tolerance))
         if box is not None:
             parts.append(_offset(box, robot.link_pose(whole, box.link).translation))
         parts.append(positions[self._joints])
@@ -146,35 +144,6 @@ class HeldConstraints:
             step = np.linalg.lstsq(slopes, off[broken], rcond=1e-6)[0]
             q = np.asarray(np.clip(q - step, self.space.lower, self.space.upper), dtype=np.float64)
         return None
-
-
-def _turn(band: OrientationBand, rotation: FloatArray) -> FloatArray:
-    """How a link is turned away from the band's middle, about the middle's axes [rad], shape (3,).
-
-    The rotation vector; where one axis alone is free, the vector of what is left when the turn
-    about that axis is taken out, so that a cone about it stays a cone however far it is turned.
-    """
-    quat = quat_wxyz_from_rotation(band.rotation.T @ rotation)
-    free = [axis for axis in range(3) if band.tolerance[axis] >= FREE]
-    if len(free) != 1:
-        return _rotation_vector(quat)
-    axis = free[0]
-    w, v = quat[0], quat[1:]
-    size = float(np.hypot(w, v[axis]))
-    if size < 1e-9:
-        return _rotation_vector(quat)
-    cosine, sine = w / size, v[axis] / size
-    unit = np.eye(3)[axis]
-    swing_vector = cosine * v - sine * w * unit - np.cross(v, sine * unit)
-    return _rotation_vector(np.concatenate([[cosine * w + sine * v[axis]], swing_vector]))
-
-
-def _rotation_vector(quat_wxyz: FloatArray) -> FloatArray:
-    size = float(np.linalg.norm(quat_wxyz[1:]))
-    if size < 1e-12:
-        return np.zeros(3)
-    angle = 2 * np.arctan2(size, abs(quat_wxyz[0]))
-    return np.sign(quat_wxyz[0] or 1.0) * angle * quat_wxyz[1:] / size
 
 
 def _offset(box: PositionBox, point: FloatArray) -> FloatArray:

@@ -180,6 +180,19 @@ def test_four_joints_report_what_of_a_pose_they_miss_and_take_it_where_that_is_a
         assert solution["residual"]["position"] < 1e-9
 
 
+def test_tolerances_about_axes_are_kept_one_by_one():
+    """Turned by 0.5 rad about z, where the arm cannot follow: room about x and y does not help."""
+    cell = Cell(open_manipulator())
+    pose = at(0.25, 0.0, 1.095, rpy=(0, 0, 0.5))
+    for about_z in (0.6, 3.15):
+        goal = PoseGoal(TCP, pose, 1e-3, about_z, (0.01, 0.01, about_z))
+        assert cell.planner.plan("arm", cell.state, goal, OPTIONS).trajectory.duration > 0
+    wrong = PoseGoal(TCP, pose, 1e-3, 0.6, (0.6, 0.6, 0.4))
+    error = explained(cell.planner.plan, "arm", cell.state, wrong, OPTIONS)
+    assert error.code == "GOAL_CONSTRAINTS_VIOLATED"
+    assert "34.4°, 34.4°, 22.9° about x, y, z are allowed" in error.message
+
+
 def test_joints_are_told_in_their_own_units():
     cell = Cell(ur("ur3e"))
     beyond = JointGoal(np.array([-3.5, -1.57, 0, 0, 0, 0]))
