@@ -21,7 +21,7 @@ from harness.planning.kinematics import PinocchioKinematics
 from harness.planning.limits import Limits, TimingError
 from harness.planning.link_motion import LinkMotions
 from harness.planning.motion_sequence import plan_items
-from harness.planning.profiles import cubic_curve, on_grid, sample
+from harness.planning.profiles import cubic_curve, on_grid, quintic_curve, sample
 from harness.planning.scene import CoalScene
 from harness.planning.task import PlanningTask, make_task
 from harness.planning.timing import time_straight
@@ -194,7 +194,7 @@ class VerifiedPlanner:
 
 def _whole_limits(task: PlanningTask) -> Limits:
     whole = Limits.scaled(task.space.velocity, task.space.acceleration, 1.0, 1.0)
-    return replace(whole, dynamics=task.limits.dynamics)
+    return replace(whole, dynamics=task.limits.dynamics, jerk=task.limits.jerk)
 
 
 def _untimed(problem: TimingError) -> PlanningFailed:
@@ -202,26 +202,36 @@ def _untimed(problem: TimingError) -> PlanningFailed:
 
 
 def _timed_by_hand(task: PlanningTask, end: FloatArray, duration: float) -> JointTrajectory:
-    """A cubic from rest to rest in exactly the duration asked for.
+    """A cubic from rest to rest in exactly the duration asked for; a quintic under a jerk limit.
 
     Raises:
         PlanningFailed: INVALID_MOTION_PLAN, when a joint cannot do it; says how long it needs.
     """
-    total = on_grid(duration)
+    limits, total = task.limits, on_grid(duration)
     span = np.abs(end - task.start)
-    shortest = np.maximum(
-        1.5 * span / task.limits.velocity, np.sqrt(6 * span / task.limits.acceleration)
+    is_smooth = bool(np.isfinite(limits.jerk))
+    # largest rate, change and change of that of either curve from 0 to 1 in 1 s
+    peaks = (15 / 8, 10 / np.sqrt(3), 60.0) if is_smooth else (1.5, 6.0, 0.0)
+    shortest = np.max(
+        [
+            peaks[0] * span / limits.velocity,
+            np.sqrt(peaks[1] * span / limits.acceleration),
+            np.cbrt(peaks[2] * span / limits.jerk),
+        ],
+        axis=0,
     )
     slowest = int(np.argmax(shortest))
     if shortest[slowest] > total * (1 + 1e-9):
-        name = task.space.joint_names[slowest]
+        name, way = task.space.joint_names[slowest], span[slowest]
+        jerk = f", a jerk of {peaks[2] * way / total**3:.2f} of at most {limits.jerk:.2f}"
         raise PlanningFailed(
             "INVALID_MOTION_PLAN",
-            f"{name} cannot move {span[slowest]:.3f} in {duration:g} s: that takes "
-            f"{1.5 * span[slowest] / total:.2f} of at most {task.limits.velocity[slowest]:.2f} per "
-            f"second and {6 * span[slowest] / total**2:.2f} of at most "
-            f"{task.limits.acceleration[slowest]:.2f} per second squared; "
+            f"{name} cannot move {way:.3f} in {duration:g} s: that takes "
+            f"{peaks[0] * way / total:.2f} of at most {limits.velocity[slowest]:.2f} per "
+            f"second and {peaks[1] * way / total**2:.2f} of at most "
+            f"{limits.acceleration[slowest]:.2f} per second squared{jerk if is_smooth else ''}; "
             f"give it at least {shortest[slowest]:.3f} s",
             {"joint": name, "shortest_duration": float(shortest[slowest]), "duration": duration},
         )
-    return sample(task.space.joint_names, cubic_curve(task.start, end, total), total)
+    curve = (quintic_curve if is_smooth else cubic_curve)(task.start, end, total)
+    return sample(task.space.joint_names, curve, total)

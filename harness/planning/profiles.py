@@ -75,7 +75,11 @@ def on_grid(duration: float) -> float:
     return float(max(1, np.ceil(duration / GRID - 1e-9)) * GRID)
 
 
-def straight_curve(first: FloatArray, second: FloatArray, profile: Trapezoid) -> Curve:
+Profile = Callable[[FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
+"""A parameter, its rate and its acceleration, (N,) each, at times (N,)."""
+
+
+def straight_curve(first: FloatArray, second: FloatArray, profile: Profile) -> Curve:
     """Along a straight joint-space line, `profile` running from 0 to 1."""
     span = second - first
 
@@ -96,6 +100,21 @@ def cubic_curve(first: FloatArray, second: FloatArray, duration: float) -> Curve
             first + (3 * u**2 - 2 * u**3) * span,
             (6 * u - 6 * u**2) / duration * span,
             (6 - 12 * u) / duration**2 * span,
+        )
+
+    return curve
+
+
+def quintic_curve(first: FloatArray, second: FloatArray, duration: float) -> Curve:
+    """Point to point, velocity and acceleration zero on both ends: the least jerk over its time."""
+    span = second - first
+
+    def curve(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        u = np.clip(times / duration, 0.0, 1.0)[:, None]
+        return (
+            first + ((6 * u - 15) * u + 10) * u**3 * span,
+            30 * (u * (1 - u)) ** 2 / duration * span,
+            60 * u * (1 - u) * (1 - 2 * u) / duration**2 * span,
         )
 
     return curve

@@ -10,9 +10,10 @@ import numpy as np
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.blended_path import BlendedPath
+from harness.planning.jerk_profile import JerkLimited
 from harness.planning.limits import Limits as Limits
 from harness.planning.limits import TimingError as TimingError
-from harness.planning.limits import within_limits
+from harness.planning.limits import slowed_to_limits, within_limits
 from harness.planning.profiles import Trapezoid, resting, sample, straight_curve
 from harness.planning.toppra_solver import fastest
 
@@ -25,15 +26,26 @@ _STILL = 1e-9  # [rad] paths shorter than this have nowhere to go
 def time_straight(
     joint_names: tuple[str, ...], first: FloatArray, second: FloatArray, limits: Limits
 ) -> JointTrajectory:
-    """Move on a straight joint-space line, every joint's velocity a trapezoid, all at once."""
+    """Move on a straight joint-space line, all joints at once, as fast as the limits let.
+
+    Every joint's velocity is a trapezoid; under a jerk limit it is what Ruckig makes of it.
+
+    Raises:
+        TimingError: The limits cannot be kept.
+    """
     span = np.abs(second - first)
     if np.linalg.norm(span) < _STILL:
         return resting(joint_names, first)
     moving = span > 1e-12
     velocity = float(np.min(limits.velocity[moving] / span[moving]))
     acceleration = float(np.min(limits.acceleration[moving] / span[moving]))
-    profile = Trapezoid.fastest(1.0, velocity, acceleration)
-    curve, total = within_limits(straight_curve(first, second, profile), profile.duration, limits)
+    if np.isfinite(limits.jerk):
+        jerk = limits.jerk / float(span.max())
+        profile = JerkLimited.fastest(velocity, acceleration, jerk)
+    else:
+        profile = Trapezoid.fastest(1.0, velocity, acceleration)
+    line = straight_curve(first, second, profile)
+    curve, total = slowed_to_limits(line, profile.duration, limits)
     trajectory = sample(joint_names, curve, total)
     trajectory.positions[-1] = second
     return trajectory

@@ -215,6 +215,16 @@ def test_a_timed_joint_motion_takes_exactly_its_time_or_says_what_it_needs():
     needed = error.facts["shortest_duration"]
     again = call("arm", cell.state, goal, PlanningOptions(), needed + 0.002)
     assert again.trajectory.duration == pytest.approx(needed, abs=0.0041)
+    gentle = PlanningOptions(max_jerk=20.0)
+    smooth = call("arm", cell.state, goal, gentle, 2.0).trajectory
+    assert smooth.duration == pytest.approx(2.0, abs=1e-12)
+    jerks = np.diff(smooth.accelerations, axis=0) / np.diff(smooth.times)[:, None]
+    assert np.abs(smooth.accelerations[[0, -1]]).max() < 1e-9
+    assert np.abs(jerks).max() <= 20.0
+    refused = failure(call, "arm", cell.state, goal, gentle, 1.0)
+    assert "a jerk of" in refused.message
+    slower = call("arm", cell.state, goal, gentle, refused.facts["shortest_duration"] + 0.002)
+    assert slower.trajectory.duration > 1.0
 
 
 def test_a_joint_motion_through_an_object_is_refused_with_the_pair():

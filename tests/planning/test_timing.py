@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from harness.planning.blended_path import BlendedPath
-from harness.planning.profiles import GRID, Trapezoid, cubic_curve, smoothed, straight_curve
+from harness.planning.profiles import (
+    GRID,
+    Trapezoid,
+    cubic_curve,
+    quintic_curve,
+    smoothed,
+    straight_curve,
+)
 from harness.planning.timing import Limits, time_blended, time_stopping, time_straight
 
 NAMES = tuple("abcdef")
@@ -94,6 +101,25 @@ def test_a_jerk_limit_holds_between_samples_of_every_kind_of_motion(jerk):
         assert np.abs(trajectory.accelerations / limits.acceleration).max() <= 1 + 1e-9
         assert np.allclose(trajectory.positions[[0, -1]], without.positions[[0, -1]], atol=1e-9)
         assert trajectory.duration > without.duration
+
+
+def test_a_short_way_under_a_jerk_limit_takes_what_four_equal_phases_take():
+    """Jerk up, down, down, up, a quarter of the time each: (32 d / j)^(1/3)."""
+    way = np.array([0.01, 0, 0, 0, 0, 0])
+    trajectory = time_straight(NAMES, np.zeros(6), way, replace(LIMITS, jerk=5.0))
+    assert trajectory.duration == pytest.approx((32 * 0.01 / 5.0) ** (1 / 3), abs=GRID)
+
+
+def test_a_quintic_begins_and_ends_without_acceleration():
+    curve = quintic_curve(np.zeros(1), np.ones(1), 2.0)
+    times = np.linspace(0.0, 2.0, 2001)
+    positions, velocities, accelerations = curve(times)
+    assert np.allclose(positions[[0, 1000, -1], 0], [0, 0.5, 1])
+    assert np.abs(np.gradient(positions[:, 0], times) - velocities[:, 0]).max() < 1e-3
+    assert np.abs(np.gradient(velocities[:, 0], times) - accelerations[:, 0]).max() < 1e-2
+    assert np.allclose(accelerations[[0, -1]], 0)
+    assert velocities.max() == pytest.approx(15 / 8 / 2)
+    assert accelerations.max() == pytest.approx(10 / np.sqrt(3) / 4, rel=1e-5)
 
 
 def test_a_smoothed_curve_is_its_running_mean():
