@@ -24,8 +24,8 @@ robot:
 Each is loaded with the SRDF that it brings, where that fits it. Positions of all links at random
 joint positions, and masses, agree between MuJoCo and Pinocchio's own reading of the file to
 1e-9 m and 1e-9 kg. Then one `move_to` to a random state that touches nothing is planned and
-executed within limits; *moved* says which of at most ten such states was the first to be reached
-(not every one can be: at joints of two turns, parts of what is free are cut off).
+executed within limits: the first of at most ten that can be reached. (Not every one can: at joints
+of two turns, parts of what is free are cut off.)
 
 ```sh
 pip install 'armharness[packages]'
@@ -39,9 +39,7 @@ def row(arm: PackageArm, trial: Trial) -> str:
     """The arm's line of the table."""
     mass = "" if trial.mass != trial.mass else f"{trial.mass:.3f}"
     joints = trial.joints or ""
-    moved = {0: "no", 1: "to the 1st", 2: "to the 2nd", 3: "to the 3rd"}.get(
-        trial.moved, f"to the {trial.moved}th"
-    )
+    moved = "yes" if trial.moved else "no"
     reason = trial.reason.replace("|", "/")
     srdf = trial.srdf.replace("|", "/")
     cells = f"`{arm.file}`", joints, mass, srdf, moved, reason
