@@ -77,6 +77,9 @@ def test_pictures_and_videos_follow_the_clock(visit, tmp_path):
             shown = page.evaluate(SHOWN, number)
             assert shown[1 - colour] < 90, (moment, number, shown)
         assert captions.nth(1).inner_text() == label
+    page.keyboard.press("Home")
+    assert captions.nth(1).inner_text() == "wrist · not before 0.50 s"
+    assert page.locator("canvas.not-yet").count() == 1, "only dimly, before it is taken"
     width = page.locator(".camera").first.bounding_box()["width"]
     page.locator(".camera button").first.press("Enter")
     assert page.locator(".camera").first.bounding_box()["width"] > 1.5 * width, "enlarged"

@@ -2,6 +2,7 @@
 
 import { byId, element } from "./dom.js";
 import { indexAt } from "./payload.js";
+import { seconds } from "./units.js";
 
 /**
  * @typedef {object} CameraHead
@@ -70,15 +71,19 @@ function followImages(payload, clock, camera, canvas, caption) {
     image.addEventListener("load", () => show());
     return image;
   });
-  let shown = -1;
+  let shown = -2; // index of a picture; -1 before the first is taken
   const show = () => {
     let index = indexAt(times, clock.time);
     if (times[index] > clock.time + 1e-6) index = Math.max(0, index - 1);
+    const isTaken = times[index] <= clock.time + 1e-6;
+    const place = isTaken ? index : -1;
     const picture = pictures[index];
-    if (!picture?.complete || shown === index) return;
-    shown = index;
+    if (!picture?.complete || shown === place) return;
+    shown = place;
     fit(canvas, picture, picture.naturalWidth, picture.naturalHeight);
-    caption.textContent = [camera.name, camera.images[index].label].filter(Boolean).join(" · ");
+    canvas.classList.toggle("not-yet", !isTaken);
+    const label = isTaken ? camera.images[index].label : `not before ${seconds(times[index])}`;
+    caption.textContent = [camera.name, label].filter(Boolean).join(" · ");
   };
   clock.onTime(show);
 }
