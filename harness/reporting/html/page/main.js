@@ -2,28 +2,23 @@
 
 import { readAddress, writeAddress } from "./address.js";
 import { Clock } from "./clock.js";
-import { Contacts } from "./contacts.js";
-import { byId, element, rgba, scrollInto, themeColor } from "./dom.js";
+import { makeControls } from "./controls.js";
+import { byId, scrollInto } from "./dom.js";
 import { makeFilm } from "./film.js";
 import { listenToKeys } from "./keys.js";
-import { Marks } from "./marks.js";
-import { Orbit } from "./orbit.js";
-import { indexAt, unpack, valueAt } from "./payload.js";
-import { putPlotsOnPaper } from "./paper.js";
+import { unpack, valueAt } from "./payload.js";
 import { makePictures } from "./pictures.js";
 import { plannerView } from "./planner.js";
 import { Plots } from "./plots.js";
-import { Replay } from "./replay.js";
+import { makeScene } from "./scene.js";
 import { makeSteps } from "./steps.js";
 import { findingList, jointTable, markLines, pairTable, sourceView } from "./tables.js";
 import { makeTabs } from "./tabs.js";
 import { makeTimeline, stepAt } from "./timeline.js";
 import { verdictList } from "./verdicts.js";
-import { Viewer } from "./viewer.js";
 
 const ROUNDING = 0.0051; // of times in an address [s]
 const PRESSES_TOLD = 3;
-const GRIP = 20; // a force [N] at which a body in contact glows fully
 
 async function start() {
   const payload = await unpack(byId("data"));
@@ -173,114 +168,6 @@ async function start() {
   requestAnimationFrame(loop);
   window.readyAfter = performance.now(); // [ms] since the page was asked for
   document.documentElement.dataset.ready = "yes";
-}
-
-/** The 3D view; null where the browser has no WebGL2. */
-function makeScene(payload) {
-  const { run } = payload;
-  let viewer;
-  try {
-    viewer = new Viewer(byId("view"), run.bounds);
-  } catch {
-    byId("view").append(element("p.no-view", {}, "This browser has no WebGL2: the 3D replay is off, everything else works."));
-    return null;
-  }
-  const orbit = new Orbit(run.focus, () => viewer.redraw());
-  const film = new Orbit({ ...run.focus, radius: 0.75 * run.focus.radius }, () => {});
-  orbit.control(viewer.canvas);
-  viewer.canvas.tabIndex = 0;
-  viewer.canvas.setAttribute("role", "img");
-  viewer.canvas.setAttribute("aria-label", "3D replay of the run; arrow keys turn it, plus and minus zoom");
-  const replay = new Replay(payload, viewer);
-  const marks = new Marks(payload, viewer);
-  const arrows = new Contacts(payload, viewer);
-  return {
-    viewer, orbit, film, replay, marks, arrows,
-    toolPosition(time) {
-      const { times, path } = marks.tcp;
-      const index = 3 * indexAt(times, time);
-      return [path[index], path[index + 1], path[index + 2]];
-    },
-    pose(time, step, contacts) {
-      replay.pose(time);
-      const pressed = new Map();
-      for (const series of contacts?.series ?? []) {
-        const force = valueAt(series, time);
-        if (!(force > 0.01)) continue;
-        for (const name of series.name.split(" and ")) {
-          pressed.set(name, Math.max(pressed.get(name) ?? 0, Math.min(1, 0.25 + force / GRIP)));
-        }
-      }
-      replay.glow(this.showsContacts ? pressed : new Map());
-      arrows.show(time, this.showsContacts);
-      const tool = replay.byName.get(run.toolBody);
-      replay.showState(marks.wanted.goal ? run.steps[step]?.nearest?.bodies : null);
-      marks.show(time, step, tool ? [...this.toolPosition(time), ...replay.poseOf(tool, time).slice(3)] : null);
-      if (this.follows) {
-        orbit.target = this.toolPosition(time);
-        viewer.redraw();
-      }
-    },
-    showsContacts: true,
-    follows: false,
-  };
-}
-
-function makeControls({ clock, scene, plots, drawFilm, hasPictures }) {
-  const play = byId("play");
-  play.addEventListener("click", () => clock.toggle());
-  clock.onPlay((isPlaying) => {
-    play.textContent = isPlaying ? "❚❚" : "▶";
-    play.setAttribute("aria-label", isPlaying ? "Pause" : "Play");
-  });
-  byId("speed").addEventListener("change", (event) => clock.setSpeed(Number(event.target.value)));
-  byId("unzoom").addEventListener("click", () => plots.zoom(0, clock.duration));
-  byId("print").addEventListener("click", () => print());
-  byId("help-button").addEventListener("click", () => byId("help").showModal());
-
-  const again = () => clock.timeListeners.forEach((listener) => listener(clock.time));
-  const tools = !scene ? [] : [
-    ["path", "TCP path", true, (is) => (scene.marks.wanted.path = is)],
-    ["plan", "plan", true, (is) => (scene.marks.wanted.plan = is)],
-    ["raw", "unshortened", false, (is) => (scene.marks.wanted.raw = is)],
-    ["frame", "tool frame", true, (is) => (scene.marks.wanted.frame = is)],
-    ["goal", "goal", true, (is) => (scene.marks.wanted.goal = is)],
-    ["contacts", "contacts", true, (is) => (scene.showsContacts = is)],
-    ["ghosts", "planner's objects", true, (is) => (scene.replay.hidesGhosts = !is)],
-    ["follow", "follow", false, (is) => (scene.follows = is)],
-  ];
-  if (hasPictures) tools.push(["cameras", "cameras", true, (is) => (byId("cameras").hidden = !is)]);
-  for (const [id, title, isOn, set] of tools) {
-    const button = element("button", { type: "button", "aria-pressed": isOn, id: `tool-${id}` }, title);
-    button.addEventListener("click", () => {
-      const is = button.getAttribute("aria-pressed") !== "true";
-      button.setAttribute("aria-pressed", String(is));
-      set(is);
-      again();
-    });
-    byId("tools").append(button);
-  }
-
-  const paint = () => {
-    if (scene) {
-      scene.viewer.background = rgba(themeColor("--sky")).slice(0, 3);
-      scene.viewer.ambient = Number(themeColor("--ambient"));
-      scene.replay.paintFloor(rgba(themeColor("--floor")));
-      scene.viewer.redraw();
-    }
-    plots.redraw();
-  };
-  const dark = matchMedia("(prefers-color-scheme: dark)");
-  const root = document.documentElement;
-  byId("theme").addEventListener("click", () => {
-    const isDark = root.dataset.theme ? root.dataset.theme === "dark" : dark.matches;
-    root.dataset.theme = isDark ? "light" : "dark";
-    paint();
-    drawFilm();
-  });
-  dark.addEventListener("change", paint);
-  putPlotsOnPaper(plots, paint);
-  paint();
 }
 
 start().catch((error) => {
