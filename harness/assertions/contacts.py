@@ -115,10 +115,11 @@ def _presses_from_both_sides(run: Run, name: str) -> BoolArray:
     sides = gripper_of(run).sides
     pressures: list[FloatArray] = []
     for side in sorted(sides):
-        keys = [key for key in run.signals.grip_forces if key[0] in sides[side] and key[1] == name]
+        keys = [key for key in run.signals.presses if key[0] in sides[side] and key[1] == name]
         if not keys:
             return np.ones(len(run.signals.times), dtype=bool)
-        total = np.sum([run.signals.grip_forces[key] for key in keys], axis=0)
+        forces = [np.nan_to_num(run.signals.presses[key][:, 3:]) for key in keys]
+        total = np.sum(forces, axis=0)
         pressures.append(_recent_sum(run, total))
     opposed = [
         np.sum(first * second, axis=1) < 0

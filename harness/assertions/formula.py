@@ -8,7 +8,7 @@ and at least minus infinity; so it may have failed, and cannot have passed.
 Between two samples nobody knows: `always[a, b]` looks at every sample from `a` on up to the first
 one that is at `b` or later, `eventually[a, b]` and `until[a, b]` at those from `a` up to `b`.
 
-The package rtamt (0.4.10) was tried and not taken: it counts samples where seconds are meant,
+The package rtamt (0.4.10) was tried and not taken: its discrete monitor counts samples,
 `always[0, 5]` of three samples passes there, a NaN is lost in a minimum, its compiled parser is
 bound to one version of ANTLR, and `until[0, 500]` over 5000 samples, half a second of a run, takes
 minutes (0.4 s with 100 over 1000, growing with the product of window and samples; here 5 ms). The

@@ -15,7 +15,8 @@ WORDS = {
     "joint_commands": "the commanded positions of the joints",
     "joint_command_velocities": "the commanded velocities of the joints",
     "contact_forces": "contacts",
-    "grip_forces": "the directions in which the fingers press",
+    "presses": "the directions in which the fingers press",
+    "support_forces": "what carries what",
     "clearances": "distances",
     "planned_clearances": "planned distances",
 }

@@ -1,10 +1,10 @@
-"""Which body carries an object from below, from shapes and poses."""
+"""Which body carries an object from below: by the recorded forces, else by shapes and poses."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from harness.assertions.contacts import TOUCH_FORCE, bodies_touching
+from harness.assertions.contacts import TOUCH_FORCE, bodies_touching, debounced
 from harness.assertions.poses import object_poses
 from harness.assertions.window import NotObservable, object_record
 from harness.core.geometry import Box, Capsule, Cylinder, Sphere
@@ -68,9 +68,26 @@ def rides_on(run: Run, rider: str, carrier: str) -> BoolArray:
 
 
 def supports(run: Run, name: str) -> dict[str, FloatArray]:
-    """Debounced force [N] of each body but the robot that carries the object from below."""
+    """Debounced upward force [N] of each body but the robot that carries the object from below.
+
+    Where no direction was recorded, the whole force of a body that is below counts.
+    """
     links = set(run.robot.link_names)
-    return {
-        body: np.where(is_below(run, body, name), force, 0.0)
-        for body, force in bodies_touching(run, name, but=links).items()
-    }
+    carrying: dict[str, FloatArray] = {}
+    for body, force in bodies_touching(run, name, but=links).items():
+        upward = _upward(run, body, name)
+        if upward is None:
+            carrying[body] = np.where(is_below(run, body, name), force, 0.0)
+        else:  # no part of a force is more than it is, and unknown where it is
+            carrying[body] = np.minimum(debounced(run, upward), force)
+    return carrying
+
+
+def _upward(run: Run, body: str, name: str) -> FloatArray | None:
+    """Upward force of a body on an object [N]; None where it was not recorded."""
+    recorded = run.signals.support_forces
+    if (body, name) in recorded:
+        return np.maximum(recorded[body, name], 0.0)
+    if (name, body) in recorded:
+        return np.maximum(-recorded[name, body], 0.0)
+    return None

@@ -20,6 +20,7 @@ def _run(arguments: argparse.Namespace) -> int:
     folder = Path(arguments.folder)
     if not (folder / "run.json").is_file():
         raise UsageError(f"'{folder}' is no run's folder: it has no run.json")
+    from harness.recording.store import read_run
     from harness.reporting.terminal import Style, measure_text, verdict_line
     from harness.session.rejudge import judge_run
 
@@ -27,7 +28,9 @@ def _run(arguments: argparse.Namespace) -> int:
     if with_file and not with_file.is_file():
         raise UsageError(f"no such file: '{with_file}'")
     verdicts = judge_run(folder, with_file)
+    ended_early = read_run(folder).run.ended_early
     has_passed = bool(verdicts) and all(verdict.status == "passed" for verdict in verdicts)
+    has_passed = has_passed and not ended_early  # half a run is no run that passed
     code = 0 if has_passed else EXIT_CODES["failed"]
     if arguments.json:
         with only_json_on_stdout() as write_json:
@@ -43,4 +46,6 @@ def _run(arguments: argparse.Namespace) -> int:
                 say(f"    {measure_text(measure)}")
     held = sum(verdict.status == "passed" for verdict in verdicts)
     say(f"{held} of {len(verdicts)} expectations hold")
+    if ended_early:
+        say(f"the run ended early with {ended_early}: it has failed, whatever holds until then")
     return code

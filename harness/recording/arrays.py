@@ -1,9 +1,9 @@
 """Recorded arrays under flat names, and a file of them with the same bytes every time.
 
 `times`, `tcp_pose` ... as they are; those of a mapping as `frames/<link>`, `object_poses/<object>`,
-`contact_forces/<body>|<body>`, `grip_forces/<link>|<object>`, `presses/<link>|<body>`,
-`clearances/<a>|<b>`,
-`clearance_links/<a>|<b>`, `planned_clearances/<a>|<b>`.
+`contact_forces/<body>|<body>`, `presses/<link>|<body>`,
+`support_forces/<a>|<b>`, `clearances/<a>|<b>`, `clearance_links/<a>|<b>`,
+`planned_clearances/<a>|<b>`.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ Array = np.ndarray[Any, Any]
 BY_NAME = ("frames", "object_poses")
 BY_PAIR = (
     "contact_forces",
-    "grip_forces",
     "presses",
+    "support_forces",
     "clearances",
     "clearance_links",
     "planned_clearances",

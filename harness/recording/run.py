@@ -361,11 +361,12 @@ class Signals:
             physics had them, those of the planning scene alone as the planner believed them.
         contact_forces: Normal force [N] between two bodies that ever touched, (N,) each; keys are
             (body, body), robot link first, else sorted. Zero means no contact.
-        grip_forces: Net normal force [N] of a finger's link on an object that both sides of the
-            gripper ever touched, world axes, (N, 3) each; keys as in `contact_forces`.
         presses: Where a robot link presses on another body, and how: mean of the contact points,
             weighted by their normal forces (world xyz), and the sum of these forces on the other
             body (world xyz) [N], (N, 6) each; NaN without force; keys as in `contact_forces`.
+        support_forces: Upward part of the normal force [N] that the first of two objects exerts on
+            the second; negative where the second carries the first. (N,) each; keys as in
+            `contact_forces`, of objects alone. A pair that is not in it was recorded without.
         clearances: Distance [m] between the robot (key `robot`), or a held object (its name), and
             an object, or `robot` and itself: (N,) each; NaN while either is absent. Capped at
             `clearance_cutoff`: a value there means "at least that far".
@@ -387,10 +388,10 @@ class Signals:
     contact_forces: Mapping[Pair, FloatArray] = field(
         default_factory=dict[tuple[str, str], FloatArray]
     )
-    grip_forces: Mapping[Pair, FloatArray] = field(
+    presses: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
+    support_forces: Mapping[Pair, FloatArray] = field(
         default_factory=dict[tuple[str, str], FloatArray]
     )
-    presses: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
     clearances: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
     clearance_links: Mapping[Pair, IntArray] = field(
         default_factory=dict[tuple[str, str], np.ndarray]

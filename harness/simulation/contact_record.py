@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import mujoco
@@ -109,37 +109,26 @@ class ContactRecord:
             found[self._pair(first, second)] = pressed
         return {pair: found[pair] for pair in sorted(found)}
 
-    def grip_forces(
-        self, pairs: Mapping[BodyPair, FloatArray], count: int
-    ) -> dict[BodyPair, FloatArray]:
-        """Net normal force [N] of finger links on what both sides touched, world axes, (N, 3) each.
+    def support_forces(self, count: int) -> dict[BodyPair, FloatArray]:
+        """Upward part of the normal force [N] of one object on another, shape (count,) each.
 
         Args:
-            pairs: Contact forces of the whole record.
             count: Samples, from the first on.
         """
-        gripper = self._physics.description.gripper
-        if gripper is None:
-            return {}
-        sides = [frozenset(links) for links in gripper.sides.values()]
-        touched = [{b for a, b in pairs if a in links} for links in sides]
-        both = set[str]().union(*touched).intersection(*touched)
-        end = int(self._end[count - 1])
-        rows = self._rows(0, count)
-        bodies = self._physics.model.geom_bodyid[self._geoms[:end]]
-        numbers = {name: number for number, name in enumerate(self._physics.body_names)}
+        end, rows = int(self._end[count - 1]), self._rows(0, count)
+        upward = self._forces[:end] * self._normals[:end, 2]
+        names, robot = self._physics.body_names, self._physics.robot_bodies
         found: dict[BodyPair, FloatArray] = {}
-        for link, name in pairs:
-            if name not in both or not any(link in links for links in sides):
+        for numbers, chosen in self._by_pair(0, end):
+            if not robot.isdisjoint(numbers):
                 continue
-            there = bodies == numbers[link]
-            chosen = (there | (bodies == numbers[name])).all(axis=1)
+            pair = self._pair(*numbers)
             # a contact's normal points from its first geom to its second
-            signed = np.where(there[chosen, 0], 1.0, -1.0) * self._forces[:end][chosen]
-            vectors = signed[:, None] * self._normals[:end][chosen]
-            found[link, name] = np.zeros((count, 3))
-            np.add.at(found[link, name], rows[chosen], vectors)
-        return found
+            bodies = self._physics.model.geom_bodyid[self._geoms[:end][chosen, 0]]
+            signs = np.where(bodies == names.index(pair[0]), 1.0, -1.0)
+            weights = (signs * upward[chosen]).astype(np.float64)
+            found[pair] = np.bincount(rows[chosen], weights, count).astype(np.float64)
+        return {pair: found[pair] for pair in sorted(found)}
 
     def _rows(self, first: int, last: int) -> Array:
         """Of every contact in samples first to last - 1: its sample, from 0."""

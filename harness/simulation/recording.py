@@ -211,7 +211,7 @@ class Recording:
             frames={name: frames[:, i + 1].copy() for i, name in enumerate(physics.frames)},
             object_poses=dict(object_poses),
             contact_forces=contacts,
-            grip_forces=self._contacts.grip_forces(contacts, count),
+            support_forces=self._contacts.support_forces(count),
             presses=self._contacts.presses(count),
         )
 

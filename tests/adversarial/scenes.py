@@ -303,6 +303,24 @@ SCENES = (
         ("gripper: {stalled: true}",),
     ),
     Scene(
+        "box pinned against the wall of a bin",
+        "the gripper presses the box against a side of the bin, 4 cm above its floor",
+        "objects:\n  - name: bin\n    static: true\n    in: simulation\n"
+        "    pose: {xyz: [0.35, 0, 0]}\n    shapes:\n"
+        "      - {box: {size: [0.24, 0.2, 0.01]}, pose: {xyz: [0, 0, 0.005]}}\n"
+        "      - {box: {size: [0.02, 0.2, 0.2]}, pose: {xyz: [0, 0, 0.1]}}\n"
+        "  - {name: red_box, box: {size: [0.08, 0.04, 0.08]}, mass: 50 g, friction: 1, "
+        "pose: {xyz: [0.27, 0, 0.051]}}\n"
+        "steps:\n  - gripper: open\n  - move_to: {position: {xyz: [0.19, 0, 0.08]}, pitch: 0}\n"
+        "  - lin: {position: {xyz: [0.25, 0, 0.08]}}\n  - grasp: red_box\n"
+        "  - move_relative: {direction: {xyz: [0, 0, 1]}, distance: 4 cm}\n"
+        "  - move_relative: {direction: {xyz: [1, 0, 0]}, distance: 3.1 cm}\n  - wait: 0.2 s\n",
+        "the bin's floor is below it, and the bin touches it with more than its weight",
+        lambda run: run.signals.contact_forces["bin", "red_box"][-1] > 0.5,
+        ("on: {object: red_box, support: bin}", "placed: {object: red_box, on: bin}"),
+        ("in_contact: {between: [red_box, bin]}",),
+    ),
+    Scene(
         "camera that looks the other way",
         "the box stands where the camera could see it, behind its back",
         "cameras:\n  - {name: eye, pose: {xyz: [0.6, 0, 0.3]}, look_at: [-0.2, 0, 0.3], "

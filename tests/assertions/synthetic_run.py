@@ -180,8 +180,11 @@ def lift_run(n=200, *, grip=(50, 200), leave=100, height=0.1, value=2.0, **chang
         "object_poses": {"box": heights(0.02 + rise)},
         "tcp_pose": heights(0.05 + rise),
         "contact_forces": forces,
-        "grip_forces": {
-            pair: forces[pair][:, None] * np.array([0.0, sign, 0.0]) for pair, sign in grips.items()
+        "presses": {
+            pair: np.where(
+                forces[pair][:, None] > 0, forces[pair][:, None] * (0, 0, 0, 0, sign, 0), np.nan
+            )
+            for pair, sign in grips.items()
         },
         "steps": (
             step("approach", 0, 40),

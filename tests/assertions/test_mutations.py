@@ -77,7 +77,10 @@ pytestmark = pytest.mark.mutation
 N = 200
 SHIFTS = (0.02, 0.3, 3.0, 30.0)
 MOMENTS = range(0, N, 10)
-FORCES_AND_DISTANCES = ("contact_forces", "grip_forces", "clearances", "planned_clearances")
+FORCES_AND_DISTANCES = (
+    *("contact_forces", "presses", "support_forces"),
+    *("clearances", "planned_clearances"),
+)
 MAPPINGS = ("frames", "object_poses", *FORCES_AND_DISTANCES)
 SHOWN_ONLY = {
     ("collision", "clearances"): "contacts decide; how near it came is the margin of what did not"
@@ -121,7 +124,8 @@ def standing(**more):
         ("right_finger", "box"): force(N, (20, 80)),
     }
     box = halves((0.3, 0, -0.3, 1.0), (0, 0, 0.02, 0))
-    return late(contact_forces=forces, object_poses={"box": box}, **more)
+    carried = {("Table", "box"): forces["Table", "box"]}
+    return late(contact_forces=forces, support_forces=carried, object_poses={"box": box}, **more)
 
 
 BIN = thing("bin", static=True)

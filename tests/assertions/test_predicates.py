@@ -389,6 +389,22 @@ def test_leaning_on_a_wall_is_no_support_from_below():
     assert verdict(run, On(object="box", support="wall")).status == "failed"
 
 
+def test_a_box_that_is_pressed_against_something_does_not_stand_on_it():
+    contact = {("Table", "box"): force(200, (0, 200), value=30.0)}
+    carried = {("Table", "box"): force(200, (0, 200), value=0.4)}
+    run = make_run(contact_forces=contact, support_forces=carried)
+    answer = verdict(run, On(object="box", support="Table"))
+    assert (answer.status, answer.margin) == ("failed", pytest.approx(0.4 - 0.49))
+    turned = make_run(
+        objects=(TABLE, BOX, CYLINDER),
+        contact_forces={("box", "cylinder"): contact["Table", "box"]},
+        support_forces={("box", "cylinder"): -carried["Table", "box"] - 1},
+        object_poses={"cylinder": at(200, (0, 0, -0.05))},
+    )
+    assert verdict(turned, On(object="box", support="cylinder")).status == "passed"
+    assert verdict(turned, On(object="cylinder", support="box")).status == "failed"
+
+
 def test_standing_on_something_means_that_it_carries_half_the_weight():
     weight = 0.1 * 9.8
     for value, status in ((weight, "passed"), (0.49 * weight, "failed"), (0.0, "failed")):

@@ -4,7 +4,9 @@ import textwrap
 
 import pytest
 
+from harness.cli.main import main
 from harness.session.run_case import run_case
+from tests.engine.front_door import run
 
 PICK = """
 scenario: A pick that looks like one
@@ -71,3 +73,30 @@ def test_a_pick_that_does_not_hold_fails_both(tmp_path, what, changes):
         assert verdict.status == "failed", (what, verdict)
         assert any(character.isdigit() for character in verdict.reason), verdict
     assert not any(step.status == "failed" for step in result.steps), result.steps
+
+
+def test_what_carries_what_is_recorded_with_its_weight_and_direction(tmp_path):
+    _, saved = run(
+        tmp_path,
+        "- wait: 0.3 s",
+        rest="""
+        objects:
+          - {name: stool, box: {size: [0.1, 0.1, 0.1]}, mass: 200 g, pose: {xyz: [0.5, 0.4, 0.05]}}
+          - {name: apple, box: {size: [0.04, 0.04, 0.04]}, mass: 100 g,
+             pose: {xyz: [0.5, 0.4, 0.12]}}
+        """,
+    )
+    carried = {pair: force[-1] for pair, force in saved.signals.support_forces.items()}
+    assert carried["apple", "stool"] == pytest.approx(-0.1 * 9.8, rel=0.01)
+    assert carried["ground_plane", "stool"] == pytest.approx(0.3 * 9.8, rel=0.01)
+
+
+def test_half_a_run_does_not_pass_when_it_is_judged_again(tmp_path, capsys):
+    result, _ = run(
+        tmp_path,
+        "- move_to: {position: {frame: base_link, xyz: [3, 0, 0]}}\n- wait: 0.1 s",
+        rest="expect: [never: collision]",
+    )
+    assert (result.outcome, result.verdicts[0].status) == ("failed", "passed")
+    assert main(["judge", str(tmp_path / "report")]) == 1
+    assert "the run ended early with NO_IK_SOLUTION" in capsys.readouterr().out
