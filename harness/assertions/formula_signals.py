@@ -10,7 +10,7 @@ from harness.assertions.clearance import recorded_distances
 from harness.assertions.contact import bodies
 from harness.assertions.contacts import force_between
 from harness.assertions.joints import joint_column, unit_of
-from harness.assertions.poses import frame_poses, speeds
+from harness.assertions.poses import frame_poses, physical_poses, speeds
 from harness.assertions.window import NotObservable, Window
 from harness.core.pose_arrays import angle_between, rotate
 from harness.core.types import FloatArray
@@ -98,7 +98,11 @@ def _recorded(node: Signal, window: Window) -> Values:
 
 def _poses(window: Window, name: str) -> FloatArray:
     run = window.run
-    return run.signals.tcp_pose if name == "tcp" else frame_poses(run, name)
+    if name == "tcp":
+        return run.signals.tcp_pose
+    if any(record.name == name for record in run.objects):
+        return physical_poses(run, name)
+    return frame_poses(run, name)
 
 
 def _joint(name: str, joint: str, window: Window) -> Values:

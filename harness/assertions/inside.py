@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.assertions.poses import object_poses, present
+from harness.assertions.poses import object_poses, physical_poses, present
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, Window, object_record
@@ -27,7 +27,7 @@ def inside(check: In, window: Window) -> MarginSignal:
     run = window.run
     lower, upper = outline(object_record(run, check.container))
     container = object_poses(run, check.container)
-    origin = window.cut(relative(container, object_poses(run, check.object))[:, :3])
+    origin = window.cut(relative(container, physical_poses(run, check.object))[:, :3])
     depth = np.minimum(origin - lower, upper - origin).min(axis=1)
     lean = window.cut(angle_between(rotate(container[:, 3:], UP), UP))
     there = window.cut(present(run, check.object) & present(run, check.container))

@@ -6,7 +6,14 @@ import numpy as np
 
 from harness.assertions.contacts import TOUCH_FORCE, in_hand
 from harness.assertions.grasp import robot_contact
-from harness.assertions.poses import frame_poses, object_poses, present, speeds, start_poses
+from harness.assertions.poses import (
+    frame_poses,
+    object_poses,
+    physical_poses,
+    present,
+    speeds,
+    start_poses,
+)
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
 from harness.assertions.support import supports
 from harness.assertions.temporal import trailing_max
@@ -123,7 +130,7 @@ def on(check: On, window: Window) -> MarginSignal:
 def displaced(check: Displaced, window: Window) -> MarginSignal:
     """Distance from where it started [m]."""
     run, name = window.run, check.object
-    away = np.linalg.norm(object_poses(run, name)[:, :3] - start_poses(run, name)[:, :3], axis=1)
+    away = np.linalg.norm(physical_poses(run, name)[:, :3] - start_poses(run, name)[:, :3], axis=1)
     part = Part("distance from the start", window.cut(away), check.at_least, ">=", "m", detail=name)
 
     def text(_: int, measure: Measure) -> str:
@@ -135,7 +142,7 @@ def displaced(check: Displaced, window: Window) -> MarginSignal:
 @signal.handles(Upright)
 def upright(check: Upright, window: Window) -> MarginSignal:
     """Angle of the object's z axis to the vertical [rad]."""
-    lean = angle_between(rotate(object_poses(window.run, check.object)[:, 3:], UP), UP)
+    lean = angle_between(rotate(physical_poses(window.run, check.object)[:, 3:], UP), UP)
     part = Part("lean", window.cut(lean), check.tolerance, "<=", "rad", detail=check.object)
 
     def text(_: int, measure: Measure) -> str:
@@ -153,7 +160,7 @@ def static(check: Static, window: Window) -> MarginSignal:
     for name in names:
         here = None if check.object is not None else window.cut(present(run, name))
         linear, angular = (
-            _calm(window, window.cut(speed)) for speed in speeds(run, object_poses(run, name))
+            _calm(window, window.cut(speed)) for speed in speeds(run, physical_poses(run, name))
         )
         parts += [
             Part("speed", linear, check.max_velocity, "<=", "m/s", None, here, name),

@@ -48,6 +48,17 @@ def object_poses(run: Run, name: str) -> FloatArray:
     return np.where(present(run, name)[:, None], np.array(record.pose), np.nan)
 
 
+def physical_poses(run: Run, name: str) -> FloatArray:
+    """As `object_poses`, of an object that is in the physics: no belief of the planner is judged.
+
+    Raises:
+        NotObservable: The planner alone knows it, or the run does not.
+    """
+    if any(record.name == name and not record.in_simulation for record in run.objects):
+        raise NotObservable(f"{name} is not in the physics: where it is, is the planner's belief")
+    return object_poses(run, name)
+
+
 def frame_poses(run: Run, frame: str) -> FloatArray:
     """T_world_frame of `world`, a link or an object, shape (N, 7)."""
     if frame == "world" or frame in run.robot.link_names:

@@ -14,6 +14,7 @@ from harness.spec.checks import (
     DurationCheck,
     Effort,
     Eventually,
+    Formula,
     FractionCheck,
     Grasped,
     GripperState,
@@ -431,6 +432,21 @@ def test_upright_is_the_lean_of_the_z_axis():
     assert verdict(run, Upright(object="box", tolerance=0.11)).margin == pytest.approx(0.01)
     assert verdict(run, Upright(object="box", tolerance=0.09)).status == "failed"
     assert verdict(absent_box(), Upright(object="box")).status == "not reached"
+
+
+def test_what_only_the_planner_believes_is_no_observation():
+    belief = thing("belief", physics=False, pose=(0, 0, 1, 1, 0, 0, 0))
+    run = make_run(objects=(TABLE, BOX, belief))
+    for spec in (
+        Upright(object="belief"),
+        Static(object="belief"),
+        Displaced(object="belief"),
+        In(object="belief", container="box"),
+        Formula(formula="always z(belief) > 0.5"),
+    ):
+        answer = verdict(run, spec)
+        assert answer.status == "not observable", answer
+        assert "belief is not in the physics" in answer.reason
 
 
 def test_everything_stands_still_until_one_thing_moves():
