@@ -22,7 +22,14 @@ SMALLEST_DOMAIN = 1.0
 SHRINK = 1e-4
 """Share by which a domain grows or shrinks with an edge that is free or blocked."""
 
-BEYOND = np.pi  # [rad] how far a continuous joint may leave the range of start and goals
+SHORTEST = 1 / 16
+"""Share of the longest edge below which edges from a vertex in a tight place do not shrink."""
+
+PATIENCE = 64
+"""Samples outside all domains in a row after which one is taken all the same."""
+
+BEYOND = np.pi
+"""How far beyond start and goals samples are drawn [rad]: every way that an arm can stand."""
 
 _EdgeCheck = Callable[[FloatArray, FloatArray], bool]
 _PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37)
@@ -86,8 +93,7 @@ def search_connect(
         if is_free(trees[0].points[0], np.asarray(goal) * metric):
             return outcome(np.array([start, goal], dtype=float))
     offset = 1 + seed % 1_000_003
-    growing = 0
-    drawn = 0
+    growing = drawn = refused = 0
     samples = np.empty((0, space.dof))
     while checker.checks - before < max_state_checks:
         if drawn % _BLOCK == 0:
@@ -96,10 +102,14 @@ def search_connect(
         drawn += 1
         if trees[growing].count > trees[1 - growing].count:
             growing = 1 - growing
-        vertex = trees[growing].grow(sample, is_free)
+        tree = trees[growing]
+        near, distance = tree.nearest(sample)
+        if tree.domain(near) < distance and refused < PATIENCE:
+            refused += 1
+            continue
+        refused = 0
+        vertex = tree.grow(near, sample, distance, is_free)
         if vertex is None:
-            if drawn > max_state_checks:  # samples outside all domains cost no checks
-                break
             continue
         other = trees[1 - growing]
         met = other.connect(trees[growing].points[vertex], is_free)
@@ -114,9 +124,10 @@ def search_connect(
 
 
 def sampling_bounds(space: GroupSpace, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Limits of a group's joints; continuous joints reach `BEYOND` start and goals."""
-    lower = np.where(np.isfinite(space.lower), space.lower, ends.min(axis=0) - BEYOND)
-    upper = np.where(np.isfinite(space.upper), space.upper, ends.max(axis=0) + BEYOND)
+    """Where samples are drawn: inside the limits, joints that turn up to `BEYOND` the ends."""
+    beyond = np.where(space.wraps, BEYOND, np.inf)
+    lower = np.maximum(space.lower, ends.min(axis=0) - beyond)
+    upper = np.minimum(space.upper, ends.max(axis=0) + beyond)
     return lower, upper
 
 
@@ -148,50 +159,63 @@ class _Tree:
         self.count = 0
         self._parents: list[int] = []
         self._domains: list[float] = []
+        self._steps: list[float] = []
         self._step = step
         for root in roots:
-            self._add(root, -1)
+            self._add(root, -1, step)
 
-    def _add(self, point: FloatArray, parent: int) -> int:
+    def _add(self, point: FloatArray, parent: int, step: float) -> int:
         if self.count == len(self.points):
             self.points = np.concatenate([self.points, np.empty_like(self.points)])
         self.points[self.count] = point
         self._parents.append(parent)
         self._domains.append(np.inf)
+        self._steps.append(step)
         self.count += 1
         return self.count - 1
 
-    def _nearest(self, point: FloatArray) -> tuple[int, float]:
+    def nearest(self, point: FloatArray) -> tuple[int, float]:
+        """The vertex nearest to a point, and its distance [rad]."""
         away = self.points[: self.count] - point
         squares = np.einsum("ij,ij->i", away, away)
         index = int(squares.argmin())
         return index, float(np.sqrt(squares[index]))
 
-    def grow(self, sample: FloatArray, is_free: _EdgeCheck) -> int | None:
-        """Add a vertex one step towards a sample; None when that is blocked or out of domain."""
-        near, distance = self._nearest(sample)
-        if distance < 1e-9 or self._domains[near] < distance:
+    def domain(self, vertex: int) -> float:
+        """How far samples may be that a vertex is drawn to [rad]."""
+        return self._domains[vertex]
+
+    def grow(
+        self, near: int, sample: FloatArray, distance: float, is_free: _EdgeCheck
+    ) -> int | None:
+        """Add a vertex one step from another towards a sample; None when the edge is blocked.
+
+        The steps from a vertex get shorter with every edge that is blocked, and longer again
+        behind those that are free: so a tree finds its way out of a tight place.
+        """
+        if distance < 1e-9:
             return None
-        here = self.points[near]
-        there = here + min(1.0, self._step / distance) * (sample - here)
+        here, step = self.points[near], self._steps[near]
+        there = here + min(1.0, step / distance) * (sample - here)
         domain = self._domains[near]
         if not is_free(here, there):
             smaller = max(domain * (1 - SHRINK), SMALLEST_DOMAIN)
             self._domains[near] = DOMAIN if domain == np.inf else smaller
+            self._steps[near] = max(0.5 * step, SHORTEST * self._step)
             return None
         self._domains[near] = domain * (1 + SHRINK)
-        return self._add(there, near)
+        return self._add(there, near, min(2 * step, self._step))
 
     def connect(self, point: FloatArray, is_free: _EdgeCheck) -> int | None:
         """Go step by step to a point of the other tree; the vertex that reached it, or None."""
-        near, distance = self._nearest(point)
+        near, distance = self.nearest(point)
         while True:
             here = self.points[near]
             is_last = distance <= self._step
             there = point if is_last else here + self._step / distance * (point - here)
             if not is_free(here, there):
                 return None
-            near = self._add(there, near)
+            near = self._add(there, near, self._step)
             if is_last:
                 return near
             distance -= self._step
