@@ -1,0 +1,116 @@
+"""Who plans: this project, with and without compiled code, and OMPL as written in Python."""
+
+# pyright: reportAttributeAccessIssue=false, reportIndexIssue=false
+
+import time
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import ompl.base as ob
+import ompl.geometric as og
+import ompl.util as ou
+
+from harness.planning.compiled import When, use_compiled
+from harness.planning.path_search import Effort, verified_paths
+from harness.planning.shortening import shorten
+from harness.planning.verify import FINAL_RESOLUTION
+from harness.ports import PlanningOptions
+from tests.benchmarks.planning.problems import EveryPair, Problem
+
+SPACING = 1 / 32
+"""Joint-space distance between the states that the naive planner checks [rad]."""
+
+RANGE = 1.5  # [rad]
+PATIENCE = 20.0
+"""Time after which the naive planner gives up [s]; what it did not solve counts with it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What a contender came to.
+
+    Attributes:
+        plan: Time until a first path [s], of the process.
+        total: Time until the path was shortened and, if it is, verified [s].
+        checks: States checked while planning.
+        waypoints: Shape (N, dof), or None when nothing was found.
+    """
+
+    plan: float
+    total: float
+    checks: int
+    waypoints: np.ndarray | None
+
+    @property
+    def length(self) -> float:
+        """Joint-space length [rad]."""
+        assert self.waypoints is not None
+        return float(np.linalg.norm(np.diff(self.waypoints, axis=0), axis=1).sum())
+
+
+def ours(problem: Problem, when: When, seed: int = 1) -> Outcome:
+    """Plan, verify and shorten as `move_to` does; the time to take the scene up is included."""
+    use_compiled(when)
+    begin = time.process_time()
+    checker, effort = problem.checker(), Effort()
+    options = PlanningOptions(seed=seed, max_state_checks=2_000_000)
+    for found in verified_paths(checker, problem.start, [problem.goal], options, effort):
+        planned = time.process_time()
+        short = shorten(found.waypoints, checker, FINAL_RESOLUTION, found.seed)
+        done = time.process_time()
+        return Outcome(planned - begin, done - begin, effort.checks, short)
+    spent = time.process_time() - begin
+    return Outcome(spent, spent, effort.checks, None)
+
+
+def naive(problem: Problem, seed: int = 1) -> Outcome:
+    """OMPL's RRTConnect and `simplifySolution` with a validity checker in Python."""
+    ou.noOutputHandler()
+    ou.RNG.setSeed(seed)
+    begin = time.process_time()
+    checker, space = EveryPair(problem.scene, problem.space), problem.space
+    states = ob.RealVectorStateSpace(space.dof)
+    bounds = ob.RealVectorBounds(space.dof)
+    for joint in range(space.dof):
+        bounds.setLow(joint, float(space.lower[joint]))
+        bounds.setHigh(joint, float(space.upper[joint]))
+    states.setBounds(bounds)
+    setup = og.SimpleSetup(states)
+    information = setup.getSpaceInformation()
+    setup.setStateValidityChecker(
+        lambda state: checker.free(np.array([state[joint] for joint in range(space.dof)]))
+    )
+    information.setStateValidityCheckingResolution(SPACING / states.getMaximumExtent())
+    setup.setStartAndGoalStates(_state(states, problem.start), _state(states, problem.goal))
+    planner = og.RRTConnect(information)
+    planner.setRange(RANGE)
+    setup.setPlanner(planner)
+    end = begin + PATIENCE
+    setup.solve(ob.PlannerTerminationCondition(lambda: time.process_time() > end))
+    planned = time.process_time()
+    checks = checker.checks
+    if not setup.haveExactSolutionPath():
+        return Outcome(PATIENCE, PATIENCE, checks, None)
+    setup.simplifySolution(PATIENCE)
+    done = time.process_time()
+    path = setup.getSolutionPath().getStates()
+    waypoints = np.array([[state[joint] for joint in range(space.dof)] for state in path])
+    return Outcome(planned - begin, done - begin, checks, waypoints)
+
+
+def _state(space: ob.RealVectorStateSpace, positions: np.ndarray) -> ob.State:
+    state = space.allocState()
+    for joint, value in enumerate(positions):
+        state[joint] = float(value)
+    return state
+
+
+def is_free(problem: Problem, waypoints: np.ndarray) -> bool:
+    """Whether a path is free at `FINAL_RESOLUTION` on the exact shapes, by Coal alone."""
+    checker = EveryPair(problem.scene, problem.space)
+    for first, second in pairwise(waypoints):
+        count = max(1, int(np.ceil(np.linalg.norm(second - first) / FINAL_RESOLUTION)))
+        if not all(checker.free(first + (second - first) * k / count) for k in range(count + 1)):
+            return False
+    return True

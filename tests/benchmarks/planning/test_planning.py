@@ -1,0 +1,89 @@
+"""Planning on meshed arms, in seven families, against OMPL as people use it from Python."""
+
+import statistics
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import pytest
+
+from tests.benchmarks.planning.contenders import Outcome, is_free, naive, ours
+from tests.benchmarks.planning.layouts import FAMILIES
+from tests.benchmarks.planning.problems import SCALE, Problem, make_problem
+
+EACH = 5
+"""Problems of each family for each arm."""
+
+CONTENDERS: dict[str, Callable[[Problem], Outcome]] = {
+    "naive": naive,
+    "plain": lambda problem: ours(problem, "never"),
+    "compiled": lambda problem: ours(problem, "always"),
+}
+HEADS = ("who", "solved", "free", "checks/s", "plan ms", "95 %", "total ms", "95 %", "rad", "ratio")
+"""Ratios are those of the naive planner's median plan, its 95 %, and its median total."""
+
+
+@pytest.fixture(scope="module")
+def outcomes() -> dict[str, list[tuple[Problem, Outcome]]]:
+    """What every contender came to on every problem, in turns; warm-up left out."""
+    for model in SCALE:
+        for name in ("plain", "compiled"):
+            CONTENDERS[name](make_problem(model, "box", 0))
+    found: dict[str, list[tuple[Problem, Outcome]]] = {name: [] for name in CONTENDERS}
+    for model in SCALE:
+        for family in FAMILIES:
+            for number in range(EACH):
+                problem = make_problem(model, family, number)
+                for name, contender in CONTENDERS.items():
+                    found[name].append((problem, contender(problem)))
+    return found
+
+
+@pytest.mark.benchmark
+def test_planning_on_meshes_against_naive_ompl(outcomes, tell):
+    heading = f"{len(outcomes['naive'])} problems on meshes, ms of CPU time"
+    tell(heading, *HEADS)
+    for name, results in outcomes.items():
+        tell(heading, name, *_cells(results, outcomes["naive"]))
+    for family in FAMILIES:
+        heading = f"{family}, ms of CPU time"
+        tell(heading, *HEADS)
+        base = [pair for pair in outcomes["naive"] if pair[0].family == family]
+        for name, results in outcomes.items():
+            tell(heading, name, *_cells([r for r in results if r[0].family == family], base))
+    plain, compiled = outcomes["plain"], outcomes["compiled"]
+    for (problem, first), (_, second) in zip(plain, compiled, strict=True):
+        assert (first.waypoints is None) == (second.waypoints is None), problem.name
+        if first.waypoints is not None:
+            assert np.array_equal(first.waypoints, second.waypoints), problem.name
+            assert first.checks == second.checks, problem.name
+
+
+def _cells(
+    results: Sequence[tuple[Problem, Outcome]], base: Sequence[tuple[Problem, Outcome]]
+) -> list[str]:
+    solved = [(problem, outcome) for problem, outcome in results if outcome.waypoints is not None]
+    free = sum(is_free(problem, outcome.waypoints) for problem, outcome in solved)
+    plans = [outcome.plan for _, outcome in results]
+    totals = [outcome.total for _, outcome in results]
+    base_plans = [outcome.plan for _, outcome in base]
+    ratios = (
+        statistics.median(base_plans) / statistics.median(plans),
+        _most(base_plans) / _most(plans),
+        statistics.median(outcome.total for _, outcome in base) / statistics.median(totals),
+    )
+    return [
+        f"{len(solved)}/{len(results)}",
+        f"{free}/{len(solved)}",
+        f"{sum(outcome.checks for _, outcome in results) / sum(plans):.0f}",
+        f"{1000 * statistics.median(plans):.1f}",
+        f"{1000 * _most(plans):.1f}",
+        f"{1000 * statistics.median(totals):.1f}",
+        f"{1000 * _most(totals):.1f}",
+        f"{statistics.median(outcome.length for _, outcome in solved):.2f}" if solved else "-",
+        " ".join(f"{ratio:.1f}x" for ratio in ratios),
+    ]
+
+
+def _most(seconds: Sequence[float]) -> float:
+    """The time that 95 % of the problems keep within."""
+    return float(np.percentile(seconds, 95))
