@@ -29,7 +29,7 @@ from harness.robot.xacro_file import arguments_of, render, render_bundled
 from harness.spec.scenario import RobotSpec
 from harness.spec.xml_file import read_xml
 
-OF_FILES = ("srdf", "packages", "group", "flange_link")
+OF_FILES = ("srdf", "packages", "group", "tcp_link", "flange_link")
 
 
 @lru_cache(maxsize=1)
@@ -116,7 +116,7 @@ def _part(name: str, key: str, args: Mapping[str, Any], base_dir: Path) -> Part:
         return _read(folder, read_robot_yaml(folder), "", args)
     names = gripper_names() if key == "gripper" else robot_names()
     hint = ""
-    if "/" in name or name.startswith("."):
+    if "/" in name or name.startswith(".") or folder.is_dir():
         hint = f"{folder} has no robot.yaml; "
     elif near := difflib.get_close_matches(name.lower(), names, 1):
         hint = f"did you mean '{near[0]}'? "

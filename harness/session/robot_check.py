@@ -88,7 +88,8 @@ def _findings(
     if description.arm_group and description.tcp_link:
         free = positions[touches.is_free]
         yield look_at.reach(description, kinematics, free)
-        yield look_at.inverse_kinematics(try_ik(kinematics, free[:IK_SAMPLES], seed))
+        if len(free):
+            yield look_at.inverse_kinematics(try_ik(kinematics, free[:IK_SAMPLES], seed))
 
 
 def _groups(description: RobotDescription) -> tuple[GroupLine, ...]:

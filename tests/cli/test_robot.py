@@ -241,6 +241,19 @@ def test_wrong_words_are_exit_code_2_and_write_nothing(arguments, said, folder, 
     assert sorted(folder.iterdir()) == before
 
 
+def test_a_folder_that_is_no_robot_is_told_what_it_lacks(folder, capsys):
+    (folder / "cell").mkdir()
+    assert main(["robot", "check", "cell"]) == 2
+    assert "'cell' is not known; cell has no robot.yaml; known are" in capsys.readouterr().err
+
+
+def test_a_robot_that_is_never_free_is_told_so(capsys):
+    code, page = check(capsys, "ur3", "--samples", "1")
+    assert code == 1
+    assert "✗ reach: no configuration is free of self-collision" in page
+    assert "inverse kinematics" not in page
+
+
 def test_a_scenario_and_a_folder_name_a_robot_too(folder, capsys):
     (folder / "a.scenario.yaml").write_text(
         "scenario: a\nrobot: {urdf: arm.urdf, srdf: arm.srdf}\nsteps: [{wait: 1 s}]\n"

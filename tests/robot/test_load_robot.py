@@ -24,6 +24,7 @@ from tests.robot.models import robot
         ({"model": "./nowhere"}, ["nowhere has no robot.yaml"]),
         ({"urdf": "arm.urdf"}, ["robot.urdf: there is no file arm.urdf"]),
         ({"model": "ur3e", "srdf": "a.srdf"}, ["robot.srdf goes with a robot's file"]),
+        ({"model": "ur3e", "tcp_link": "tool0"}, ["robot.tcp_link goes with a robot's file"]),
         ({"xacro": "arm.xacro"}, ["robot.xacro: there is no file"]),
         ({"mjcf": "arm.xml"}, ["robot.mjcf: there is no file"]),
         ({"model": "ur3e", "base": {"frame": "Table"}}, ["'world'", "'Table'"]),
