@@ -37,7 +37,9 @@ one object, and a joint that could move is held where it stands, with a note. Li
 joint holds are objects of their own, called `model::link`. Collisions are its shapes, each with
 its friction; visuals that are the same shapes colour them, others are drawn in their place. A
 link without an inertial has 1 kg and 1 kg m^2, as SDF has it, with a note. An inertia that no
-body can have, and a mass of 0, are refused."""
+body can have, and a mass of 0, are refused. A camera sensor is a camera of the world on that
+object, called as the sensor, or `model::sensor` where several are called alike; `capture` and
+`sees` name it."""
 
 WORDS_HEAD = """## Words of SDF
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,12 +13,14 @@ from harness.importers.model_path import ModelPath
 from harness.importers.notes import Notes
 from harness.importers.plain import rounded
 from harness.importers.sdf_bodies import bodies_of
-from harness.importers.sdf_object import object_of
+from harness.importers.sdf_cameras import cameras_of
+from harness.importers.sdf_object import LONGEST_NAME, object_of
 from harness.importers.sdf_shapes import ShapeReader
 from harness.importers.sdf_tree import Light, SdfTree
 from harness.importers.sdf_values import is_flag, is_true, numbers_of
 from harness.importers.sdf_words import note_what_is_left
-from harness.spec.world import LightSpec, PhysicsSpec, WorldSpec
+from harness.spec.cameras import CameraSpec
+from harness.spec.world import LightSpec, ObjectSpec, PhysicsSpec, WorldSpec
 from harness.spec.xml_file import XmlElement
 
 SHORTEST_STEP, LONGEST_STEP = 1e-4, 0.02  # [s], as of a world file
@@ -37,16 +40,34 @@ def load_sdf(path: Path, folders: Sequence[Path] = ()) -> ImportedWorld:
     tree = SdfTree(path, model_path)
     notes = tree.notes
     reader = ShapeReader(model_path, notes)
-    objects = [object_of(body, reader) for body in bodies_of(tree.world, notes)]
+    objects: list[ObjectSpec] = []
+    cameras: list[tuple[str, CameraSpec]] = []
+    for body in bodies_of(tree.world, notes):
+        item = object_of(body, reader)
+        objects += [item] if item is not None else []
+        found = cameras_of(body, notes, is_there=item is not None)
+        cameras += [(body.name, camera) for camera in found]
     lights = [_light(light, tree, notes) for light in tree.lights]
     title = tree.root.get("name").strip()[:100] or path.stem[:100]
     world = WorldSpec(
         world=title,
-        objects=tuple(item for item in objects if item is not None),
+        objects=tuple(objects),
+        cameras=_named_apart(cameras),
         lights=tuple(item for item in lights if item is not None),
         physics=_physics(tree.root, notes),
     )
     return ImportedWorld(world, path, notes.all())
+
+
+def _named_apart(cameras: Sequence[tuple[str, CameraSpec]]) -> tuple[CameraSpec, ...]:
+    """The cameras; those called alike have their object's name before their own."""
+    counts = Counter(camera.name for _, camera in cameras)
+    return tuple(
+        camera
+        if counts[camera.name] == 1
+        else camera.model_copy(update={"name": f"{body}::{camera.name}"[-LONGEST_NAME:]})
+        for body, camera in cameras
+    )
 
 
 def _physics(root: XmlElement, notes: Notes) -> PhysicsSpec:

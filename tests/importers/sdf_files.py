@@ -24,6 +24,11 @@ SLOTS = {
     "frame": "",
     "light": "",
     "physics": "",
+    "sensor": "",
+    "camera": "",
+    "image": "",
+    "clip": "",
+    "noise": "",
 }
 
 TEXT = """<?xml version="1.0"?>
@@ -41,6 +46,9 @@ TEXT = """<?xml version="1.0"?>
       <torsional>{friction/torsional}</torsional></friction></surface></collision>
     <visual name="v">{visual}<geometry>{geometry}</geometry>
      <material>{material}<diffuse>0 1 0 1</diffuse></material></visual>
+    <sensor name="eye" type="camera">{sensor}<camera>{camera}<image>{image}<height>240</height>
+     </image><clip>{clip}<far>9</far></clip><noise>{noise}<type>gaussian</type></noise></camera>
+    </sensor>
    </link>
    <link name="lid"><pose>0 0 1 0 0 0</pose>
     <inertial><mass>1</mass><inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia></inertial>

@@ -64,25 +64,25 @@ BOMB = "<!DOCTYPE b [<!ENTITY a 'aaaaaaaaaa'>" + "".join(
         (text_with("geometry", "\n<mesh><uri>crate</uri></mesh>"), 12, "`crate` is no file"),
         (
             text_with("mesh", "\n<uri>http://example.org/a.stl</uri>"),
-            20,
+            23,
             "`http://example.org/a.stl` is not in Gazebo's cache",
         ),
         (
             text_with("mesh", "\n<uri>/etc/passwd</uri>"),
-            20,
+            23,
             "`/etc/passwd` is outside of the folders that may be read",
         ),
         (
             text_with("mesh", "\n<uri>file:///etc/passwd</uri>"),
-            20,
+            23,
             "`file:///etc/passwd` is outside of the folders that may be read",
         ),
         (
             text_with("include", "\n<uri>model://crate/../../../../../../../../etc</uri>"),
-            24,
+            27,
             "is outside of the folders that may be read",
         ),
-        (text_with("include", "\n<uri>model://crat</uri>"), 24, "`model://crat` is not found"),
+        (text_with("include", "\n<uri>model://crat</uri>"), 27, "`model://crat` is not found"),
         (text_with("physics", "\n<max_step_size>1</max_step_size>"), 5, "a physics step of 1 s"),
     ],
 )

@@ -36,6 +36,10 @@ def shape(world):
     return the(world).shapes[0]
 
 
+def eye(world):
+    return next(camera for camera in world.cameras if camera.name == "eye")
+
+
 A_MODEL = (
     "<model name='n'><static>1</static><link name='l'><collision name='c'>"
     f"<geometry>{BOX}</geometry></collision></link></model>"
@@ -212,6 +216,36 @@ READ = {
         "<max_step_size>0.002</max_step_size>",
         lambda w: w.physics.timestep == 0.002,
     ),
+    ("link", "sensor"): (
+        "<sensor name='other' type='camera'/>",
+        lambda w: [camera.name for camera in w.cameras] == ["other", "eye"],
+    ),
+    ("sensor", "pose"): (
+        "<pose relative_to='lid'>0 0 1 0 0 0</pose>",
+        lambda w: eye(w).pose.frame == "m" and eye(w).pose.xyz == (0, 0, 2),
+    ),
+    ("sensor", "camera"): ("", lambda w: eye(w).image.height == 240),
+    ("sensor", "update_rate"): ("<update_rate>5</update_rate>", lambda w: eye(w).update_rate == 5),
+    ("camera", "pose"): ("<pose>0 3 0 0 0 0</pose>", lambda w: eye(w).pose.xyz == (0, 3, 0)),
+    ("camera", "horizontal_fov"): (
+        "<horizontal_fov>1.3962634</horizontal_fov>",
+        lambda w: eye(w).horizontal_fov == 1.3962634,
+    ),
+    ("camera", "image"): ("", lambda w: eye(w).image.width == 640),
+    ("camera", "clip"): ("", lambda w: eye(w).clip.far == 9),
+    ("camera", "noise"): ("", lambda w: eye(w).noise.type == "gaussian"),
+    ("camera", "optical_frame_id"): (
+        "<optical_frame_id>o</optical_frame_id>",
+        lambda w: eye(w).optical_frame_id == "o",
+    ),
+    ("image", "width"): ("<width>320</width>", lambda w: eye(w).image.width == 320),
+    ("image", "height"): ("", lambda w: eye(w).image.height == 240),
+    ("image", "format"): ("<format>L8</format>", lambda w: eye(w).image.format == "L8"),
+    ("clip", "near"): ("<near>0.02</near>", lambda w: eye(w).clip.near == 0.02),
+    ("clip", "far"): ("", lambda w: eye(w).clip.near == 0.1),
+    ("noise", "type"): ("", lambda w: eye(w).noise.type == "gaussian"),
+    ("noise", "mean"): ("<mean>0.1</mean>", lambda w: eye(w).noise.mean == 0.1),
+    ("noise", "stddev"): ("<stddev>0.007</stddev>", lambda w: eye(w).noise.stddev == 0.007),
     ("physics", "gravity"): ("<gravity>0 0 -2</gravity>", lambda w: w.physics.gravity[2] == -2),
 }
 
@@ -271,9 +305,9 @@ def test_a_word_that_sdf_does_not_know_is_told_of(tmp_path):
 
 
 def test_equal_notes_are_one_with_their_number(tmp_path):
-    found = load(tmp_path, text_with("link", "<sensor/><sensor/>"))
-    (note,) = [note for note in found.notes if "<sensor>" in note.message]
-    assert str(note).endswith("sensors are the robot's (2 times; here first)")
+    found = load(tmp_path, text_with("link", "<battery/><battery/>"))
+    (note,) = [note for note in found.notes if "<battery>" in note.message]
+    assert str(note).endswith("there is no battery (2 times; here first)")
 
 
 AUTOMATIC = text_with("inertial", "").replace(
