@@ -1,6 +1,7 @@
 """`harness robot check|show`: what it says of good robots, and of bad ones."""
 
 import json
+import re
 from dataclasses import replace
 
 import cv2
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 
 from harness.cli.main import main
+from harness.core.resources import data_folder
 from harness.core.spatial import SE3
 from harness.planning.kinematics import PinocchioKinematics
 from harness.planning.pair_statistics import random_positions, self_touches
@@ -162,6 +164,37 @@ def test_an_arm_of_one_joint_is_looked_over(folder, capsys):
     code, page = check(capsys, "one.xml")
     assert code == 0
     assert "numeric solves 100 of 100 poses" in page
+
+
+MJCF = """<mujoco model="two"><worldbody><body name="base"><geom size="0.05" mass="1"/>
+<body name="upper" pos="0 0 0.1"><joint name="a" axis="0 1 0" range="-100 100"/>
+<geom type="capsule" fromto="0 0 0.05 0 0 0.3" size="0.03" mass="1"/>
+<body name="lower" pos="0 0 0.35"><joint name="b" axis="0 1 0" range="-100 100"/>
+<geom type="capsule" fromto="0 0 0.05 0 0 0.3" size="0.03" mass="1"/>
+<site name="tool" pos="0 0 0.33"/></body></body></body></worldbody>
+<keyframe><key name="bent" qpos="0.5 1"/></keyframe></mujoco>"""
+
+
+def test_an_mjcf_is_looked_over_too(folder, capsys):
+    (folder / "two.xml").write_text(MJCF)
+    code, page = check(capsys, "two.xml", "--tcp-link", "tool", "--state", "bent")
+    assert code == 0
+    assert "  arm (the arm): 2 joints, robot_world to tool\n      states: bent" in page
+    assert "✓ masses: 3 kg, 2 kg of it moving" in page
+
+
+def test_a_xacro_file_is_rendered_with_its_arguments(capsys):
+    xacro = str(data_folder("robots") / "universal_robots/ur.urdf.xacro")
+    words = ("--srdf", xacro.replace("ur.urdf.xacro", "ur.srdf"), "--args")
+    for name in ("ur10e", "ur3e"):
+        code, page = check(capsys, xacro, *words, f"ur_type={name}")
+        assert code == 0
+        total = sum(link.inertial.mass for link in robot(model=name).links if link.inertial)
+        assert f"✓ masses: {total:.4g} kg" in page
+        assert re.search(r"✓ inverse kinematics: ur solves (\d+) of \1 poses", page)
+    code, said = check(capsys, xacro, "--args", "ur_typ=ur3e")
+    assert code == 2
+    assert "takes no argument 'ur_typ'; known are meshes" in said
 
 
 def test_without_srdf_pairs_are_proposed_and_written(folder, capsys):
