@@ -23,6 +23,8 @@ def _robot(arguments: argparse.Namespace) -> int:
     source = Path(arguments.file)
     if arguments.model_path:
         raise UsageError("--model-path is for SDF; an SRDF's robot has --package-path")
+    if source.is_dir():
+        raise UsageError(f"'{source}' is a folder: name the SRDF in it")
     if not arguments.robot:
         raise UsageError("an SRDF says nothing without its robot: --robot FILE (URDF, xacro, MJCF)")
     folder = Path(arguments.output) if arguments.output else source.with_suffix("")
@@ -49,6 +51,8 @@ def _world(arguments: argparse.Namespace) -> int:
     source = Path(arguments.file)
     if arguments.robot:
         raise UsageError("--robot goes with an SRDF")
+    if source.is_dir():
+        raise UsageError(f"'{source}' is a folder: name the file in it")
     target = Path(arguments.output) if arguments.output else source.with_suffix(".yaml")
     if target.suffix.lower() not in (".yaml", ".yml"):
         raise UsageError(f"the name of a world file ends in .yaml, not '{target.name}'")

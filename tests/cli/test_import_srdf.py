@@ -122,6 +122,7 @@ def test_meshes_are_found_from_wherever_the_folder_is(folder):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
+        (["."], "'.' is a folder: name the SRDF in it"),
         (["arm.srdf"], "an SRDF says nothing without its robot: --robot FILE"),
         (["arm.srdf", "--robot", "ur3e"], "--robot is a URDF, xacro or MJCF file, not 'ur3e'"),
         (["arm.srdf", "--robot", "arm.urdf", "-o", "a.yaml"], "'a.yaml' is no folder"),
