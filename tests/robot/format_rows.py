@@ -267,7 +267,7 @@ LIMITS_ROWS = (
     _read("`has_effort_limits`, `max_effort`", "narrows", BEND,
           BEND + "    has_effort_limits: true\n    max_effort: 20\n",
           lambda arm: arm.joint_by_name["bend"].effort == 20),
-    _ignored("`has_jerk_limits`, `max_jerk`", "motions here have no limit of jerk", BEND,
+    _ignored("`has_jerk_limits`, `max_jerk`", "the scenario's `planning` has `max_jerk`", BEND,
              BEND + "    has_jerk_limits: true\n    max_jerk: 20\n"),
     _ignored("`default_velocity_scaling_factor`, `default_acceleration_scaling_factor`",
              "the scenario's `planning` says them", "joint_limits:",
