@@ -102,19 +102,18 @@ def near_singular_positions(chain: Chain, task: Task | None = None) -> Positions
 def _to_singularity(chain: Chain, task: Task, positions: FloatArray) -> tuple[FloatArray, int]:
     """The most singular positions that differ in one joint, and which joint."""
     lower, upper = chain.lower, chain.upper
-    best, joint = np.array(positions), 0
+    best, joints = np.array(positions), list(range(chain.dof))
     for _ in range(REFINED):
         grid = np.linspace(lower, upper, SEARCHED)  # (SEARCHED, dof)
-        samples = np.tile(best, (chain.dof, SEARCHED, 1))
-        for index in range(chain.dof):
-            samples[index, :, index] = grid[:, index]
+        samples = np.tile(best, (len(joints), SEARCHED, 1))
+        for row, joint in enumerate(joints):
+            samples[row, :, joint] = grid[:, joint]
         values = manipulability(chain, task, samples.reshape(-1, chain.dof))
-        winner = int(np.argmin(values))
-        joint, place = divmod(winner, SEARCHED)
-        best = samples[joint, place]
+        row, place = divmod(int(np.argmin(values)), SEARCHED)
+        best, joints = samples[row, place], [joints[row]]
         width = (upper - lower) / (SEARCHED - 1)
         lower, upper = np.maximum(best - width, chain.lower), np.minimum(best + width, chain.upper)
-    return best, joint
+    return best, joints[0]
 
 
 def _each_joint(chain: Chain, margin: float) -> list[st.SearchStrategy[float]]:
