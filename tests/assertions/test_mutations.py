@@ -448,7 +448,7 @@ def test_every_predicate_has_a_case():
 def test_every_signal_of_a_run_is_read_by_some_predicate():
     read = {field for spec, run, step_id in CASES for field, _ in read_by(run, spec, step_id)}
     recorded = {entry.name for entry in fields(Signals)} - {"clearance_cutoff", "times"}
-    for_people = {"clearance_links", "presses"}  # which link it was, and where it touched
+    for_people = {"clearance_links"}  # which link it was
     assert recorded - read == for_people
 
 
