@@ -25,15 +25,18 @@ _BEYOND = np.pi  # [rad] how far a continuous joint may leave the range of start
 
 class _EdgeValidator(ob.MotionValidator):
     def __init__(
-        self, information: ob.SpaceInformation, checker: MotionChecker, resolution: float
+        self, information: ob.SpaceInformation, checker: MotionChecker, resolution: float, end: int
     ) -> None:
         super().__init__(information)
         self._checker = checker
+        self._end = end
         self._resolution = resolution
         self._dof = checker.space.dof
 
     def checkMotion(self, first: ob.State, second: ob.State) -> bool:  # noqa: N802 (OMPL's name)
-        """Whether the whole edge is free."""
+        """Whether the whole edge is free; none is when the budget has ended."""
+        if self._checker.checks >= self._end:
+            return False
         dof = self._dof
         return self._checker.edge_free(
             np.array([first[index] for index in range(dof)]),
@@ -74,14 +77,14 @@ def search_ompl(
     kind = resolve_planner_id(planner_id)
     space = checker.space
     _seed_ompl(seed)
-    information, definition = _problem(space, checker, start, goals, resolution)
+    before = checker.checks
+    end = before + max_state_checks
+    information, definition = _problem(space, checker, start, goals, resolution, end)
     planner = getattr(og, kind)(information)
     _set_parameters(planner, {"range": DEFAULT_RANGE}, strict=False)
     _set_parameters(planner, parameters, strict=True)
     planner.setProblemDefinition(definition)
     planner.setup()
-    before = checker.checks
-    end = before + max_state_checks
     planner.solve(ob.PlannerTerminationCondition(lambda: checker.checks >= end))
     used = checker.checks - before
     data = ob.PlannerData(information)
@@ -107,7 +110,9 @@ def _problem(
     start: FloatArray,
     goals: Sequence[FloatArray],
     resolution: float,
+    end: int,
 ) -> tuple[ob.SpaceInformation, ob.ProblemDefinition]:
+    """OMPL's view of the problem; planners that draw whole batches find nothing free at the end."""
     ends = np.vstack([start, *goals])
     states = ob.RealVectorStateSpace(space.dof)
     bounds = ob.RealVectorBounds(space.dof)
@@ -119,9 +124,12 @@ def _problem(
     information = ob.SpaceInformation(states)
     dof = space.dof
     information.setStateValidityChecker(
-        lambda state: checker.state_free(np.array([state[index] for index in range(dof)]))
+        lambda state: (
+            checker.checks < end
+            and checker.state_free(np.array([state[index] for index in range(dof)]))
+        )
     )
-    information.setMotionValidator(_EdgeValidator(information, checker, resolution))
+    information.setMotionValidator(_EdgeValidator(information, checker, resolution, end))
     information.setup()
     definition = ob.ProblemDefinition(information)
     definition.addStartState(_state(states, start))

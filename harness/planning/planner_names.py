@@ -20,18 +20,18 @@ _CLASSES: Mapping[str, str] = {
     "KPIECE": "KPIECE1",
     "BKPIECE": "BKPIECE1",
     "LBKPIECE": "LBKPIECE1",
+    "FMT": "FMT",
+    "BFMT": "BFMT",
+    "AORRTC": "AORRTC",
 }
 """Planner name -> class of the OMPL wheel; the first two are our own."""
 
 _REFUSED: Mapping[str, str] = {
     "PRM": "it grows its roadmap on two threads, so equal runs differ",
     "PRMstar": "it grows its roadmap on two threads, so equal runs differ",
-    "FMT": "it checks a whole batch of samples before it heeds the budget",
-    "BFMT": "it checks a whole batch of samples before it heeds the budget",
     "LazyPRM": "the OMPL wheel does not have it",
     "LazyPRMstar": "the OMPL wheel does not have it",
-    "BITstar": "its binding in the OMPL wheel never frees a plan",
-    "AORRTC": "it searches until the budget ends and its equal runs were not verified",
+    "BITstar": "its binding in the OMPL wheel never frees a plan (5 MB each)",
     "EST": "the OMPL wheel does not have it",
     "BiEST": "the OMPL wheel does not have it",
     "ProjEST": "the OMPL wheel does not have it",
@@ -43,6 +43,15 @@ _REFUSED: Mapping[str, str] = {
     "PDST": "the OMPL wheel does not have it",
     "SPARS": "the OMPL wheel does not have it",
     "SPARStwo": "the OMPL wheel does not have it",
+    "AITstar": "the OMPL wheel does not have it",
+    "EITstar": "the OMPL wheel does not have it",
+    "AnytimePathShortening": "it plans on several threads; shortening is always on",
+    "CHOMP": "it is a pipeline of MoveIt, not a planner of OMPL",
+    "STOMP": "it is a pipeline of MoveIt, not a planner of OMPL",
+    "TrajOpt": "it is a pipeline of MoveIt, not a planner of OMPL",
+    "PTP": "Pilz's motions are steps: write `ptp`",
+    "LIN": "Pilz's motions are steps: write `lin`",
+    "CIRC": "Pilz's motions are steps: write `circ`",
 }
 
 

@@ -1,6 +1,8 @@
 """Planner names as OMPL, MoveIt and people write them; all offered ones are deterministic."""
 
 import numpy as np
+import ompl.base
+import ompl.geometric
 import pytest
 
 from harness.planning.checker import MotionChecker
@@ -26,6 +28,27 @@ def test_unknown_planners_get_a_suggestion_and_the_list():
 def test_planners_with_threads_are_refused_with_the_reason(name):
     with pytest.raises(ValueError, match="two threads"):
         resolve_planner_id(name)
+
+
+@pytest.mark.parametrize("name", ["chomp", "STOMP", "TrajOptkConfigDefault"])
+def test_pipelines_of_moveit_are_refused_with_what_there_is_instead(name):
+    with pytest.raises(ValueError, match=r"pipeline of MoveIt.*planners: auto, Balanced.*RRTCon"):
+        resolve_planner_id(name)
+
+
+def test_every_planner_of_the_ompl_wheel_is_offered_or_refused_with_a_reason():
+    planners = {
+        name
+        for name in dir(ompl.geometric)
+        if isinstance(getattr(ompl.geometric, name), type)
+        and issubclass(getattr(ompl.geometric, name), ompl.base.Planner)
+    }
+    assert {"RRTConnect", "PRM", "FMT"} <= planners
+    for name in planners:
+        try:
+            assert resolve_planner_id(name) == name
+        except ValueError as refusal:
+            assert "is refused" in str(refusal)  # noqa: PT017
 
 
 @pytest.mark.parametrize("name", planner_names())
