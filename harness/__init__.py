@@ -1,3 +1,41 @@
 """armharness: a declarative scenario runner and test harness for robot arms."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from harness.spec.scenario import Scenario
+    from harness.suite.api import ScenarioResult
+
 __version__ = "0.1.0"
+
+
+def run(
+    scenario: str | Path | Scenario,
+    *,
+    overrides: Mapping[str, Any] | None = None,
+    seed: int | None = None,
+    case: str = "",
+    report_dir: str | Path | None = None,
+) -> ScenarioResult:
+    """Run one case of a scenario in this process.
+
+    Args:
+        scenario: A file, or the model of one, built in Python.
+        overrides: Dotted path -> value, as `--set` has them: `{"robot.model": "ur5e"}`.
+        seed: Instead of the scenario's.
+        case: Which one, where it is parametrised.
+        report_dir: Where its report is written; None: nowhere.
+
+    Returns:
+        True when it passed; `str` of it says why it did not; `case` and `run` hold everything.
+
+    Raises:
+        UsageError: There is no such case, or one must be named.
+    """
+    from harness.suite.api import run_scenario
+
+    return run_scenario(scenario, overrides=overrides, seed=seed, case=case, report_dir=report_dir)

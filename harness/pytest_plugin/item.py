@@ -77,7 +77,7 @@ class ScenarioItem(pytest.Item):
     def runtest(self) -> None:
         plan = [
             each
-            for each in planned([_shown(self.path)], Wanted(report_root=self._report_root()))
+            for each in planned([shown(self.path)], Wanted(report_root=report_root(self.config)))
             if self._case == (each.case.name if each.case.sample is None else each.case.group)
         ]
         sampling = Sampling(plan)
@@ -119,7 +119,7 @@ class ScenarioItem(pytest.Item):
             cap = self.config.getini("harness_hard_cap")
             arriving = run_isolated(
                 jobs,
-                _server(self.config),
+                server_of(self.config),
                 hard_cap=float(cap) if cap else None,
                 is_needless=sampling.is_needless,
             )
@@ -128,14 +128,6 @@ class ScenarioItem(pytest.Item):
             results[index] = result
             sampling.note(index, result.outcome)
         return results
-
-    def _report_root(self) -> Path | None:
-        if self.config.getoption("--harness-no-report"):
-            return None
-        asked = self.config.getoption("--harness-report-dir")
-        if asked:
-            return Path(asked)
-        return self.config.rootpath / self.config.getini("harness_report_dir")
 
     def _tell(self, result: CaseResult) -> None:
         """Put what a later reader needs beside the test's outcome."""
@@ -146,7 +138,15 @@ class ScenarioItem(pytest.Item):
             self.add_report_section("call", "scenario", note)
 
 
-def _server(config: pytest.Config) -> WarmServer:
+def report_root(config: pytest.Config) -> Path | None:
+    """Where the session's reports go; None where none are written."""
+    if config.getoption("--harness-no-report"):
+        return None
+    asked = config.getoption("--harness-report-dir")
+    return Path(asked) if asked else config.rootpath / config.getini("harness_report_dir")
+
+
+def server_of(config: pytest.Config) -> WarmServer:
     """The fork server of this pytest process; it ends with pytest."""
     if SERVER not in config.stash:
         config.stash[SERVER] = server = WarmServer()
@@ -154,7 +154,7 @@ def _server(config: pytest.Config) -> WarmServer:
     return config.stash[SERVER]
 
 
-def _shown(path: Path) -> Path:
+def shown(path: Path) -> Path:
     """A path as a person would write it."""
     here = Path.cwd()
     return path.relative_to(here) if path.is_relative_to(here) else path

@@ -6,6 +6,7 @@ scenario file is met.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fnmatch import fnmatch
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,6 +15,7 @@ import pytest
 
 if TYPE_CHECKING:
     from harness.pytest_plugin.item import ScenarioFile
+    from harness.suite.api import ScenarioResult
 
 PATTERNS = ["*.scenario.yaml"]
 
@@ -44,6 +46,17 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
     parser.addini("harness_report_dir", "where reports go, from the root folder", default="reports")
     parser.addini("harness_hard_cap", "wall seconds after which a scenario is an error", default="")
+
+
+@pytest.fixture
+def harness_scenario(request: pytest.FixtureRequest) -> Callable[..., ScenarioResult]:
+    """Runs a scenario in a process of its own: `harness_scenario("pick.scenario.yaml")`.
+
+    Takes what `harness.run` takes; reports go below the session's, under the test's name.
+    """
+    from harness.pytest_plugin.fixture import runner_of
+
+    return runner_of(request)
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> ScenarioFile | None:

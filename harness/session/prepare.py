@@ -47,14 +47,17 @@ class Prepared:
 
 
 def prepare(
-    path: Path, overrides: Mapping[str, str] | None = None, seed: int | None = None
+    path: Path,
+    overrides: Mapping[str, str] | None = None,
+    seed: int | None = None,
+    text: str | None = None,
 ) -> Prepared:
-    """Load and compile a scenario.
+    """Load and compile a scenario; its text may be given instead of read.
 
     Raises:
         SpecError: With every problem of the file, robot and world included.
     """
-    reading = read_scenario(path, overrides, seed)
+    reading = read_scenario(path, overrides, seed, text)
     if reading.loaded is None:
         raise SpecError(reading.problems)
     try:

@@ -46,6 +46,7 @@ def run_case(
     bag: bool = False,
     case: str = "",
     only_failed: bool = False,
+    text: str | None = None,
     on_progress: Notify = lambda _: None,
 ) -> CaseResult:
     """Compile, execute, judge and report one scenario.
@@ -60,12 +61,13 @@ def run_case(
         bag: Whether the report gets a rosbag2.
         case: Name of the case; empty when the file has one.
         only_failed: Whether to write a report only where the case does not pass.
+        text: What would stand in the file; None: what does.
         on_progress: Told of every step.
     """
     clock = Clock()
     try:
         with clock.part("compile"):
-            prepared = prepare(path, overrides, seed)
+            prepared = prepare(path, overrides, seed, text)
     except SpecError as error:
         return CaseResult(
             str(path), case, path.name, "invalid", problems=tuple(error.problems),

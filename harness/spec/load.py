@@ -92,9 +92,18 @@ class Reading:
 
 
 def read_scenario(
-    path: Path, overrides: Mapping[str, str] | None = None, seed: int | None = None
+    path: Path,
+    overrides: Mapping[str, str] | None = None,
+    seed: int | None = None,
+    text: str | None = None,
 ) -> Reading:
     """A scenario file with its mistakes, for whoever goes on to find more.
+
+    Args:
+        path: The file.
+        overrides: Dotted path -> YAML value, as given with `--set`.
+        seed: Taken in place of the file's.
+        text: What would stand in the file; None: what does.
 
     Raises:
         SpecError: The file is no YAML, or an override names nothing in it.
@@ -102,7 +111,7 @@ def read_scenario(
     given = dict(overrides or {})
     if seed is not None:
         given["seed"] = str(seed)
-    text = read_text(path)
+    text = read_text(path) if text is None else text
     problems: list[Problem] = []
     written = parse_yaml(text, Source.of_text(str(path), text))
     written = override(written, given, keys_of(Scenario), values_of_case(written, given))

@@ -36,6 +36,7 @@ class CaseJob:
         bag: Whether it gets a rosbag2.
         case: Name of the case; empty when the file has one.
         only_failed: Whether a report is written only where the case does not pass.
+        text: What would stand in the file; None: what does.
     """
 
     file: Path
@@ -47,6 +48,7 @@ class CaseJob:
     bag: bool = False
     case: str = ""
     only_failed: bool = False
+    text: str | None = None
 
 
 Function = Callable[[CaseJob, Callable[[ProgressEvent], None]], CaseResult]
@@ -78,6 +80,7 @@ def run_case(job: CaseJob, notify: Callable[[ProgressEvent], None]) -> CaseResul
         bag=job.bag,
         case=job.case,
         only_failed=job.only_failed,
+        text=job.text,
         on_progress=notify,
     )
 

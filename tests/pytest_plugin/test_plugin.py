@@ -181,3 +181,24 @@ def test_random_samples_are_one_item_that_tells_the_rate(pytester, write):
             r"again: harness run varied.scenario.yaml --case sample\d",
         ]
     )
+
+
+def test_the_fixture_runs_scenarios_of_tests_written_by_hand(pytester, write):
+    write(holds=HOLDS, fails=FAILS)
+    pytester.makepyfile(
+        """
+        def test_holds(harness_scenario):
+            result = harness_scenario("holds.scenario.yaml", overrides={"seed": 4})
+            assert result, str(result)
+            assert result.case.seed == 4
+            assert result.run.signals.times[-1] < 0.2
+
+        def test_fails(harness_scenario):
+            result = harness_scenario("fails.scenario.yaml")
+            assert result, str(result)
+        """
+    )
+    result = run(pytester, "-k", "test_holds or test_fails")
+    result.assert_outcomes(passed=1, failed=1)
+    result.stdout.re_match_lines([r"E +AssertionError: failed", r"E +fails.scenario.yaml:8: .*"])
+    assert (pytester.path / "reports/tests/test_holds-1/run.json").is_file()

@@ -1,0 +1,62 @@
+"""The fixture with which tests written by hand run scenarios."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from harness.pytest_plugin.item import report_root, server_of, shown
+from harness.reporting.result import CaseResult
+from harness.suite.api import ScenarioResult, run_in_process, run_scenario
+from harness.suite.cases import CaseJob, run_isolated
+
+if TYPE_CHECKING:
+    from harness.spec.scenario import Scenario
+
+
+def runner_of(request: pytest.FixtureRequest) -> Callable[..., ScenarioResult]:
+    """A function that runs scenarios for one test; each call has a report folder of its own."""
+    config = request.config
+    count = 0
+
+    def isolated(job: CaseJob) -> CaseResult:
+        cap = config.getini("harness_hard_cap")
+        [(_index, result)] = run_isolated(
+            [job], server_of(config), hard_cap=float(cap) if cap else None
+        )
+        return result
+
+    def run(
+        scenario: str | Path | Scenario,
+        *,
+        overrides: Mapping[str, Any] | None = None,
+        seed: int | None = None,
+        case: str = "",
+    ) -> ScenarioResult:
+        nonlocal count
+        count += 1
+        root = report_root(config)
+        name = re.sub(r"[^\w.-]+", "_", request.node.name)
+        folder = None if root is None else root / "tests" / f"{name}-{count}"
+        return run_scenario(
+            _found(request, scenario),
+            overrides=overrides,
+            seed=seed,
+            case=case,
+            report_dir=folder,
+            runner=run_in_process if config.getoption("--harness-in-process") else isolated,
+        )
+
+    return run
+
+
+def _found(request: pytest.FixtureRequest, scenario: str | Path | Scenario) -> Any:
+    """A relative name beside the test's file, where there is one, else as it is."""
+    if isinstance(scenario, str | Path):
+        beside = request.path.parent / scenario
+        return shown(beside) if beside.is_file() else Path(scenario)
+    return scenario

@@ -1,0 +1,58 @@
+"""Models as a file writes them: the inverse of `short_forms`, for scenarios built in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, cast
+
+from harness.spec.base import SpecModel
+from harness.spec.checks import Always, Eventually, Never, Until
+from harness.spec.language import BESIDE_CHECK, BESIDE_VERB
+from harness.spec.params import escaped
+from harness.spec.scenario import Scenario
+from harness.spec.source import Place, Source, located
+from harness.spec.yaml_text import yaml_text
+
+TEMPORAL = (Always, Never, Eventually)
+
+
+def scenario_text(scenario: Scenario) -> str:
+    """A scenario as the text of a file that loads to the same model; numbers are in SI units."""
+    root = located(written(scenario), Place(Source("a scenario built in Python")))
+    return yaml_text(escaped(root), block_keys=("steps", "expect"))
+
+
+def written(value: object) -> Any:
+    """A model, or what it holds, as plain data in the shape of a file."""
+    if isinstance(value, Until):
+        return {"always": written(value.predicate), "until": written(value.until), **_beside(value)}
+    if isinstance(value, TEMPORAL):
+        return {value.check: written(value.predicate), **_beside(value)}
+    if isinstance(value, SpecModel):
+        entries = _entries(value)
+        for tag, beside in (("do", BESIDE_VERB), ("check", BESIDE_CHECK)):
+            if tag in type(value).model_fields:
+                inside = {k: v for k, v in entries.items() if k not in (*beside, tag)}
+                word = getattr(value, tag)
+                return {word: inside, **{k: v for k, v in entries.items() if k in beside}}
+        return entries
+    if isinstance(value, Mapping):
+        items = cast("Mapping[str, object]", value).items()
+        return {key: written(item) for key, item in items}
+    if isinstance(value, tuple | list):
+        return [written(item) for item in cast("list[object]", value)]
+    return value
+
+
+def _entries(model: SpecModel) -> dict[str, Any]:
+    """The fields that were given, by the names that files have."""
+    fields = type(model).model_fields
+    return {
+        field.alias or name: written(getattr(model, name))
+        for name, field in fields.items()
+        if name in model.model_fields_set
+    }
+
+
+def _beside(model: SpecModel) -> dict[str, Any]:
+    return {key: value for key, value in _entries(model).items() if key in BESIDE_CHECK}

@@ -1,0 +1,166 @@
+"""Scenarios from Python: run one, look at its verdicts and at what was recorded."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from harness.recording.run import Run, StepRecord, Verdict
+from harness.recording.store import RUN, read_run
+from harness.reporting.result import CaseResult
+from harness.reporting.terminal import causes
+from harness.suite.cases import CaseJob, nobody_watches, run_here
+from harness.suite.discovery import SUFFIX, UsageError
+from harness.suite.header import source_lines
+from harness.suite.variation import Case, Variation
+
+if TYPE_CHECKING:
+    from harness.spec.scenario import Scenario
+
+T = TypeVar("T")
+Runner = Callable[[CaseJob], CaseResult]
+
+
+@dataclass(frozen=True, repr=False)
+class ScenarioResult:
+    """What a run came to; true when it passed.
+
+    Attributes:
+        case: Outcome, verdicts, problems, digest, times, as the terminal and the reports tell them.
+        run: Everything recorded; None where nothing ran.
+    """
+
+    case: CaseResult
+    run: Run | None
+
+    @property
+    def passed(self) -> bool:
+        """Whether every step and every expectation is as it should be."""
+        return self.case.outcome == "passed"
+
+    def __bool__(self) -> bool:
+        return self.passed
+
+    def __repr__(self) -> str:
+        return f"ScenarioResult({self.case.outcome}: {self.case.title})"
+
+    def __str__(self) -> str:
+        """Why it did not pass, as the terminal says it."""
+        if self.passed:
+            return f"passed: {self.case.title}"
+        return "\n".join(
+            [self.case.outcome, *causes(self.case, source_lines(Path(self.case.file)))]
+        )
+
+    def verdict(self, words: str) -> Verdict:
+        """The one verdict whose expectation has these words in it.
+
+        Raises:
+            LookupError: None has them, or several.
+        """
+        found = [each for each in self.case.verdicts if words in each.expectation]
+        return _one(found, words, [each.expectation for each in self.case.verdicts])
+
+    def step(self, step_id: str) -> StepRecord:
+        """The record of a step, by its id.
+
+        Raises:
+            LookupError: No step has it.
+        """
+        steps = self.run.steps if self.run is not None else ()
+        found = [each for each in steps if each.id == step_id]
+        return _one(found, step_id, [each.id for each in steps if each.id])
+
+
+def _one(found: list[T], words: str, known: list[str]) -> T:
+    if len(found) != 1:
+        said = "; ".join(known) or "there are none"
+        raise LookupError(f"{len(found)} have '{words}': {said}")
+    return found[0]
+
+
+def run_scenario(
+    scenario: str | Path | Scenario,
+    *,
+    overrides: Mapping[str, Any] | None = None,
+    seed: int | None = None,
+    case: str = "",
+    report_dir: str | Path | None = None,
+    runner: Runner | None = None,
+) -> ScenarioResult:
+    """Run one case of a scenario and read back what was recorded.
+
+    Args:
+        scenario: A file, or the model of one; relative names in a model are looked up from the
+            working directory.
+        overrides: Dotted path -> value, as `--set` has them: `{"robot.model": "ur5e"}`.
+        seed: Instead of the scenario's.
+        case: Which one, where it is parametrised.
+        report_dir: Where its report is written; None: nowhere.
+        runner: Runs the job; by default in this process.
+
+    Raises:
+        UsageError: There is no such case, or one must be named.
+    """
+    job = _job(scenario, {k: _yaml(v) for k, v in (overrides or {}).items()}, seed, case)
+    with ExitStack() as stack:
+        if report_dir is None:
+            folder = Path(stack.enter_context(TemporaryDirectory())) / "run"
+            job = replace(job, report_dir=folder, stills=False, page=False)
+        else:
+            job = replace(job, report_dir=Path(report_dir))
+        result = (runner or run_in_process)(job)
+        folder = Path(result.report_dir) if result.report_dir else None
+        run = read_run(folder).run if folder is not None and (folder / RUN).is_file() else None
+        if report_dir is None:
+            result = replace(result, report_dir="")
+    return ScenarioResult(result, run)
+
+
+def run_in_process(job: CaseJob) -> CaseResult:
+    """Run a job here."""
+    [(_index, result)] = run_here([job], watch=nobody_watches)
+    return result
+
+
+def _job(
+    scenario: str | Path | Scenario, overrides: dict[str, str], seed: int | None, case: str
+) -> CaseJob:
+    if isinstance(scenario, str | Path):
+        from harness.suite.header import read_header
+
+        file, text, variation = Path(scenario), None, read_header(Path(scenario)).variation
+    else:
+        from harness.spec.written import scenario_text, written
+
+        text = scenario_text(scenario)
+        file, variation = Path.cwd() / f"python{SUFFIX}", Variation.of(written(scenario))
+    name = str(scenario) if isinstance(scenario, str | Path) else scenario.scenario
+    chosen = _case(variation, seed, case, name)
+    return CaseJob(
+        file,
+        {**chosen.overrides, **overrides},
+        seed if chosen.sample is None else None,
+        case=chosen.name,
+        text=text,
+    )
+
+
+def _case(variation: Variation, seed: int | None, name: str, scenario: str) -> Case:
+    cases = {each.name: each for each in variation.cases(seed)}
+    if name in cases:
+        return cases[name]
+    known = ", ".join(list(cases)[:10])
+    if not name:
+        raise UsageError(f"'{scenario}' has {len(cases)} cases; name one of them: {known}")
+    raise UsageError(f"'{scenario}' has no case '{name}'; cases: {known or 'one, without a name'}")
+
+
+def _yaml(value: Any) -> str:
+    """A value as YAML, in which JSON is."""
+    return json.dumps(value, ensure_ascii=False)

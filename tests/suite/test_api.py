@@ -1,0 +1,79 @@
+"""Scenarios from Python: what the documentation shows runs, and mistakes are told."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import harness
+from harness.core.resources import data_folder
+from harness.spec.checks import Always, DurationCheck, NamedTarget, WithinLimits
+from harness.spec.load import load_scenario, parse_scenario
+from harness.spec.scenario import Scenario
+from harness.spec.steps import MoveTo, Wait
+from harness.spec.written import scenario_text
+from harness.suite.discovery import UsageError
+
+PAGE = data_folder("scenarios") / "PYTHON.md"
+BUNDLED = sorted(data_folder("scenarios").rglob("*.scenario.yaml"))
+WAITS = {"scenario": "Wait", "robot": "open_manipulator_x", "steps": [Wait(duration=0.1)]}
+
+
+@pytest.mark.parametrize("file", BUNDLED, ids=lambda file: file.name.split(".")[0])
+def test_every_bundled_scenario_is_written_from_its_model_and_read_back(file):
+    scenario = load_scenario(file).scenario
+    assert parse_scenario(scenario_text(scenario), file).scenario == scenario
+
+
+@pytest.mark.parametrize("number", [0, 2])
+def test_the_examples_of_the_page_run(number, monkeypatch):
+    monkeypatch.chdir(data_folder("scenarios").parent)
+    blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    exec(compile(blocks[number], str(PAGE), "exec"), {})
+
+
+def test_a_model_runs_as_its_file_does(tmp_path):
+    scenario = Scenario(
+        scenario="Home", robot="open_manipulator_x", seed=2,
+        steps=[MoveTo(named_target="home", id="up")],
+        expect=[NamedTarget(state="home"), Always(predicate=WithinLimits())],
+    )  # fmt: skip
+    path = tmp_path / "home.scenario.yaml"
+    path.write_text(scenario_text(scenario))
+    ours, theirs = harness.run(scenario), harness.run(path, report_dir=tmp_path / "report")
+    assert ours, str(ours)
+    assert ours.case.digest == theirs.case.digest
+    assert not ours.case.report_dir
+    assert (tmp_path / "report/report.html").is_file()
+    assert ours.step("up").status == "passed"
+    assert ours.verdict("named_target").margin > 0
+    assert np.array_equal(ours.run.signals.tcp_pose, theirs.run.signals.tcp_pose)
+
+
+def test_a_failure_says_why_and_wrong_names_what_there_is():
+    result = harness.run(Scenario(**WAITS, expect=[DurationCheck(at_least=1.0)]))
+    assert not result
+    assert "duration, at least 1" in str(result)
+    with pytest.raises(LookupError, match=r"0 have 'lifted': duration, at least 1"):
+        result.verdict("lifted")
+    with pytest.raises(LookupError, match=r"0 have 'x': steps\[0\]"):
+        result.step("x")
+
+
+def test_cases_and_overrides_are_those_of_files():
+    scenario = Scenario(**WAITS, parametrize={"steps.0.wait.duration": ["0.1 s", 0.2]})
+    with pytest.raises(UsageError, match=r"2 cases; name one of them: 0.1_s, 0.2"):
+        harness.run(scenario)
+    assert harness.run(scenario, case="0.2").case.sim_time == pytest.approx(0.2, abs=0.01)
+    shorter = harness.run(Scenario(**WAITS), overrides={"steps.0.wait.duration": "0.05 s"})
+    assert shorter.case.sim_time == pytest.approx(0.05, abs=0.01)
+
+
+def test_a_broken_file_is_a_result_with_its_problems(tmp_path):
+    path = Path(tmp_path / "broken.scenario.yaml")
+    path.write_text("scenario: Broken\nrobot: ur99\nsteps: [{wait: 1}]\n")
+    result = harness.run(path)
+    assert result.case.outcome == "invalid"
+    assert result.run is None
+    assert "ur99" in str(result)
