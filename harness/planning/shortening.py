@@ -66,7 +66,8 @@ def _shortcut(
         + (points[index + 1] - points[index]) * ((place - knots[index]) / _length(knots, index))
         for place, index in ((first, before), (second, after))
     )
-    if not checker.edge_free(a, b, resolution):
+    edges = ((a, b), (points[before], a), (b, points[after + 1]))  # parts are checked at new states
+    if not all(checker.edge_free(*edge, resolution) for edge in edges):
         return path
     joined = [*path[: before + 1], a, b, *path[after + 1 :]]
     return [
