@@ -20,9 +20,10 @@ SHORTEST = 1e-6
 
 @signal.handles(TcpPath)
 def tcp_path(check: TcpPath, window: Window) -> MarginSignal:
-    """Distance to the nearest point of the curve, and the share of it between its ends' visits.
+    """Distance to the nearest point of the curve, and the share of it that is travelled forwards.
 
-    The share is of the whole window, so a TCP that stands on the line has not followed it.
+    The share is of the whole window, so a TCP that stands on the line has not followed it, and
+    neither has one that goes from its end to its start.
     """
     tcp = window.cut(link_poses(window.run, window.run.robot.tcp_link))[:, :3]
     if check.line is not None:
@@ -35,20 +36,26 @@ def tcp_path(check: TcpPath, window: Window) -> MarginSignal:
         deviation, places = along_arc(tcp, *points)
     else:
         raise NotObservable("neither a line nor an arc is given")
-    share = float(np.max(places) - np.min(places))  # NaN where a sample is not known
+    share = forward_share(places)
     parts = [
         Part(f"deviation from the {curve}", deviation, check.max_deviation, "<=", "m"),
-        Part("share travelled", np.full(len(tcp), share), check.min_fraction, ">=", "1"),
+        Part("share travelled forwards", np.full(len(tcp), share), check.min_fraction, ">=", "1"),
     ]
 
     def text(_: int, measure: Measure) -> str:
         if measure.unit == "1":
             asked = f"{100 * check.min_fraction:.1f} %"
-            return f"the TCP travelled {100 * share:.1f} % of the {curve}, {asked} asked for"
+            travelled = f"{100 * share:.1f} % of the {curve} forwards"
+            return f"the TCP travelled {travelled}, {asked} asked for"
         asked = amount(check.max_deviation, "m")
         return f"the TCP is {amount(measure.value, 'm')} from the {curve}, {asked} allowed"
 
     return all_of(window, parts, text)
+
+
+def forward_share(places: FloatArray) -> float:
+    """The largest advance from some sample to a later one; NaN where a sample is not known."""
+    return float(np.max(places - np.minimum.accumulate(places)))
 
 
 def _point(window: Window, pose: Pose) -> FloatArray:

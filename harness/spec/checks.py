@@ -250,7 +250,7 @@ class Arc(SpecModel):
 
 
 class TcpPath(CheckFields):
-    """The TCP follows a line or an arc: it stays near it and travels it from end to end."""
+    """The TCP follows a line or an arc: it stays near it and travels it from start to end."""
 
     judged = "always"
     check: Literal["tcp_path"] = "tcp_path"
@@ -258,7 +258,7 @@ class TcpPath(CheckFields):
     arc: Arc | None = Field(default=None, description="or this.")
     max_deviation: PositiveLength = Field(default=0.001, description="Largest distance to it [m].")
     min_fraction: Fraction = Field(
-        default=0.95, description="Share of it that must be travelled within the window."
+        default=0.95, description="Share of it that must be travelled forwards within the window."
     )
 
     def corners(self) -> list[tuple[tuple[str, str], Pose]]:

@@ -80,7 +80,7 @@ QUANTITIES: Mapping[str, tuple[Quantity, ...]] = {
     ),
     "tcp_path": (
         Quantity("deviation", "m", "at most `max_deviation`"),
-        Quantity("share travelled", "1", "at least `min_fraction`, in the whole window"),
+        Quantity("share travelled forwards", "1", "at least `min_fraction`, in the whole window"),
     ),
     "joints": JOINT_ERROR,
     "named_target": JOINT_ERROR,

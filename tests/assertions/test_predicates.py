@@ -654,10 +654,31 @@ def test_a_tcp_that_stands_on_the_line_has_not_followed_it():
     standing = verdict(make_run(), spec)
     assert (standing.status, standing.unit) == ("failed", "1")
     assert standing.margin == pytest.approx(-0.95)
-    assert "travelled 0.0 % of the line" in standing.reason
+    assert "travelled 0.0 % of the line forwards" in standing.reason
     assert verdict(along_z(end=0.489), spec).status == "failed"
     assert verdict(along_z(end=0.489), TcpPath(line=LINE, min_fraction=0.9)).status == "passed"
     assert verdict(along_z(), TcpPath(line=LINE, during="later")).status == "not reached"
+
+
+def test_a_line_or_an_arc_travelled_backwards_has_not_been_followed():
+    for run, spec in (
+        (along_z(start=0.5, end=0.3), TcpPath(line=LINE)),
+        (around(0.2, np.pi, 0), TcpPath(arc=ARC)),
+    ):
+        backwards = verdict(run, spec)
+        assert (backwards.status, backwards.unit) == ("failed", "1")
+        assert backwards.margin == pytest.approx(-0.95)
+    turned = {"start": LINE["end"], "end": LINE["start"]}
+    assert verdict(along_z(start=0.5, end=0.3), TcpPath(line=turned)).status == "passed"
+
+
+def test_a_line_travelled_to_and_fro_has_been_followed_once():
+    there = np.linspace(0.3, 0.5, 100)
+    for z in (np.concatenate([there, there[::-1]]), np.concatenate([there[::-1], there])):
+        assert verdict(make_run(tcp_pose=heights(z)), TcpPath(line=LINE)).status == "passed"
+    half = np.concatenate([np.linspace(0.4, 0.3, 100), np.linspace(0.3, 0.4, 100)])
+    answer = verdict(make_run(tcp_pose=heights(half)), TcpPath(line=LINE))
+    assert answer.margin == pytest.approx(0.5 - 0.95)
 
 
 def test_an_arc_is_followed_on_its_own_side_only():
