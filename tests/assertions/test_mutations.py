@@ -4,8 +4,12 @@ Nothing here is picked by hand but one passing run for each predicate, with a ti
 in which the predicate did not hold. What a predicate reads is traced while it is judged; each of
 those signals is then shifted, frozen, dropped and made NaN:
 
-- shift: from the window's start on, by each of `SHIFTS` either way, at once or as a drift of so
-  much a second, in each column (quaternions stay of unit length); at least one must be noticed;
+- shift: from the window's start on, at once or as a drift of so much a second, either way in each
+  column of its own (poses along and about each axis), by sizes from small to large: every one
+  larger than the first that is noticed must be noticed too, and there must be one. `FREE` lists,
+  with their reasons, the directions that a predicate does not speak of; none of them may be
+  noticed, so that the list says no more than is so. `MEASURED` are directions in which a signal
+  is what is measured: there the margin is exactly how far it may go;
 - freeze: it keeps its value from some moment on; at least one moment must be noticed, which is one
   at which the predicate did not hold;
 - drop: it was not recorded, and neither was its kind, where a missing key means "never touched";
@@ -25,57 +29,15 @@ import pytest
 
 from harness.assertions.judge import EXECUTED, judge
 from harness.assertions.placed import PlacedExpectation
-from harness.core.spatial import SE3
 from harness.recording.run import Signals
-from harness.spec.checks import (
-    AnyPredicate,
-    Clearance,
-    Collision,
-    Displaced,
-    DurationCheck,
-    Effort,
-    Formula,
-    FractionCheck,
-    Grasped,
-    GripperState,
-    In,
-    InContact,
-    Joints,
-    Lifted,
-    NamedTarget,
-    Never,
-    On,
-    PathLength,
-    Placed,
-    Released,
-    Slip,
-    Static,
-    TcpPath,
-    TcpPose,
-    TrackingError,
-    Until,
-    Upright,
-    WithinLimits,
-)
-from harness.spec.poses import Pose
+from harness.spec.checks import AnyPredicate, DurationCheck, FractionCheck, Lifted, Until
+from tests.assertions.free_shifts import AT_ONCE, COURSES, FREE, free_shifts
+from tests.assertions.mutation_cases import CASES, N
 from tests.assertions.picture_mutants import SUBJECTS, seen_run, spoilt
-from tests.assertions.synthetic_run import (
-    BOX,
-    ROBOT,
-    TABLE,
-    at,
-    attachment,
-    force,
-    heights,
-    lift_run,
-    make_run,
-    step,
-    thing,
-)
+from tests.assertions.signal_shifts import array_of, directions, shifted, with_array
+from tests.assertions.synthetic_run import lift_run
 
 pytestmark = pytest.mark.mutation
-N = 200
-SHIFTS = (0.02, 0.3, 3.0, 30.0)
 MOMENTS = range(0, N, 10)
 FORCES_AND_DISTANCES = (
     *("contact_forces", "presses", "support_forces"),
@@ -94,185 +56,54 @@ SAME_THING = {
     ("within_limits", "joint_command_velocities", "freeze"): "a velocity that does not change is no"
     " acceleration",
 }
-LATE = (step("early", 0, 100), step("late", 100, N))
-
-
-def columns(shoulder, finger=0.0):
-    """Two joints, each a number before the window and one in it."""
-    rows = np.zeros((N, 2))
-    for column, value in enumerate((shoulder, finger)):
-        before, inside = value if isinstance(value, tuple) else (value, value)
-        rows[:100, column], rows[100:, column] = before, inside
-    return rows
-
-
-def late(**signals):
-    return make_run(steps=LATE, **signals)
-
-
-def halves(before, inside):
-    """A pose before the window and one in it, each xyz and roll."""
-    poses = [at(100, p[:3], SE3.from_xyz_rpy(rpy=(p[3], 0, 0)).quat_wxyz) for p in (before, inside)]
-    return np.concatenate(poses)
-
-
-def standing(**more):
-    """The box in the hand, elsewhere and tilted, then put down on the table."""
-    forces = {
-        ("Table", "box"): force(N, (90, N)),
-        ("left_finger", "box"): force(N, (20, 80)),
-        ("right_finger", "box"): force(N, (20, 80)),
-    }
-    box = halves((0.3, 0, -0.3, 1.0), (0, 0, 0.02, 0))
-    carried = {("Table", "box"): forces["Table", "box"]}
-    return late(contact_forces=forces, support_forces=carried, object_poses={"box": box}, **more)
-
-
-BIN = thing("bin", static=True)
-IN_BIN = late(
-    objects=(TABLE, BOX, BIN),
-    object_poses={
-        "box": halves((0.2, 0, 0.02, 0), (0, 0, 0.02, 0)),
-        "bin": halves((0, 0.2, 0.02, 0), (0, 0, 0.02, 0)),
-    },
-)
-LINE = {"start": {"xyz": [0, 0, 0.3]}, "end": {"xyz": [0, 0, 0.5]}}
-ALONG = heights(np.concatenate([np.full(100, 0.3), np.linspace(0.3, 0.5, 100)]))
-SWING = at(N, (0, 0, 0.02))
-SWING[:100, 0] = np.linspace(-0.1, 0, 100)
-DISTANT = np.where(np.arange(N) < 100, 0.001, 0.05)
-MOVING = {
-    "joint_positions": columns((0.9, 0.0), 0.02),
-    "joint_velocities": columns((1.0, 0.0), (0.3, 0.0)),
-    "joint_efforts": columns((11.0, 1.0), (21.0, 1.0)),
-    "joint_commands": columns((0.0, 0.0), 0.02),
-    "joint_command_velocities": np.where(np.arange(N)[:, None] < 100, np.arange(N)[:, None], 99.0)
-    * np.array([1.0, 0.0]),
-}
-REPORTS = (
-    step("path", 0, 100, "cartesian_path", result={"fraction": 0.9}),
-    step("late", 100, N, "gripper", result={"stalled": True}),
-)
-
-CASES = [
-    (Lifted(object="box", above=0.05), lift_run(), "lift"),
-    (Grasped(object="box"), lift_run(), ""),
-    (Released(object="box"), standing(), "late"),
-    (Placed(object="box", on="Table", pose=Pose(xyz=(0, 0, 0.02))), standing(), "late"),
-    (On(object="box", support="Table"), standing(), "late"),
-    (In(object="box", container="bin"), IN_BIN, "late"),
-    (
-        Displaced(object="box", at_least=0.05),
-        late(object_poses={"box": halves((0.3, 0, 0.02, 0), (0, 0, 0.02, 0))}),
-        "late",
-    ),
-    (Upright(object="box"), standing(), "late"),
-    (Static(object="box"), late(object_poses={"box": SWING}), "late"),
-    (Static(), late(object_poses={"box": SWING}, joint_velocities=columns((1, 0), (1, 0))), "late"),
-    (InContact(between=("left_finger", "box"), min_force=0.5), lift_run(), "lift"),
-    (
-        Never(predicate=Collision(between=("robot", "box"))),
-        late(
-            contact_forces={("arm_link", "box"): force(N, (20, 60))},
-            clearances={("robot", "box"): DISTANT},
-        ),
-        "late",
-    ),
-    (Never(predicate=Collision()), late(clearances={("robot", "box"): DISTANT}), "late"),
-    (
-        Clearance(between=("robot", "box"), at_least=0.01),
-        late(clearances={("robot", "box"): DISTANT}),
-        "late",
-    ),
-    (
-        Clearance(between=("robot", "box"), max_below_plan=0.01),
-        late(
-            clearances={("robot", "box"): DISTANT},
-            planned_clearances={("robot", "box"): np.full(N, 0.055)},
-        ),
-        "late",
-    ),
-    (
-        TcpPose(pose=Pose(xyz=(0, 0, 0.3), frame="box")),
-        late(
-            tcp_pose=halves((0, 0.1, 0.3, 0.5), (0, 0, 0.32, 0)),
-            object_poses={"box": halves((0.1, 0, 0, 0), (0, 0, 0.02, 0))},
-        ),
-        "late",
-    ),
-    (
-        TcpPose(link="arm_link", pose=Pose(xyz=(0, 0, 0.3))),
-        late(frames={"arm_link": halves((0, 0.1, 0.3, 0.5), (0, 0, 0.3, 0))}),
-        "late",
-    ),
-    (TcpPath(line=LINE), late(tcp_pose=ALONG), "late"),
-    (PathLength(at_most=0.21, at_least=0.19), late(tcp_pose=ALONG), "late"),
-    (Joints(positions={"shoulder": 0.0, "finger": 0.02}), late(**MOVING), "late"),
-    (NamedTarget(state="home"), late(**MOVING), "late"),
-    (GripperState(position=0.02), late(joint_positions=columns(0, (0, 0.02))), "late"),
-    (GripperState(width=0.04), late(joint_positions=columns(0, (0, 0.02))), "late"),
-    (GripperState(stalled=True), make_run(steps=REPORTS), "late"),
-    (
-        WithinLimits(acceleration=True),
-        late(
-            **{
-                **MOVING,
-                "joint_positions": columns((2.0, 0.0), (0.5, 0.02)),
-                "joint_velocities": columns((3.0, 0.0), (2.0, 0.0)),
-            }
-        ),
-        "late",
-    ),
-    (
-        WithinLimits(velocity=False, effort=False),
-        replace(
-            late(joint_positions=columns((2.0, 0.0), -0.0005), joint_commands=columns(0.0)),
-            robot=replace(ROBOT, gripper=None),
-        ),
-        "late",
-    ),
-    (TrackingError(), late(**MOVING), "late"),
-    (Effort(max_fraction=0.5), late(**MOVING), "late"),
-    (DurationCheck(at_most=1.0, at_least=0.9), late(), "late"),
-    (FractionCheck(at_least=0.8), make_run(steps=REPORTS), ""),
-    (
-        Slip(object="box"),
-        lift_run(attachments=[attachment("box", 45, N)]),
-        "",
-    ),
-    (
-        Formula(
-            formula="always (z(box) < 0.1 and force(Table, box) > 0.5 and tilt(box) < 0.1"
-            ") and eventually z(tcp) > 0.49"
-        ),
-        standing(tcp_pose=ALONG),
-        "late",
-    ),
-    (
-        Formula(formula="eventually (speed(box) > 0.05 and speed(box) < 1)"),
-        late(object_poses={"box": SWING}),
-        "",
-    ),
-    (
-        Formula(
-            formula="always (abs(position(shoulder) - command(shoulder)) < 0.05"
-            " and velocity(shoulder) < 0.1 and effort(shoulder) < 2"
-            " and distance(robot, box) > 0.01)"
-        ),
-        late(**MOVING, clearances={("robot", "box"): DISTANT}),
-        "late",
-    ),
-    (
-        Until(predicate=On(object="box", support="Table"), until=Lifted(object="box", above=0.05)),
-        lift_run(leave=140, object_poses={"box": heights([0.02] * 140 + [0.12] * 60)}),
-        "",
-    ),
+COMES_BACK = {("displaced", "+x"): "first to where it was, then past it"}
+TABLE_BOX, ROBOT_BOX = ("Table", "box"), ("robot", "box")
+MEASURED = [
+    ("lifted", ("object_poses", "box"), "-z"),
+    ("released", ("contact_forces", ("left_finger", "box")), "+"),
+    ("placed", ("object_poses", "box"), "+-x"),
+    ("placed", ("object_poses", "box"), "+-y"),
+    ("placed", ("object_poses", "box"), "+-z"),
+    ("on", ("contact_forces", TABLE_BOX), "-"),
+    ("on", ("support_forces", TABLE_BOX), "-"),
+    ("in", ("object_poses", "bin"), "+-roll"),
+    ("in", ("object_poses", "bin"), "+-pitch"),
+    ("displaced", ("object_poses", "box"), "+x"),
+    ("upright", ("object_poses", "box"), "+-roll"),
+    ("upright", ("object_poses", "box"), "+-pitch"),
+    ("static 2", ("joint_velocities", None), "+-finger"),
+    ("in_contact", ("contact_forces", ("left_finger", "box")), "-"),
+    ("clearance", ("clearances", ROBOT_BOX), "-"),
+    ("clearance 2", ("clearances", ROBOT_BOX), "-"),
+    ("clearance 2", ("planned_clearances", ROBOT_BOX), "+"),
+    ("tcp_pose", ("tcp_pose", None), "+-x"),
+    ("tcp_pose", ("object_poses", "box"), "+-z"),
+    ("tcp_pose 2", ("frames", "arm_link"), "+-y"),
+    ("joints", ("joint_positions", None), "+-finger"),
+    ("named_target", ("joint_positions", None), "+-shoulder"),
+    ("gripper", ("joint_positions", None), "+-finger"),
+    ("within_limits", ("joint_positions", None), "+finger"),
+    ("within_limits 2", ("joint_positions", None), "-finger"),
+    ("tracking_error", ("joint_positions", None), "+-shoulder"),
+    ("tracking_error", ("joint_commands", None), "+-shoulder"),
+    ("formula", ("tcp_pose", None), "-z"),
+    ("formula 3", ("clearances", ROBOT_BOX), "-"),
 ]
 
 
 def name_of(spec):
-    inner = getattr(spec, "predicate", spec)
+    inner = spec if isinstance(spec, Until) else getattr(spec, "predicate", spec)
     return inner.check
+
+
+def names_of_cases():
+    """A predicate's name, and from its second case on a number."""
+    names = [name_of(spec) for spec, _, _ in CASES]
+    numbers = [names[: index + 1].count(name) for index, name in enumerate(names)]
+    return [f"{n} {k}" if k > 1 else n for n, k in zip(names, numbers, strict=True)]
+
+
+NAMED = dict(zip(names_of_cases(), CASES, strict=True))
 
 
 class _Traced(dict):
@@ -316,30 +147,6 @@ def read_by(run, spec, step_id):
     return sorted(traced.read, key=repr)
 
 
-def array_of(signals, place):
-    field, key = place
-    return getattr(signals, field) if key is None else getattr(signals, field)[key]
-
-
-def with_array(run, place, array):
-    field, key = place
-    value = array if key is None else {**getattr(run.signals, field), key: array}
-    return replace(run, signals=replace(run.signals, **{field: value}))
-
-
-def shifted(run, place, start):
-    array = array_of(run.signals, place)
-    drift = np.arange(len(array) - start) * (run.signals.times[1] - run.signals.times[0])
-    for column in range(1 if array.ndim == 1 else array.shape[1]):
-        for size in (sign * size for size in SHIFTS for sign in (1, -1)):
-            for course in (1.0, drift):
-                moved = array.copy().reshape(len(array), -1)
-                moved[start:, column] += size * course
-                if moved.shape[1] == 7:
-                    moved[:, 3:] /= np.linalg.norm(moved[:, 3:], axis=1, keepdims=True)
-                yield with_array(run, place, moved.reshape(array.shape))
-
-
 def frozen(run, place, _):
     array = array_of(run.signals, place)
     for moment in MOMENTS:
@@ -364,7 +171,7 @@ def unknown(run, place, _):
     yield with_array(run, place, np.full_like(array_of(run.signals, place), np.nan))
 
 
-MUTATIONS = {"shift": shifted, "freeze": frozen, "drop": dropped, "NaN": unknown}
+MUTATIONS = {"freeze": frozen, "drop": dropped, "NaN": unknown}
 
 
 def reported(run, spec):
@@ -389,12 +196,35 @@ def reported(run, spec):
         yield kind, replace(run, steps=tuple(steps))
 
 
-def survivors(spec, run, step_id):
-    """Predicate, signal and mutation of every mutant that still passes."""
+def start_of(run, step_id):
+    """The first sample of a window."""
+    return next((each.start_index for each in run.steps if each.id == step_id), 0)
+
+
+def unnoticed_shifts(case, place):
+    """Shifts of an array that are not noticed and not listed, or listed in vain."""
+    spec, run, step_id = NAMED[case]
+    free = free_shifts(case, place)
+    for direction in directions(run, place):
+        for course in COURSES:
+            mutants = shifted(run, place, start_of(run, step_id), direction, course)
+            noticed = [answer(mutant, spec, step_id).status != "passed" for mutant in mutants]
+            what = f"{case} / {place[0]} {place[1] or ''} / {direction} {course}"
+            if (direction, course) in free:
+                if any(noticed):
+                    yield f"{what}: listed as free, and noticed"
+            elif not any(noticed):
+                yield f"{what}: not noticed"
+            elif sorted(noticed) != noticed and (case, direction) not in COMES_BACK:
+                yield f"{what}: a larger one is not noticed"
+
+
+def survivors(case):
+    """Predicate, signal and mutation of every mutant that still passes; how many were tried."""
+    spec, run, step_id = NAMED[case]
     before = answer(run, spec, step_id)
     assert before.status == "passed", before
-    window = next((s for s in run.steps if s.id == step_id), None)
-    start = window.start_index if window else 0
+    start = start_of(run, step_id)
     found, tried = [], 0
     if isinstance(spec, DurationCheck | FractionCheck) or getattr(spec, "stalled", None):
         for kind, mutant in reported(run, spec):
@@ -404,6 +234,7 @@ def survivors(spec, run, step_id):
         return found, tried
     for place in read_by(run, spec, step_id):
         shown_only = (name_of(spec), place[0]) in SHOWN_ONLY
+        found += unnoticed_shifts(case, place)
         for kind, mutate in MUTATIONS.items():
             if (name_of(spec), place[0], kind) in SAME_THING:
                 continue
@@ -431,11 +262,34 @@ def test_no_spoilt_picture_goes_on_passing(kind):
     assert survived == []
 
 
-@pytest.mark.parametrize(("spec", "run", "step_id"), CASES, ids=[name_of(c[0]) for c in CASES])
-def test_no_spoilt_signal_goes_on_passing(spec, run, step_id):
-    found, tried = survivors(spec, run, step_id)
-    assert tried >= 3
-    assert not found
+@pytest.mark.parametrize("case", NAMED)
+def test_no_spoilt_signal_goes_on_passing(case):
+    found, tried = survivors(case)
+    assert tried >= 2
+    assert found == []
+
+
+@pytest.mark.parametrize(("case", "place", "direction"), MEASURED)
+def test_a_shift_is_noticed_just_past_the_margin_and_not_before(case, place, direction):
+    spec, run, step_id = NAMED[case]
+    margin = answer(run, spec, step_id).margin
+    for way in direction.removesuffix(direction.lstrip("+-")):
+        sizes = (0.999 * margin, 1.001 * margin)
+        start = start_of(run, step_id)
+        mutants = shifted(run, place, start, way + direction.lstrip("+-"), AT_ONCE, sizes)
+        statuses = [answer(mutant, spec, step_id).status for mutant in mutants]
+        assert statuses == ["passed", "failed"]
+
+
+def test_every_free_shift_names_a_case_and_a_signal_that_it_reads():
+    for free in FREE:
+        for case in free.cases.split(", "):
+            spec, run, step_id = NAMED[case]
+            read = read_by(run, spec, step_id)
+            for signal in free.signals.split(", "):
+                field, _, key = signal.partition(" ")
+                keyed = [place for place in read if place[0] == field and key in str(place[1])]
+                assert keyed, (case, signal)
 
 
 def test_every_predicate_has_a_case():
