@@ -156,6 +156,8 @@ def _tell(
         for runs in suite.repetitions():
             name = f"{runs[0].file} [{runs[0].case}]" if runs[0].case else runs[0].file
             say(f"{name}: {repeats(runs, style)}")
+        for index, said in suite.differences.items():
+            say(f"  run {index % arguments.repeat + 1} of {suite.jobs[index].file}: {said}")
     else:
         _tell_rates(suite, style)
     say(summary(list(suite.results.values()), seconds, style))

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import closing
-from dataclasses import dataclass, replace
+from contextlib import ExitStack, closing
+from dataclasses import dataclass
 from pathlib import Path
 
 from harness.recording.run import Outcome
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
-from harness.suite.cases import CaseJob, Watcher, nobody_watches, run_here, run_isolated
+from harness.suite.cases import Watcher, nobody_watches, run_here, run_isolated
 from harness.suite.outcome import EXIT_CODES, INTERRUPTED_EXIT_CODE, exit_code
 from harness.suite.plan import PlannedCase
+from harness.suite.repetitions import Repetitions
 from harness.suite.sampling import Sampling
 from harness.suite.stream import Stream
 from harness.suite.warm import WarmServer
@@ -55,7 +56,10 @@ class SuiteRun:
 
     def __init__(self, plan: Sequence[PlannedCase], how: How) -> None:
         self.plan = plan
-        self.jobs = [job for each in plan for job in _runs(each.job, how.repeat)]
+        self._repetitions = (
+            Repetitions([each.job for each in plan], how.repeat) if how.repeat > 1 else None
+        )
+        self.jobs = self._repetitions.jobs if self._repetitions else [each.job for each in plan]
         self.results: dict[int, CaseResult] = {}
         self.resumed = 0
         self.is_interrupted = False
@@ -76,17 +80,15 @@ class SuiteRun:
             HarnessError: The stream cannot be written.
         """
         try:
-            if self._how.stream is None:
+            with ExitStack() as stack:
+                if self._repetitions is not None:
+                    stack.enter_context(self._repetitions)
+                stream = self._stream(stack)
                 for index, result in self._arriving(server, watch):
-                    self._take(index, result)
-                    told(index, result)
-            else:
-                with closing(Stream(self._how.stream, resume=self._how.resume)) as stream:
-                    self._take_known(stream)
-                    for index, result in self._arriving(server, watch):
-                        self._take(index, result)
-                        stream.write(self.jobs[index], result)
-                        told(index, result)
+                    kept = self._take(index, result)
+                    if stream is not None:
+                        stream.write(self.jobs[index], kept)
+                    told(index, kept)
         except KeyboardInterrupt:
             self.is_interrupted = True
         counted = self._sampling.counted(self.results) if self._is_sampled else self.results
@@ -95,7 +97,7 @@ class SuiteRun:
     @property
     def _is_sampled(self) -> bool:
         """Repetitions are compared with each other, not counted as samples."""
-        return self._how.repeat == 1
+        return self._repetitions is None
 
     def _arriving(self, server: WarmServer, watch: Watcher) -> Iterator[tuple[int, CaseResult]]:
         how = self._how
@@ -110,23 +112,36 @@ class SuiteRun:
             is_needless=self.is_needless,
         )
 
-    def _take_known(self, stream: Stream) -> None:
+    def _stream(self, stack: ExitStack) -> Stream | None:
+        """Where results go as they come; those of an earlier run are taken from there."""
+        if self._how.stream is None:
+            return None
+        stream = stack.enter_context(closing(Stream(self._how.stream, resume=self._how.resume)))
         for index, job in enumerate(self.jobs):
             known = stream.known(job)
             if known is not None:
                 self._take(index, known)
                 self.resumed += 1
+        return stream
 
-    def _take(self, index: int, result: CaseResult) -> None:
-        self.results[index] = result
-        if self._is_sampled:
+    def _take(self, index: int, result: CaseResult) -> CaseResult:
+        if self._repetitions is not None:
+            result = self._repetitions.take(index, result)
+        else:
             self._sampling.note(index, result.outcome)
+        self.results[index] = result
+        return result
 
     def is_needless(self, index: int) -> bool:
         """Whether a run's result is known, or would not count."""
         return index in self.results or (self._is_sampled and self._sampling.is_needless(index))
 
     # -- what it came to ----------------------------------------------------------------------
+
+    @property
+    def differences(self) -> dict[int, str]:
+        """Of repetitions: index into `jobs` -> where a run parts from the first of its case."""
+        return self._repetitions.differences if self._repetitions is not None else {}
 
     @property
     def missing(self) -> int:
@@ -175,8 +190,3 @@ class SuiteRun:
     def exit_code(self) -> int:
         """Of the command."""
         return INTERRUPTED_EXIT_CODE if self.is_interrupted else exit_code([self.outcome])
-
-
-def _runs(job: CaseJob, repeat: int) -> list[CaseJob]:
-    first = replace(job, stills=job.report_dir is not None)
-    return [first, *[replace(job, report_dir=None, stills=False)] * (repeat - 1)]

@@ -49,7 +49,7 @@ def write(pytester):
 
 
 def run(pytester, *arguments):
-    return pytester.runpytest("-p", "no:cacheprovider", *arguments)
+    return pytester.runpytest("-p", "no:cacheprovider", "-p", "no:randomly", *arguments)
 
 
 def selected(pytester, *arguments):
@@ -202,3 +202,13 @@ def test_the_fixture_runs_scenarios_of_tests_written_by_hand(pytester, write):
     result.assert_outcomes(passed=1, failed=1)
     result.stdout.re_match_lines([r"E +AssertionError: failed", r"E +fails.scenario.yaml:8: .*"])
     assert (pytester.path / "reports/tests/test_holds-1/run.json").is_file()
+
+
+def test_other_plugins_work_beside_it(pytester, write):
+    write(holds=HOLDS, again=HOLDS.replace("0.1 s", "0.15 s"))
+    words = ["-n", "2", "--randomly-seed=7", "--timeout=120", "--html=report.html",
+             "--self-contained-html", "--cov=harness", "--cov-report=json"]  # fmt: skip
+    done = pytester.runpytest_subprocess("-p", "no:cacheprovider", *words)
+    done.assert_outcomes(passed=2)
+    assert "Hold still" in (pytester.path / "report.html").read_text()
+    assert (pytester.path / "coverage.json").is_file()
