@@ -28,8 +28,12 @@ def with_receipts(
     record = _Record(signals, robot, objects)
     done: list[StepRecord] = []
     findings: list[Finding] = []
-    for step in steps:
-        faults = [record.receipt(fault, step) for fault in step.result.get("faults", ())]
+    for number, step in enumerate(steps):
+        later = steps[number + 1 :]
+        faults = [
+            record.receipt(fault, step, _set_again(fault, later))
+            for fault in step.result.get("faults", ())
+        ]
         if not faults:
             done.append(step)
             continue
@@ -48,6 +52,15 @@ def with_receipts(
     return tuple(done), tuple(findings)
 
 
+def _set_again(fault: dict[str, Any], later: Sequence[StepRecord]) -> int | None:
+    """The first sample at which another `inject` has set the same; None if none does."""
+    for step in later:
+        for other in step.result.get("faults", ()):
+            if (other["fault"], other["target"]) == (fault["fault"], fault["target"]):
+                return step.start_index
+    return None
+
+
 def _words(fault: dict[str, Any]) -> str:
     name = str(fault["fault"]).replace("_", " ")
     return f"{name} of {fault['target']}" if fault["target"] else name
@@ -63,88 +76,98 @@ class _Record:
         self.joints = [joint.name for joint in robot.joints]
         self.step_time = float(signals.times[1] - signals.times[0]) if len(signals.times) > 1 else 0
 
-    def receipt(self, fault: dict[str, Any], step: StepRecord) -> dict[str, Any]:
-        """The fault with `receipt` and `evidence`."""
+    def receipt(
+        self, fault: dict[str, Any], step: StepRecord, set_again: int | None
+    ) -> dict[str, Any]:
+        """The fault with `receipt` and `evidence`.
+
+        Args:
+            fault: What was set, and what it was before.
+            step: The `inject`.
+            set_again: Sample at which the same was set to something else; what happens from there
+                on is none of this fault's doing.
+        """
         if fault["before"] == fault["after"]:
             return {**fault, "receipt": "no_effect", "evidence": "it was so already"}
         first = max(0, step.end_index - 1)
+        last = len(self.signals.times) if set_again is None else max(set_again, first + 1)
+        rows = slice(first, last)
         if fault["fault"] == "push":
-            first = step.start_index
-        landed, evidence = getattr(self, f"_{fault['fault']}")(fault, first, step)
+            rows = slice(step.start_index, max(step.end_index, step.start_index + 1))
+        landed, evidence = getattr(self, f"_{fault['fault']}")(fault, rows)
+        if not landed and set_again is not None:
+            evidence = evidence.replace("afterwards", "before it was set again")
         return {**fault, "receipt": "landed" if landed else "no_effect", "evidence": evidence}
 
-    def _friction(self, fault: dict[str, Any], first: int, _: StepRecord) -> tuple[bool, str]:
+    def _friction(self, fault: dict[str, Any], rows: slice) -> tuple[bool, str]:
         name = fault["target"]
-        rubbed = self._touched(name, self.robot.link_names, first)
-        moving = self._speed(name, first) > MOVING
+        rubbed = self._touched(name, self.robot.link_names, rows)
+        moving = self._speed(name, rows) > MOVING
         for pair, force in self.signals.contact_forces.items():
             if name in pair:
-                rubbed |= (force[first:] > 0) & moving
+                rubbed |= (force[rows] > 0) & moving
         if not rubbed.any():
             return False, "nothing pulled at it afterwards"
-        seconds = self._seconds(rubbed)
-        return True, f"it was gripped, or slid in contact, for {seconds} afterwards"
+        return True, f"it was gripped, or slid in contact, for {self._seconds(rubbed)} afterwards"
 
-    def _gripper_effort(self, fault: dict[str, Any], first: int, _: StepRecord) -> tuple[bool, str]:
+    def _gripper_effort(self, fault: dict[str, Any], rows: slice) -> tuple[bool, str]:
         gripper = self.robot.gripper
         fingers = [] if gripper is None else [x for side in gripper.sides.values() for x in side]
-        pressed = np.zeros(len(self.signals.times) - first, dtype=bool)
+        pressed = np.zeros(len(self.signals.times[rows]), dtype=bool)
         for name in self.is_static:
-            pressed |= self._touched(name, fingers, first)
+            pressed |= self._touched(name, fingers, rows)
         if not pressed.any():
             return False, "the gripper pressed on nothing afterwards"
         seconds, share = self._seconds(pressed), float(fault["after"])
         return True, f"the gripper pressed for {seconds} with {share:.0%} of its effort"
 
-    def _joint_stall(self, fault: dict[str, Any], first: int, _: StepRecord) -> tuple[bool, str]:
+    def _joint_stall(self, fault: dict[str, Any], rows: slice) -> tuple[bool, str]:
         joint = self.joints.index(fault["target"])
-        asked = float(np.ptp(self.signals.joint_commands[first:, joint]))
+        asked = float(np.ptp(self.signals.joint_commands[rows, joint]))
         if asked <= COMMANDED:
             return False, "it was not told to move afterwards"
-        moved = float(np.ptp(self.signals.joint_positions[first:, joint]))
+        moved = float(np.ptp(self.signals.joint_positions[rows, joint]))
         unit = "m" if self.robot.joints[joint].kind == "prismatic" else "rad"
         return True, f"told to move by {asked:.3g} {unit}, it moved by {moved:.2g} {unit}"
 
-    def _push(self, fault: dict[str, Any], first: int, step: StepRecord) -> tuple[bool, str]:
-        name = fault["target"]
-        speed = self._speed(name, first)[: step.end_index - first]
+    def _push(self, fault: dict[str, Any], rows: slice) -> tuple[bool, str]:
+        speed = self._speed(fault["target"], rows)
         before, fastest = float(speed[0]), float(speed.max())
         if fastest - before <= MOVING:
             return False, "it did not move: friction or a hand held it"
         return True, f"it reached {fastest:.3g} m/s"
 
-    def _sensor_noise(self, fault: dict[str, Any], first: int, _: StepRecord) -> tuple[bool, str]:
+    def _sensor_noise(self, fault: dict[str, Any], rows: slice) -> tuple[bool, str]:
         if fault["after"] == 0.0:
             return True, "set back"
-        errors = np.abs(self.signals.joint_positions - self.signals.joint_commands)[first + 1 :]
+        errors = np.abs(self.signals.joint_positions - self.signals.joint_commands)[rows][1:]
         if not len(errors):
-            return False, "the run ended with it"
+            return False, "no time passed afterwards"
         return True, f"joints were up to {float(np.nanmax(errors)):.3g} rad off their set points"
 
-    def _command_latency(
-        self, fault: dict[str, Any], first: int, _: StepRecord
-    ) -> tuple[bool, str]:
+    def _command_latency(self, fault: dict[str, Any], rows: slice) -> tuple[bool, str]:
         if fault["after"] == 0.0:
             return True, "set back"
-        moved = np.nan_to_num(np.ptp(self.signals.joint_commands[first:], axis=0)) > COMMANDED
+        commands = self.signals.joint_commands[rows]
+        moved = np.nan_to_num(np.ptp(commands, axis=0)) > COMMANDED
         if not moved.any():
             return False, "no joint was told to move afterwards"
-        errors = np.abs(self.signals.joint_positions - self.signals.joint_commands)[first:, moved]
+        errors = np.abs(self.signals.joint_positions[rows] - commands)[:, moved]
         return (
             True,
             f"joints lagged up to {float(np.nanmax(errors)):.3g} rad behind their set points",
         )
 
-    def _touched(self, name: str, others: Sequence[str], first: int) -> BoolArray:
-        touched = np.zeros(len(self.signals.times) - first, dtype=bool)
+    def _touched(self, name: str, others: Sequence[str], rows: slice) -> BoolArray:
+        touched = np.zeros(len(self.signals.times[rows]), dtype=bool)
         for (one, two), force in self.signals.contact_forces.items():
             if (one == name and two in others) or (two == name and one in others):
-                touched |= force[first:] > 0
+                touched |= force[rows] > 0
         return touched
 
-    def _speed(self, name: str, first: int) -> np.ndarray[Any, np.dtype[np.float64]]:
-        """Of an object's origin, between samples [m/s]; shape (N - first,)."""
-        positions = self.signals.object_poses[name][first:, :3]
+    def _speed(self, name: str, rows: slice) -> np.ndarray[Any, np.dtype[np.float64]]:
+        """Of an object's origin, between samples [m/s], of every row."""
+        positions = self.signals.object_poses[name][rows, :3]
         steps = np.linalg.norm(np.diff(positions, axis=0), axis=1)
         return np.nan_to_num(np.append(steps, 0.0)) / max(self.step_time, 1e-9)
 

@@ -61,6 +61,30 @@ def test_faults_that_change_nothing_are_findings_with_their_reason(tmp_path):
     assert len(told) == 6
 
 
+def test_a_fault_that_is_set_back_in_time_had_no_effect(tmp_path):
+    """What happens after it was set back is none of its doing."""
+    _, saved = run(
+        tmp_path,
+        HOME
+        + """- inject: {friction: {green_cylinder: 0.02}, gripper_effort: 0.1, sensor_noise: 1 deg,
+            command_latency: 20 ms}
+- inject: {friction: {green_cylinder: 1}, gripper_effort: 1, sensor_noise: 0, command_latency: 0}
+- pick: green_cylinder
+""",
+        world="lesson_ur",
+    )
+    broke, mended = (step.result["faults"] for step in saved.steps[1:3])
+    assert {fault["fault"]: (fault["receipt"], fault["evidence"]) for fault in broke} == {
+        "friction": ("no_effect", "nothing pulled at it before it was set again"),
+        "gripper_effort": ("no_effect", "the gripper pressed on nothing before it was set again"),
+        "sensor_noise": ("no_effect", "no time passed before it was set again"),
+        "command_latency": ("no_effect", "no joint was told to move before it was set again"),
+    }
+    assert {fault["receipt"] for fault in mended} == {"landed"}
+    told = [found for found in saved.findings if found.kind == "fault_without_effect"]
+    assert len(told) == 4
+
+
 def test_pushes_of_one_step_are_at_the_same_time(tmp_path):
     _, saved = run(
         tmp_path,
