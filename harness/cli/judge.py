@@ -21,20 +21,30 @@ def _run(arguments: argparse.Namespace) -> int:
     if not (folder / "run.json").is_file():
         raise UsageError(f"'{folder}' is no run's folder: it has no run.json")
     from harness.recording.store import read_run
+    from harness.reporting.contacts import contact_lines
     from harness.reporting.terminal import Style, measure_text, verdict_line
+    from harness.session.contacts import contact_records
     from harness.session.rejudge import judge_run
 
     with_file = Path(arguments.with_file) if arguments.with_file else None
     if with_file and not with_file.is_file():
         raise UsageError(f"no such file: '{with_file}'")
     verdicts = judge_run(folder, with_file)
-    ended_early = read_run(folder).run.ended_early
+    run = read_run(folder).run
+    ended_early, contacts = run.ended_early, contact_records(run)
     has_passed = bool(verdicts) and all(verdict.status == "passed" for verdict in verdicts)
     has_passed = has_passed and not ended_early  # half a run is no run that passed
     code = 0 if has_passed else EXIT_CODES["failed"]
     if arguments.json:
         with only_json_on_stdout() as write_json:
-            write_json({"format": "armharness-verdicts/1", "exit_code": code, "verdicts": verdicts})
+            write_json(
+                {
+                    "format": "armharness-verdicts/1",
+                    "exit_code": code,
+                    "verdicts": verdicts,
+                    "contacts": contacts,
+                }
+            )
         return code
     style = Style.of(sys.stdout)
     for verdict in verdicts:
@@ -44,6 +54,9 @@ def _run(arguments: argparse.Namespace) -> int:
         if verdict.status != "passed":
             for measure in verdict.measures:
                 say(f"    {measure_text(measure)}")
+    if arguments.contacts:
+        for line in contact_lines(contacts, style):
+            say(line)
     held = sum(verdict.status == "passed" for verdict in verdicts)
     say(f"{held} of {len(verdicts)} expectations hold")
     if ended_early:

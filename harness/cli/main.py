@@ -216,6 +216,8 @@ def _judge_options(judge: argparse.ArgumentParser) -> None:
     judge.add_argument("folder", metavar="RUN", help="the run's report folder")
     judge.add_argument("--with", metavar="FILE", dest="with_file",
                        help="by the expectations of this scenario")  # fmt: skip
+    judge.add_argument("--contacts", action="store_true",
+                       help="list who touched whom: first time, duration, peak force")  # fmt: skip
     judge.add_argument("--json", action="store_true", help="one JSON document on stdout")
 
 

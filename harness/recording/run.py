@@ -286,6 +286,25 @@ class Finding:
 
 
 @dataclass(frozen=True)
+class ContactRecord:
+    """Two bodies that touched, allowed or not.
+
+    Attributes:
+        pair: Names of links or objects, as in `Signals.contact_forces`.
+        first_time: When they touched first [s].
+        duration: How long they touched, all in all [s].
+        peak_force: Largest normal force [N].
+        is_collision: Whether any of it is a collision, by what the expectation `collision` counts.
+    """
+
+    pair: Pair
+    first_time: float
+    duration: float
+    peak_force: float
+    is_collision: bool
+
+
+@dataclass(frozen=True)
 class CaptureRecord:
     """Pictures that a camera took in one moment, all of the same recorded state.
 
@@ -420,6 +439,7 @@ class Run:
         timestep: Of the physics [s].
         allowed_contacts: Link or object pairs whose contact is no collision (the SRDF's).
         findings: Notes and disagreements.
+        contacts: Every pair that touched, the first to touch first.
         source: Text of the scenario file.
         resolved: Text of the resolved scenario; runs again to the same digest.
         versions: Of every library that could change a number.
@@ -447,6 +467,7 @@ class Run:
     timestep: float = 0.001
     allowed_contacts: tuple[tuple[str, str], ...] = ()
     findings: tuple[Finding, ...] = ()
+    contacts: tuple[ContactRecord, ...] = ()
     source: str = ""
     resolved: str = ""
     versions: Mapping[str, str] = field(default_factory=dict[str, str])

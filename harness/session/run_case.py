@@ -23,6 +23,7 @@ from harness.reporting.result import CaseResult, ProgressEvent, StepLine
 from harness.session.agreement import as_commanded, plan_against_physics
 from harness.session.beliefs import believed_poses
 from harness.session.camera_pictures import with_camera_pictures
+from harness.session.contacts import contact_records
 from harness.session.failure_pictures import draw_pictures, with_pictures
 from harness.session.prepare import Prepared, prepare
 from harness.session.record import run_record
@@ -217,7 +218,12 @@ def _compared_with_plan(prepared: Prepared, run: Run, *, is_recorded: bool) -> R
     if is_recorded:
         observed = observer.observe(planned, run.objects, run.attachments, cutoff)
         signals = replace(signals, planned_clearances=observed.clearances)
-    return replace(run, signals=signals, findings=(*run.findings, *findings))
+    return replace(
+        run,
+        signals=signals,
+        findings=(*run.findings, *findings),
+        contacts=contact_records(run),
+    )
 
 
 def _observe(prepared: Prepared, signals: Signals, execution: Execution, cutoff: float) -> Signals:

@@ -217,6 +217,10 @@ def test_tabs_show_planner_source_joints_and_environment(opened):
     page.locator("#tab-planner").focus()
     page.keyboard.press("ArrowRight")
     assert page.locator("#panel-findings").is_visible()
+    contact = page.locator(".contacts tbody tr", has_text="Table and beer_0")
+    contact.locator("button").click()
+    assert opened.time() < 0.01
+    assert contact.locator("td").last.inner_text().endswith(" N")
     page.click("#tab-source")
     failing = page.locator(".source .line.failing").all_inner_texts()
     assert any("duration" in line for line in failing)

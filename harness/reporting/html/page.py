@@ -15,6 +15,7 @@ from harness.reporting.html.pictures import pack_cameras
 from harness.reporting.html.presses import pack_presses
 from harness.reporting.html.scene import pack_scene
 from harness.reporting.html.story import (
+    contact_facts,
     environment,
     findings_facts,
     joint_facts,
@@ -69,6 +70,7 @@ def _data(stored: StoredRun) -> str:
             "steps": steps,
             "verdicts": [verdict_facts(verdict) for verdict in stored.verdicts],
             "findings": findings_facts(run),
+            "contacts": contact_facts(run),
             "joints": joint_facts(run),
             "environment": environment(stored),
             "source": run.source,

@@ -136,6 +136,21 @@ def findings_facts(run: Run) -> list[dict[str, Any]]:
     ]
 
 
+def contact_facts(run: Run) -> list[dict[str, Any]]:
+    """Who touched whom, the first to touch first."""
+    return [
+        {
+            "first": contact.pair[0],
+            "second": contact.pair[1],
+            "time": _number(contact.first_time),
+            "duration": _number(contact.duration),
+            "peak": _number(contact.peak_force),
+            "isCollision": contact.is_collision,
+        }
+        for contact in run.contacts
+    ]
+
+
 def joint_facts(run: Run) -> list[dict[str, Any]]:
     """What each joint did against its limits."""
     return [_joint(run, joint, column) for column, joint in enumerate(run.robot.joints)]

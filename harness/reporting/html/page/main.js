@@ -12,7 +12,7 @@ import { plannerView } from "./planner.js";
 import { Plots } from "./plots.js";
 import { makeScene } from "./scene.js";
 import { makeSteps } from "./steps.js";
-import { findingList, jointTable, markLines, pairTable, sourceView } from "./tables.js";
+import { findingsView, jointTable, markLines, pairTable, sourceView } from "./tables.js";
 import { makeTabs } from "./tabs.js";
 import { makeTimeline, stepAt } from "./timeline.js";
 import { verdictList } from "./verdicts.js";
@@ -37,7 +37,7 @@ async function start() {
   const showTab = makeTabs([
     { id: "expect", title: "Verdicts", badge: run.verdicts.length ? `${passed}/${run.verdicts.length}` : "", content: verdicts },
     { id: "planner", title: "Planner", content: plannerView(payload, selectStep) },
-    { id: "findings", title: "Findings", badge: String(run.findings.length || ""), content: findingList(payload, (time) => clock.seek(time)) },
+    { id: "findings", title: "Findings", badge: String(run.findings.length || ""), content: findingsView(payload, (time) => clock.seek(time)) },
     { id: "source", title: "Source", content: source },
     { id: "joints", title: "Joints", content: jointTable(payload) },
     { id: "environment", title: "Setup", content: pairTable(run.environment) },

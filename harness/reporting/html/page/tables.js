@@ -48,8 +48,31 @@ function highlighted(text) {
   return [...pieces, rest, comment ? element("span.comment", {}, comment) : "", "\n"];
 }
 
-/** @param {import("./payload.js").Payload} payload @param {(time: number) => void} seek */
-export function findingList({ run }, seek) {
+/** What plan and physics disagreed on, and who touched whom. @param {import("./payload.js").Payload} payload @param {(time: number) => void} seek */
+export function findingsView(payload, seek) {
+  return element("div", {}, findingList(payload, seek), contactTable(payload, seek));
+}
+
+function contactTable({ run }, seek) {
+  if (!run.contacts.length) return null;
+  const head = ["contacts", "first", "for", "at most"];
+  const rows = run.contacts.map(({ first, second, time, duration, peak, isCollision }) =>
+    element(
+      `tr${isCollision ? ".bad" : ""}`, {},
+      element("th", { scope: "row" }, `${first} and ${second}`, isCollision ? element("span.reason", {}, " collision") : null),
+      element("td", {}, element("button.link", { type: "button", onclick: () => seek(time) }, seconds(time))),
+      element("td", {}, seconds(duration)),
+      element("td", {}, `${number(peak)} N`),
+    ),
+  );
+  return element(
+    "table.contacts", {},
+    element("thead", {}, element("tr", {}, ...head.map((name) => element("th", { scope: "col" }, name)))),
+    element("tbody", {}, ...rows),
+  );
+}
+
+function findingList({ run }, seek) {
   if (!run.findings.length) {
     return element("p.empty", {}, "Nothing: plan and physics agreed wherever they were compared.");
   }
