@@ -8,6 +8,7 @@ from pathlib import Path
 
 from harness.core.errors import RobotError
 from harness.robot.compose import WORLD, Part
+from harness.robot.default_group import DEFAULT_GROUP, default_srdf
 from harness.robot.description import NamedState
 from harness.robot.find_file import find_file, find_folder
 from harness.robot.imported_part import imported_part
@@ -15,7 +16,7 @@ from harness.robot.mass import refuse_weightless
 from harness.robot.mjcf import read_mjcf
 from harness.robot.packages import PackagePath
 from harness.robot.srdf import Srdf, parse_srdf
-from harness.robot.srdf_check import DEFAULT_GROUP, checked_srdf, default_srdf
+from harness.robot.srdf_check import checked_srdf
 from harness.robot.urdf import Urdf, parse_urdf
 from harness.robot.xacro_file import render
 from harness.spec.scenario import RobotSpec
@@ -67,7 +68,7 @@ def _srdf(
 ) -> tuple[Srdf, str]:
     """The SRDF, and what messages call it; keyframes of an MJCF are states of its groups."""
     if spec.srdf is None:
-        srdf = default_srdf(urdf, spec.tcp_link)
+        srdf = default_srdf(urdf, spec.tcp_link or "")
         named = tuple(replace(state, group=DEFAULT_GROUP) for state in states)
         return replace(srdf, states=named), str(path)
     found = find_file(spec.srdf, "srdf", base_dir, given)

@@ -1,18 +1,16 @@
-"""An SRDF held against its URDF, and the one that stands in where there is none."""
+"""An SRDF held against its URDF."""
 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
+from harness.robot.default_group import DEFAULT_GROUP, default_srdf
 from harness.robot.description import Joint, NamedState, PlanningGroup
 from harness.robot.groups import planning_groups
-from harness.robot.srdf import Srdf, SrdfGroup, has_several_values
+from harness.robot.srdf import Srdf, has_several_values
 from harness.robot.urdf import Urdf
-
-DEFAULT_GROUP = "arm"
-"""Name of the group of a robot without an SRDF."""
 
 
 def checked_srdf(srdf: Srdf, urdf: Urdf, source: str) -> Srdf:
@@ -110,43 +108,3 @@ def _unknown(what: str, kind: str, name: str, known: Iterable[str]) -> tuple[str
     near = difflib.get_close_matches(name, list(known), 1)
     hint = (f"did you mean '{near[0]}'? " if near else "") + f"{kind}s: {listed}"
     return f"{what} names the unknown {kind} '{name}'", hint
-
-
-def default_srdf(urdf: Urdf, tip_link: str | None = None) -> Srdf:
-    """One group, from the root to a tip: that given, else the end of the chain of most joints.
-
-    Where several chains are longest, as with the fingers of a hand, it ends where they part.
-    """
-    before = {joint.child: joint for joint in urdf.joints}
-
-    def chain(link: str) -> list[Joint]:
-        found: list[Joint] = []
-        while link in before:
-            found.append(before[link])
-            link = before[link].parent
-        return found[::-1]
-
-    tip = tip_link if tip_link in before else _tip([chain(link.name) for link in urdf.links])
-    if tip is None:
-        return Srdf()
-    group = SrdfGroup(DEFAULT_GROUP, chains=((urdf.root, tip),))
-    return Srdf((group,), notes=("no SRDF: only neighbouring links may touch",))
-
-
-def _tip(chains: Sequence[Sequence[Joint]]) -> str | None:
-    """Last link of the part that the longest chains have in common."""
-
-    def movable(chain: Sequence[Joint]) -> list[str]:
-        return [joint.name for joint in chain if joint.is_movable and joint.mimic is None]
-
-    most = max((len(movable(chain)) for chain in chains), default=0)
-    if most == 0:
-        return None
-    longest = [chain for chain in chains if len(movable(chain)) == most]
-    lasts = {movable(chain)[-1] for chain in longest}
-    if len(lasts) == 1:
-        return max(longest, key=len)[-1].child
-    common = [
-        joints[0] for joints in zip(*longest, strict=False) if len({j.name for j in joints}) == 1
-    ]
-    return common[-1].child if common else max(longest, key=len)[-1].child

@@ -11,6 +11,29 @@ from tests.engine.front_door import run
 from tests.robot.arm_files import INERTIAL, SHAPE, SRDF, URDF, load_arm, write_arm
 
 
+def joint(link, parent, axis="0 0 1", mimic=""):
+    """A link and the joint that turns it."""
+    return (
+        f'<link name="{link}">{INERTIAL}</link><joint name="{link}_joint" type="revolute">'
+        f'<parent link="{parent}"/><child link="{link}"/><axis xyz="{axis}"/>'
+        f'<limit lower="-1" upper="1" velocity="1" effort="30"/>{mimic}</joint>'
+    )
+
+
+def fixed(parent, link):
+    """A joint that holds a link."""
+    return (
+        f'<joint name="{link}_fixed" type="fixed"><parent link="{parent}"/>'
+        f'<child link="{link}"/></joint>'
+    )
+
+
+def fingers(parent, *, mimic=False):
+    """Two fingers; the second follows the first, or moves alone."""
+    follows = '<mimic joint="one_joint" multiplier="-1"/>' if mimic else ""
+    return joint("one", parent, "1 0 0") + joint("two", parent, "1 0 0", follows)
+
+
 def test_urdf_and_srdf_make_a_robot(tmp_path):
     write_arm(tmp_path)
     arm = load_arm(tmp_path)
@@ -28,6 +51,38 @@ def test_without_an_srdf_the_longest_chain_is_the_arm(tmp_path):
     assert arm.groups["arm"].joint_names == ("turn", "bend", "reach")
     assert (arm.tcp_link, arm.start_state) == ("tool", {"turn": 0.0, "bend": 0.0, "reach": 0.0})
     assert "no SRDF: only neighbouring links may touch" in arm.notes
+
+
+def test_fingers_that_follow_each_other_are_no_part_of_the_arm(tmp_path):
+    hand = '<link name="hand"/>' + fixed("tool", "hand")
+    write_arm(tmp_path, URDF.replace("</robot>", f"{hand}{fingers('hand', mimic=True)}</robot>"))
+    arm = load_arm(tmp_path, srdf=None)
+    assert arm.groups["arm"].joint_names == ("turn", "bend", "reach")
+    assert arm.tcp_link == "hand"
+    write_arm(tmp_path, URDF.replace("</robot>", f"{hand}{fingers('hand')}</robot>"))
+    alone = load_arm(tmp_path, srdf=None)
+    assert (alone.groups["arm"].joint_names, alone.tcp_link) == (("turn", "bend", "reach"), "hand")
+
+
+def test_a_joint_that_a_linkage_follows_is_the_arms(tmp_path):
+    rod = joint("rod", "upper", "0 1 0", '<mimic joint="bend" multiplier="-1"/>')
+    write_arm(tmp_path, URDF.replace("</robot>", f"{rod}</robot>"))
+    arm = load_arm(tmp_path, srdf=None)
+    assert arm.groups["arm"].joint_names == ("turn", "bend", "reach")
+
+
+def test_of_several_arms_the_first_moves_and_the_others_are_told(tmp_path):
+    def arm(side):
+        return joint(f"{side}_a", "base_link") + joint(f"{side}_b", f"{side}_a")
+
+    base = f'<robot name="two"><link name="base_link">{INERTIAL}</link>'
+    write_arm(tmp_path, f"{base}{arm('left')}{arm('right')}</robot>")
+    found = load_arm(tmp_path, srdf=None)
+    assert found.groups["arm"].joint_names == ("left_a_joint", "left_b_joint")
+    assert any("several arms" in note and "right_b" in note for note in found.notes)
+    other = load_arm(tmp_path, srdf=None, tcp_link="right_b")
+    assert other.groups["arm"].joint_names == ("right_a_joint", "right_b_joint")
+    assert not any("several arms" in note for note in other.notes)
 
 
 def test_a_root_called_world_stands_in_ours(tmp_path):
