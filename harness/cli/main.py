@@ -8,6 +8,8 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import AbstractContextManager, nullcontext
+from pathlib import Path
 from typing import NoReturn
 
 from harness import __version__
@@ -47,7 +49,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         gc.enable()
     command = importlib.import_module(f"harness.cli.{parsed.module}")
     try:
-        code = command.run(parsed)
+        with _package_path(getattr(parsed, "package_folders", ())):
+            code = command.run(parsed)
         sys.stdout.flush()
     except BrokenPipeError:
         # The reader of a pipe has left; nothing is to be said to it at exit either.
@@ -56,6 +59,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return 130
     return code
+
+
+def _package_path(folders: Sequence[Path]) -> AbstractContextManager[None]:
+    if not folders:
+        return nullcontext()
+    from harness.robot.packages import searched_too
+
+    return searched_too(folders)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -234,6 +245,7 @@ def _grade_options(grade: argparse.ArgumentParser) -> None:
                        help="the topic with the pose of one object")  # fmt: skip
     grade.add_argument("--set", metavar="PATH=VALUE", dest="overrides", action="append",
                        type=_override, default=[], help="change a value of the file")  # fmt: skip
+    _package_option(grade)
     grade.add_argument("--json", action="store_true", help="one JSON document on stdout")
 
 
@@ -350,6 +362,25 @@ def _paths(command: argparse.ArgumentParser) -> None:
         default=[],
         help="change a value of the file: --set robot.model=ur5e",
     )
+    _package_option(command)
+
+
+def _package_option(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--package-path",
+        metavar="DIR",
+        dest="package_folders",
+        action="append",
+        type=_folder,
+        default=[],
+        help="where package:// is looked up and meshes may be read",
+    )
+
+
+def _folder(text: str) -> Path:
+    if not Path(text).is_dir():
+        raise argparse.ArgumentTypeError(f"there is no folder '{text}'")
+    return Path(text)
 
 
 def _override(text: str) -> tuple[str, str]:

@@ -224,6 +224,8 @@ def _command(arguments: argparse.Namespace, job: CaseJob) -> str:
         words += ["--case", job.case]
     for path, value in arguments.overrides:
         words += ["--set", f"{path}={value}"]
+    for folder in arguments.package_folders:
+        words += ["--package-path", str(folder)]
     if arguments.seed is not None:
         words += ["--seed", str(arguments.seed)]
     if arguments.samples is not None:

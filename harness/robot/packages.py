@@ -7,6 +7,7 @@ import os
 import re
 import sys
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -61,8 +62,9 @@ class PackagePath:
             found = next(self._candidates(name), None)
             if found is None:
                 raise NotFoundError(
-                    f"the package '{name}' is not found; give the folder that holds it in "
-                    f"`packages`, with --package-path or in {SEARCH_VARIABLE}, or install it"
+                    f"the package '{name}' is not found; give the folder that holds it with "
+                    f"--package-path, in `packages` of `robot:` or in {SEARCH_VARIABLE}, "
+                    "or install it"
                 )
             self._found[name] = found.resolve()
         return self._found[name]
@@ -127,6 +129,22 @@ def environment_folders() -> tuple[Path, ...]:
     """Folders of the environment variable."""
     listed = os.environ.get(SEARCH_VARIABLE, "").split(os.pathsep)
     return tuple(Path(each).expanduser().resolve() for each in listed if each)
+
+
+@contextmanager
+def searched_too(folders: Sequence[Path]) -> Iterator[None]:
+    """Search more folders than the environment says, here and in processes that start meanwhile."""
+    before = os.environ.get(SEARCH_VARIABLE)
+    listed = [*(str(folder.resolve()) for folder in folders), *([before] if before else [])]
+    if listed:
+        os.environ[SEARCH_VARIABLE] = os.pathsep.join(listed)
+    try:
+        yield
+    finally:
+        if before is not None:
+            os.environ[SEARCH_VARIABLE] = before
+        else:
+            os.environ.pop(SEARCH_VARIABLE, None)
 
 
 def _inside(folder: Path, name: str) -> Iterator[Path]:

@@ -1,5 +1,7 @@
 """Where package:// leads: folders given, the robot's own package and those beside it, Python's."""
 
+import os
+
 import pytest
 
 from harness.cli.main import main
@@ -102,6 +104,32 @@ def test_a_folder_is_given_with_set_on_the_command_line(tmp_path, capsys):
     assert "the package 'looks' is not found; give" in capsys.readouterr().out
     given = f"robot.packages=[{tmp_path / 'elsewhere'}]"
     assert main(["check", str(scenario), "--set", given]) == 0, capsys.readouterr().out
+
+
+@pytest.mark.parametrize("command", ["check", "explain", "run"])
+def test_a_folder_is_given_as_an_option_of_commands_on_scenarios(
+    tmp_path, monkeypatch, capsys, command
+):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("HARNESS_PACKAGE_PATH", raising=False)
+    urdf = arm(tmp_path / "arm")
+    looks(tmp_path / "elsewhere" / "looks")
+    steps = "steps: [{move_to: {joints: {bend: 0.3}}}]\nexpect: [{never: collision}]"
+    scenario = tmp_path / "cell.scenario.yaml"
+    scenario.write_text(f"scenario: Look\nrobot: {{urdf: {urdf}}}\n{steps}\n")
+    words = [command, str(scenario), *(["--no-report"] if command == "run" else [])]
+    assert main(words) == 2
+    said = capsys.readouterr()
+    assert "is not found; give the folder that holds it with --package-path" in said.out + said.err
+    assert main([*words, "--package-path", "elsewhere"]) == 0, capsys.readouterr()
+    assert "HARNESS_PACKAGE_PATH" not in os.environ
+
+
+def test_a_folder_that_is_not_there_is_wrong_usage(tmp_path, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["check", "cell.scenario.yaml", "--package-path", str(tmp_path / "gone")])
+    assert ended.value.code == 2
+    assert "--package-path: there is no folder" in capsys.readouterr().err
 
 
 def test_what_is_nowhere_is_told_with_the_ways_out(tmp_path):
