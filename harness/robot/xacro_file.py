@@ -16,6 +16,9 @@ from harness.spec.source import Source
 from harness.spec.xml_file import XmlElement, read_bounded, read_xml
 
 XACRO_ARG = "xacro:arg"
+PROCESSOR_TIME = 8
+"""Seconds of processor time that a rendering may take."""
+
 WALL_TIME = 60.0
 """Seconds after which a rendering that neither ends nor uses its processor time is given up."""
 
@@ -64,6 +67,7 @@ def render(path: Path, args: Mapping[str, Any], packages: PackagePath) -> str:
         "mappings": {key: _text(value) for key, value in args.items()},
         "home": str(packages.home),
         "given": [str(each) for each in packages.given],
+        "processor_time": PROCESSOR_TIME,
     }
     answer = _ask(order, path)
     if "text" in answer:

@@ -16,9 +16,6 @@ from harness.core.errors import SpecError
 from harness.robot.packages import NotFoundError, PackagePath
 from harness.spec.xml_file import LARGEST_FILE, mark_places, read_bounded
 
-PROCESSOR_TIME = 8
-"""Seconds of processor time."""
-
 MEMORY = 1_000_000_000
 """Bytes of address space."""
 
@@ -99,7 +96,7 @@ class Guard:
 def main() -> None:
     """Render what stdin orders."""
     order = json.loads(sys.stdin.read())
-    resource.setrlimit(resource.RLIMIT_CPU, (PROCESSOR_TIME, PROCESSOR_TIME))
+    resource.setrlimit(resource.RLIMIT_CPU, (order["processor_time"], order["processor_time"]))
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     packages = PackagePath(Path(order["home"]), tuple(Path(each) for each in order["given"]))
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
@@ -133,11 +130,18 @@ def _answer(file: str, mappings: dict[str, str], packages: PackagePath) -> dict[
         return _complaint("cannot be rendered: it takes too much memory", xacro.filestack, file)
     except Exception as error:  # noqa: BLE001 - whatever an expression of the file raised
         message = guard.complaint or " ".join(str(error).split()) or type(error).__name__
-        if isinstance(getattr(error, "exc", None), MemoryError):
+        if _is_of_memory(error):
             message = f"it takes too much memory {message}"
         return _complaint(f"cannot be rendered: {message}", xacro.filestack, file)
     finally:
         guard.is_on = False
+
+
+def _is_of_memory(error: object) -> bool:
+    """Whether a MemoryError lies at the ground of xacro's exception, which has no words."""
+    while error is not None and not isinstance(error, MemoryError):
+        error = getattr(error, "exc", None)
+    return error is not None
 
 
 def _bounded(text: str, file: str) -> dict[str, Any]:
