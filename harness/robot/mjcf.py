@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from harness.core.errors import Problem, SpecError
 from harness.robot.description import Joint, Link, NamedState
 from harness.robot.mjcf_files import read_tree
@@ -140,6 +142,7 @@ class _Reader:
             (model.nu, "actuators are not used: the program drives every joint with its own servo"),
             (model.ntendon, "tendons are ignored"),
             (model.nsensor, "sensors are ignored"),
+            (_with_own_dynamics(model), "joints have an armature or a spring, which is ignored"),
             (int(model.body_geomnum[0]), "geoms of the world body are no part of the robot"),
         ):
             if count:
@@ -170,3 +173,9 @@ class _Reader:
             if all(names) and first and second:
                 pairs[link_pair(names[0], names[1])] = "Excluded"
         return pairs
+
+
+def _with_own_dynamics(model: Any) -> int:
+    """How many joints have a motor's inertia or a spring."""
+    springs = np.reshape(model.jnt_stiffness, (model.njnt, -1)).any(axis=1)
+    return int((springs | (model.dof_armature[model.jnt_dofadr] > 0)).sum())

@@ -1,4 +1,4 @@
-"""What of each format is read, ignored, refused: the rows of robots/FORMATS.md, each a test case.
+"""What of URDF, SRDF and MoveIt's files is read, ignored, refused: rows that are test cases.
 
 A row changes one of the files of an arm that is fine. *Read*: the change makes a difference that
 `holds` sees. *Ignored*: the robot stays the same, and a note tells of it unless that says nothing.
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from harness.robot.description import RobotDescription
-from tests.robot.arm_files import LIMIT, SHAPE, SRDF, URDF
+from tests.robot.arm_files import LIMIT, SHAPE
 
 Holds = Callable[[RobotDescription], object]
 
@@ -35,12 +35,6 @@ HAND = FINGER.format("left", 0.01, 1) + FINGER.format("right", -0.01, -1).replac
     'effort="40"/>', 'effort="40"/><mimic joint="left_joint"/>'
 )
 END = "</robot>"
-FILES = {
-    "arm.urdf": URDF.replace(END, HAND + END),
-    "arm.srdf": SRDF,
-    "limits.yaml": LIMITS,
-    "kinematics.yaml": KINEMATICS,
-}
 
 
 @dataclass(frozen=True)
@@ -66,15 +60,18 @@ class Row:
     told: str = ""
 
 
-def _read(word: str, meaning: str, old: str, new: str, holds: Holds, told: str = "") -> Row:
+def read(word: str, meaning: str, old: str, new: str, holds: Holds, told: str = "") -> Row:
+    """A row of what makes a difference."""
     return Row(word, "read", meaning, old, new, holds, told)
 
 
-def _ignored(word: str, meaning: str, old: str, new: str, told: str = "") -> Row:
+def ignored(word: str, meaning: str, old: str, new: str, told: str = "") -> Row:
+    """A row of what makes none."""
     return Row(word, "ignored", meaning, old, new, None, told)
 
 
-def _refused(word: str, meaning: str, old: str, new: str, told: str) -> Row:
+def refused(word: str, meaning: str, old: str, new: str, told: str) -> Row:
+    """A row of what is an error."""
     return Row(word, "refused", meaning, old, new, None, told)
 
 
@@ -103,29 +100,29 @@ CONTROL = (
     "</ros2_control>"
 )
 URDF_ROWS = (
-    _read("`<link>`", "a rigid body, or a frame if it has no mass and no shape", END,
+    read("`<link>`", "a rigid body, or a frame if it has no mass and no shape", END,
           FRAME + END, lambda arm: "more" in arm.link_names),
-    _read("`<inertial>`: `<mass>`, `<origin>`, `<inertia>`", "turned into link axes",
+    read("`<inertial>`: `<mass>`, `<origin>`, `<inertia>`", "turned into link axes",
           '<mass value="1"/>', '<mass value="2"/>', lambda arm: link(arm,
           "upper").inertial.mass == 2),
-    _read("an inertia that no body has", "taken as the nearest possible one, told",
+    read("an inertia that no body has", "taken as the nearest possible one, told",
           'izz="0.002"', 'izz="0.9"',
           lambda arm: any("no body has the principal moments" in note for note in arm.notes)),
-    _refused("a mass below zero", "", '<mass value="1"/>', '<mass value="-1"/>', "weighs -1 kg"),
-    _refused("a mass of zero", "where a joint moves it", '<mass value="1"/>', '<mass value="0"/>',
+    refused("a mass below zero", "", '<mass value="1"/>', '<mass value="-1"/>', "weighs -1 kg"),
+    refused("a mass of zero", "where a joint moves it", '<mass value="1"/>', '<mass value="0"/>',
              "moves and weighs nothing"),
-    _read("`<collision>`, `<visual>`", "each with its `<origin>`", SHAPE, SHAPE + SHAPE,
+    read("`<collision>`, `<visual>`", "each with its `<origin>`", SHAPE, SHAPE + SHAPE,
           lambda arm: len(link(arm, "upper").collisions) == 2),
-    _read("`<box>`", "full size", CYLINDER, '<box size="0.1 0.1 0.1"/>',
+    read("`<box>`", "full size", CYLINDER, '<box size="0.1 0.1 0.1"/>',
           lambda arm: shape(arm) == "Box"),
-    _read("`<cylinder>`", "", CYLINDER, '<cylinder radius="0.02" length="0.1"/>',
+    read("`<cylinder>`", "", CYLINDER, '<cylinder radius="0.02" length="0.1"/>',
           lambda arm: link(arm, "upper").collisions[0].geometry.radius == 0.02),
-    _read("`<sphere>`", "", CYLINDER, '<sphere radius="0.05"/>',
+    read("`<sphere>`", "", CYLINDER, '<sphere radius="0.05"/>',
           lambda arm: shape(arm) == "Sphere"),
-    _read("`<capsule>`", "`radius` and `length`, beyond URDF", CYLINDER,
+    read("`<capsule>`", "`radius` and `length`, beyond URDF", CYLINDER,
           '<capsule radius="0.02" length="0.1"/>', lambda arm: shape(arm) == "Capsule"),
     *(
-        _read(f"`<mesh>` of {suffix.upper()}", meaning, CYLINDER, MESH.format(f"part.{suffix}"),
+        read(f"`<mesh>` of {suffix.upper()}", meaning, CYLINDER, MESH.format(f"part.{suffix}"),
               lambda arm: shape(arm) == "Mesh")
         for suffix, meaning in (
             ("stl", "its convex hull touches; `scale` counts"),
@@ -133,64 +130,64 @@ URDF_ROWS = (
             ("dae", "the same; `unit` counts, `up_axis` does not, as in RViz"),
         )
     ),
-    _ignored("`<visual>` with another mesh", "is not drawn, told", SHAPE,
+    ignored("`<visual>` with another mesh", "is not drawn, told", SHAPE,
              SHAPE + VISUAL.format(MESH.format("part.ply")), "'part.ply' is not drawn"),
-    _refused("`<collision>` with another mesh", "", CYLINDER, MESH.format("part.ply"),
+    refused("`<collision>` with another mesh", "", CYLINDER, MESH.format("part.ply"),
              "no STL, OBJ or DAE file"),
-    _refused("any other shape", "", CYLINDER, '<cone radius="1"/>', "unknown geometry <cone>"),
-    _read("`<material>`, `<color>`", "by name or in place", SHAPE,
+    refused("any other shape", "", CYLINDER, '<cone radius="1"/>', "unknown geometry <cone>"),
+    read("`<material>`, `<color>`", "by name or in place", SHAPE,
           SHAPE + VISUAL.format(CYLINDER).replace("/></v", f">{RED}</material></v"),
           lambda arm: [s.rgba for s in link(arm, "upper").visuals] == [(1.0, 0.0, 0.0, 1.0)]),
-    _ignored("`<texture>`", "looks are plain colours", '<link name="tool"/>',
+    ignored("`<texture>`", "looks are plain colours", '<link name="tool"/>',
              '<link name="tool"/><material name="wood"><texture filename="wood.png"/></material>'),
-    _read("`<joint>` fixed, revolute, continuous, prismatic", "", 'name="bend" type="revolute"',
+    read("`<joint>` fixed, revolute, continuous, prismatic", "", 'name="bend" type="revolute"',
           'name="bend" type="continuous"',
           lambda arm: arm.joint_by_name["bend"].kind == "continuous"),
-    _refused("floating, planar", "arms stand on a fixed base", 'name="bend" type="revolute"',
+    refused("floating, planar", "arms stand on a fixed base", 'name="bend" type="revolute"',
              'name="bend" type="floating"', "arms stand on a fixed base"),
-    _read("`<origin>`", "", '<origin xyz="0 0 0.1"/><axis', '<origin xyz="0 0 0.3"/><axis',
+    read("`<origin>`", "", '<origin xyz="0 0 0.1"/><axis', '<origin xyz="0 0 0.3"/><axis',
           lambda arm: arm.joint_by_name["turn"].pose.translation[2] == 0.3),
-    _read("`<axis>`", "of any length but none", '<axis xyz="0 1 0"/>', '<axis xyz="0 0 3"/>',
+    read("`<axis>`", "of any length but none", '<axis xyz="0 1 0"/>', '<axis xyz="0 0 3"/>',
           lambda arm: list(arm.joint_by_name["bend"].axis) == [0, 0, 1]),
-    _read("`<limit>` lower, upper", "needed by revolute and prismatic", LIMIT,
+    read("`<limit>` lower, upper", "needed by revolute and prismatic", LIMIT,
           LIMIT.replace('"2" v', '"1" v'), lambda arm: arm.joint_by_name["bend"].upper == 1),
-    _refused("no `<limit>`", "of a revolute or prismatic joint that follows none", LIMIT, "",
+    refused("no `<limit>`", "of a revolute or prismatic joint that follows none", LIMIT, "",
              "has no <limit>"),
-    _refused("lower = upper", "it cannot move", LIMIT, LIMIT.replace("-2", "2"), "cannot move"),
-    _read("`velocity`, `effort`", "0 is a placeholder and counts as none, told",
+    refused("lower = upper", "it cannot move", LIMIT, LIMIT.replace("-2", "2"), "cannot move"),
+    read("`velocity`, `effort`", "0 is a placeholder and counts as none, told",
           LIMIT, LIMIT.replace('velocity="2"', 'velocity="0"'),
           lambda arm: any("a limit of 0 for its velocity" in note for note in arm.notes)),
-    _read("`<mimic>`", "followed in planning and in physics, over several joints if need be",
+    read("`<mimic>`", "followed in planning and in physics, over several joints if need be",
           '<limit lower="0"', MIMIC + '<limit lower="0"',
           lambda arm: arm.joint_by_name["reach"].mimic is not None),
-    _refused("`<mimic>` of itself, a fixed or an unknown joint", "", '<limit lower="0"',
+    refused("`<mimic>` of itself, a fixed or an unknown joint", "", '<limit lower="0"',
              '<mimic joint="reach"/><limit lower="0"', "mimic each other in a circle"),
-    _read("`<safety_controller>` soft limits", "narrow the position, as MoveIt has it", LIMIT,
+    read("`<safety_controller>` soft limits", "narrow the position, as MoveIt has it", LIMIT,
           LIMIT + '<safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_velocity="0"/>',
           lambda arm: arm.joint_by_name["bend"].lower == -1),
-    _ignored("`k_position`, `k_velocity`", "no controller here has them", LIMIT,
+    ignored("`k_position`, `k_velocity`", "no controller here has them", LIMIT,
              LIMIT + '<safety_controller k_position="100" k_velocity="10"/>'),
-    _read("`<dynamics>` damping, friction", "in physics", LIMIT,
+    read("`<dynamics>` damping, friction", "in physics", LIMIT,
           LIMIT + '<dynamics damping="0.5"/>',
           lambda arm: arm.joint_by_name["bend"].damping == 0.5),
-    _ignored("`<calibration>`", "of a joint's encoder", LIMIT, LIMIT + '<calibration rising="0"/>'),
-    _read("`<ros2_control>` command interfaces",
+    ignored("`<calibration>`", "of a joint's encoder", LIMIT, LIMIT + '<calibration rising="0"/>'),
+    read("`<ros2_control>` command interfaces",
           "their names; joints are driven by effort all the same",
           END, CONTROL.format("acceleration") + END,
           lambda arm: arm.joint_by_name["bend"].command_interfaces == ("acceleration",)),
-    _read("their `min`, `max`", "narrow position, velocity and effort", END,
+    read("their `min`, `max`", "narrow position, velocity and effort", END,
           CONTROL.format("velocity") + END, lambda arm: arm.joint_by_name["bend"].velocity == 0.9),
-    _ignored("`<ros2_control>` of a joint that is not there", "told", END,
+    ignored("`<ros2_control>` of a joint that is not there", "told", END,
              CONTROL.format("position").replace("bend", "bond") + END, "no joint 'bond'"),
-    _ignored("`<transmission>`", "told", END, "<transmission/>" + END, "1 <transmission> element"),
-    _ignored("`<gazebo>`", "told", END, "<gazebo/>" + END, "1 <gazebo> element"),
-    _ignored("any other element", "told", END, "<sensor/>" + END, "1 <sensor> element"),
-    _refused("several roots, none, a circle", "", END, '<link name="loose"/>' + END,
+    ignored("`<transmission>`", "told", END, "<transmission/>" + END, "1 <transmission> element"),
+    ignored("`<gazebo>`", "told", END, "<gazebo/>" + END, "1 <gazebo> element"),
+    ignored("any other element", "told", END, "<sensor/>" + END, "1 <sensor> element"),
+    refused("several roots, none, a circle", "", END, '<link name="loose"/>' + END,
              "one root link"),
-    _refused("a name twice", "", END, '<link name="tool"/>' + END, "is there twice"),
-    _refused("`xacro:` words", "the key `xacro` renders them", END, "<xacro:a/>" + END,
+    refused("a name twice", "", END, '<link name="tool"/>' + END, "is there twice"),
+    refused("`xacro:` words", "the key `xacro` renders them", END, "<xacro:a/>" + END,
              "this is a xacro file"),
-    _refused("DOCTYPE, entities", "", '<?xml version="1.0"?>', "<!DOCTYPE robot>", "a DOCTYPE"),
+    refused("DOCTYPE, entities", "", '<?xml version="1.0"?>', "<!DOCTYPE robot>", "a DOCTYPE"),
 )  # fmt: skip
 
 BENT = '<joint name="bend" value="0.7"/>'
@@ -205,48 +202,48 @@ def joints(arm: RobotDescription, group: str = "manipulator") -> tuple[str, ...]
 
 
 SRDF_ROWS = (
-    _read("`<group>` of a `<chain>`", "pose goals speak of its tip", GROUP,
+    read("`<group>` of a `<chain>`", "pose goals speak of its tip", GROUP,
           GROUP.replace("tool", "lower"), lambda arm: joints(arm) == ("turn", "bend")),
-    _read("of `<joint>`s", "", GROUP,
+    read("of `<joint>`s", "", GROUP,
           '<group name="manipulator"><joint name="turn"/><joint name="bend"/></group>',
           lambda arm: joints(arm) == ("turn", "bend")),
-    _read("of `<link>`s", "their parent joints", GROUP,
+    read("of `<link>`s", "their parent joints", GROUP,
           '<group name="manipulator"><link name="lower"/><link name="wrist"/></group>',
           lambda arm: joints(arm) == ("bend", "reach")),
-    _read("of `<group>`s",
+    read("of `<group>`s",
           "", GROUP, GROUP + '<group name="all"><group name="manipulator"/></group>',
           lambda arm: len(joints(arm, "all")) == 3),
-    _refused("joints, links, groups that are not there", "", GROUP, GROUP.replace("tool", "tol"),
+    refused("joints, links, groups that are not there", "", GROUP, GROUP.replace("tool", "tol"),
              "no chain leads from"),
-    _refused("groups in a circle", "", GROUP, '<group name="a"><group name="a"/></group>' + GROUP,
+    refused("groups in a circle", "", GROUP, '<group name="a"><group name="a"/></group>' + GROUP,
              "hold each other in a circle"),
-    _read("`<group_state>`",
+    read("`<group_state>`",
           "for `named_target`; `home`, `ready` ... is where the robot starts", END,
           STATE.format("0.3") + END, lambda arm: "up" in arm.states_of("manipulator")),
-    _read("a state outside the limits", "kept, told; going there fails",
+    read("a state outside the limits", "kept, told; going there fails",
           END, STATE.format("3") + END,
           lambda arm: any("outside its limits" in note for note in arm.notes)),
-    _refused("a state of a joint that is not there", "", END,
+    refused("a state of a joint that is not there", "", END,
              STATE.format("3").replace("bend", "bond") + END, "unknown joint 'bond'"),
-    _ignored("several values of a joint there", "of a virtual or a fixed one; it stands still",
+    ignored("several values of a joint there", "of a virtual or a fixed one; it stands still",
              BENT, BENT + '<joint name="held" value="0 0 1"/>'),
-    _read("`<end_effector>`", "a gripper, if one joint closes two sides; else told", END,
+    read("`<end_effector>`", "a gripper, if one joint closes two sides; else told", END,
           TOOL.format("hand") + '<group name="hand"><joint name="left_joint"/></group>' + END,
           lambda arm: arm.gripper is not None),
-    _read("`<virtual_joint>`", "fixed; floating and planar count as fixed, told",
+    read("`<virtual_joint>`", "fixed; floating and planar count as fixed, told",
           '"held" type="fixed"',
           '"held" type="floating"',
           lambda arm: any("counts as fixed" in note for note in arm.notes)),
-    _read("`<passive_joint>`", "in no group", END, '<passive_joint name="reach"/>' + END,
+    read("`<passive_joint>`", "in no group", END, '<passive_joint name="reach"/>' + END,
           lambda arm: joints(arm) == ("turn", "bend")),
-    _read("`<disable_collisions>`", "the pair may touch", END,
+    read("`<disable_collisions>`", "the pair may touch", END,
           '<disable_collisions link1="base_link" link2="wrist" reason="Never"/>' + END,
           lambda arm: ("base_link", "wrist") in arm.allowed_collisions),
-    _ignored("`<disable_collisions>` of links that are not there", "told", END,
+    ignored("`<disable_collisions>` of links that are not there", "told", END,
              '<disable_collisions link1="base_link" link2="gone" reason="Never"/>' + END,
              "unknown links ignored: gone"),
     *(
-        _ignored(f"`<{tag}>`", "told", END, f"<{tag}/>" + END, f"1 <{tag}> element")
+        ignored(f"`<{tag}>`", "told", END, f"<{tag}/>" + END, f"1 <{tag}> element")
         for tag in ("disable_default_collisions", "enable_collisions", "joint_property",
                     "link_sphere_approximation")
     ),
@@ -254,43 +251,32 @@ SRDF_ROWS = (
 
 BEND = "    max_velocity: 2\n"
 LIMITS_ROWS = (
-    _read("`has_velocity_limits`, `max_velocity`", "narrows", BEND, "    max_velocity: 0.5\n",
+    read("`has_velocity_limits`, `max_velocity`", "narrows", BEND, "    max_velocity: 0.5\n",
           lambda arm: arm.joint_by_name["bend"].velocity == 0.5),
-    _read("a limit wider than the URDF's", "the URDF's stays, told", BEND, "    max_velocity: 9\n",
+    read("a limit wider than the URDF's", "the URDF's stays, told", BEND, "    max_velocity: 9\n",
           lambda arm: any("wider velocity limit" in note for note in arm.notes)),
-    _read("`has_acceleration_limits`, `max_acceleration`", "as it is, for no URDF says it", BEND,
+    read("`has_acceleration_limits`, `max_acceleration`", "as it is, for no URDF says it", BEND,
           BEND + "    has_acceleration_limits: true\n    max_acceleration: 9\n",
           lambda arm: arm.joint_by_name["bend"].acceleration == 9),
-    _read("`has_position_limits`, `min_position`, `max_position`", "narrow", BEND,
+    read("`has_position_limits`, `min_position`, `max_position`", "narrow", BEND,
           BEND + "    has_position_limits: true\n    min_position: -1\n    max_position: 1.5\n",
           lambda arm: arm.joint_by_name["bend"].upper == 1.5),
-    _read("`has_effort_limits`, `max_effort`", "narrows", BEND,
+    read("`has_effort_limits`, `max_effort`", "narrows", BEND,
           BEND + "    has_effort_limits: true\n    max_effort: 20\n",
           lambda arm: arm.joint_by_name["bend"].effort == 20),
-    _ignored("`has_jerk_limits`, `max_jerk`", "the scenario's `planning` has `max_jerk`", BEND,
+    ignored("`has_jerk_limits`, `max_jerk`", "the scenario's `planning` has `max_jerk`", BEND,
              BEND + "    has_jerk_limits: true\n    max_jerk: 20\n"),
-    _ignored("`default_velocity_scaling_factor`, `default_acceleration_scaling_factor`",
+    ignored("`default_velocity_scaling_factor`, `default_acceleration_scaling_factor`",
              "the scenario's `planning` says them", "joint_limits:",
              "default_velocity_scaling_factor: 0.1\njoint_limits:"),
-    _refused("a joint that is not there", "", "bend:", "bond:", "bond"),
+    refused("a joint that is not there", "", "bend:", "bond:", "bond"),
 )  # fmt: skip
 KINEMATICS_ROWS = (
-    _read("`position_only_ik`", "pose goals of the group fix the position alone",
+    read("`position_only_ik`", "pose goals of the group fix the position alone",
           "  kinematics_solver",
           "  position_only_ik: true\n  kinematics_solver",
           lambda arm: arm.position_only_groups == {"manipulator"}),
-    _ignored("`kinematics_solver` and its numbers", "solvers are the program's own", "kdl",
+    ignored("`kinematics_solver` and its numbers", "solvers are the program's own", "kdl",
              "trac_ik"),
-    _refused("a group that is not there", "", "manipulator:", "manipulater:", "manipulater"),
+    refused("a group that is not there", "", "manipulator:", "manipulater:", "manipulater"),
 )  # fmt: skip
-
-TABLES: dict[str, tuple[str, str, tuple[Row, ...]]] = {
-    "arm.urdf": ("URDF", "`robot: {urdf: ...}`, or `xacro:` with `args:`", URDF_ROWS),
-    "arm.srdf": ("SRDF", "`robot: {srdf: ...}`, beside any of the others", SRDF_ROWS),
-    "limits.yaml": ("MoveIt: joint_limits.yaml", "`robot: {moveit: {joint_limits: ...}}`",
-    LIMITS_ROWS),
-    "kinematics.yaml": (
-        "MoveIt: kinematics.yaml", "`robot: {moveit: {kinematics: ...}}`", KINEMATICS_ROWS,
-    ),
-}  # fmt: skip
-"""By file: the heading, the key that names it, its rows."""

@@ -11,7 +11,7 @@ import pytest
 
 from harness.cli.main import main
 from tests.robot.arm_files import SHAPE, SRDF, URDF
-from tests.robot.test_mjcf import MJCF, TIP
+from tests.robot.mjcf_arm import MJCF, TIP
 
 SECONDS = 5.0
 MEMORY = 600e6

@@ -5,23 +5,21 @@ import pytest
 from harness.core.errors import SpecError
 from harness.robot.load import load_robot
 from harness.spec.scenario import RobotSpec
-from tests.importers.sdf_files import ASCII_STL, COLLADA, TETRAHEDRON
-from tests.robot.format_rows import FILES, TABLES, Row
+from tests.robot.format_rows import Row
+from tests.robot.format_tables import BESIDE, FILES, TABLES, words
 
 ROWS = [(file, row) for file, (_, _, rows) in TABLES.items() for row in rows]
-MESHES = {"part.stl": ASCII_STL, "part.obj": TETRAHEDRON, "part.dae": COLLADA, "part.ply": "ply"}
 
 
-def load(folder, file="", row=None):
-    """The arm, with the row's change in its file."""
-    for name, text in (FILES | MESHES).items():
-        if name == file:
+def load(folder, file, row=None):
+    """The arm that a file is part of, with the row's change in it."""
+    for name, text in (FILES | BESIDE).items():
+        if row is not None and name == file:
             assert row.old in text, "the row changes nothing"
             text = text.replace(row.old, row.new)
+        (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text(text, encoding="utf-8")
-    moveit = {"joint_limits": "limits.yaml", "kinematics": "kinematics.yaml"}
-    words = {"urdf": "arm.urdf", "srdf": "arm.srdf", "moveit": moveit}
-    return load_robot(RobotSpec.model_validate(words), folder)
+    return load_robot(RobotSpec.model_validate(words(file)), folder)
 
 
 @pytest.mark.parametrize(
@@ -34,11 +32,12 @@ def test_a_word_is_treated_as_the_table_says(tmp_path, file, row: Row):
         assert caught.value.problems[0].path == str(tmp_path / file)
         assert caught.value.problems[0].line > 0
         return
-    plain, arm = load(tmp_path), load(tmp_path, file, row)
+    unchanged, arm = load(tmp_path, file), load(tmp_path, file, row)
     if row.here == "read":
         assert row.holds(arm)
-        assert not row.holds(plain), "true of any arm"
+        assert not row.holds(unchanged), "true of any arm"
         return
-    assert (arm.urdf, arm.srdf, arm.start_state) == (plain.urdf, plain.srdf, plain.start_state)
-    new = [note for note in arm.notes if note not in plain.notes]
+    assert (arm.urdf, arm.srdf) == (unchanged.urdf, unchanged.srdf)
+    assert arm.start_state == unchanged.start_state
+    new = [note for note in arm.notes if note not in unchanged.notes]
     assert {row.told in note for note in new} == ({True} if row.told else set())

@@ -1,0 +1,149 @@
+"""What of xacro, MJCF and calibration files is read, ignored, refused: rows that are test cases."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tests.robot.arm_files import URDF
+from tests.robot.format_rows import END, FRAME, ignored, link, read, refused
+
+NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+XACRO = (
+    URDF.replace('name="three"', f'name="three" {NAMESPACE}')
+    .replace(
+        '  <link name="base_link">',
+        '  <xacro:arg name="high" default="0.1"/>\n'
+        '  <xacro:property name="far" value="0.2"/>\n  <link name="base_link">',
+    )
+    .replace('<origin xyz="0 0 0.1"/><axis', '<origin xyz="0 0 $(arg high)"/><axis')
+    .replace('<origin xyz="0 0 0.2"/><axis xyz="0 1', '<origin xyz="0 0 ${far}"/><axis xyz="0 1')
+)
+PARTS = {
+    "more.xacro": f'<?xml version="1.0"?>\n<robot {NAMESPACE}>{FRAME}</robot>\n',
+    "sizes.yaml": "far: 0.4\n",
+}
+"""Files beside the xacro file, and in its package `parts`."""
+
+FAR = '"far" value="0.2"'
+MACRO = (
+    '<xacro:macro name="tip" params="name:=more"><link name="${name}"/><joint name="j" '
+    'type="fixed"><parent link="tool"/><child link="${name}"/></joint></xacro:macro><xacro:tip/>'
+)
+INCLUDE = '<xacro:include filename="{}"/>' + END
+
+
+def height(arm, joint):
+    """Of a joint above the one before [m]."""
+    return round(float(arm.joint_by_name[joint].pose.translation[2]), 9)
+
+
+def has_more(arm):
+    """Whether the link `more` is there."""
+    return "more" in arm.link_names
+
+
+XACRO_ROWS = (
+    read("`<xacro:arg>`, `$(arg ...)`", "of `args:`, else as the file has it", 'default="0.1"',
+         'default="0.3"', lambda arm: height(arm, "turn") == 0.3),
+    read("`<xacro:property>`, `${...}`", "expressions are Python", FAR,
+         '"far" value="${2 * 0.25}"', lambda arm: height(arm, "bend") == 0.5),
+    read("`<xacro:macro>`", "with parameters, defaults and blocks", END, MACRO + END, has_more),
+    read("`<xacro:if>`, `<xacro:unless>`", "", END,
+         f'<xacro:if value="${{1 &lt; 2}}">{FRAME}</xacro:if>' + END, has_more),
+    read("`<xacro:include>`", "of the given folders", END, INCLUDE.format("more.xacro"), has_more),
+    read("`$(find name)`, `package://`", "lead where `package://` does in a URDF", END,
+         INCLUDE.format("$(find parts)/more.xacro"), has_more),
+    read("`xacro.load_yaml(...)`", "of the given folders", FAR,
+         "\"far\" value=\"${xacro.load_yaml('sizes.yaml')['far']}\"",
+         lambda arm: height(arm, "bend") == 0.4),
+    refused("`$(env ...)`", "", FAR, '"far" value="$(env HOME)"', "HOME"),
+    refused("a file outside of the given folders", "", END, INCLUDE.format("/etc/passwd"),
+            "outside the robot's folder"),
+    refused("a file or package that is not there", "", END, INCLUDE.format("gone.xacro"),
+            "there is no file"),
+    refused("files that include each other in a circle", "", END, INCLUDE.format("arm.xacro"),
+            "include each other in a circle"),
+    refused("an unknown macro, argument or name", "", END, "<xacro:tap/>" + END, "tap"),
+    refused("an expression that starts or writes something", "", FAR,
+            "\"far\" value=\"${open('made', 'w')}\"", "open"),
+    refused("one without an end", "8 s and 1 GB are the most", FAR,
+            '"far" value="${[0] * 10**10}"', "memory"),
+)  # fmt: skip
+
+BALL = '<geom type="sphere" size="0.01"/>'
+SITE = '<site name="tcp" pos="0 0 0.08"/>'
+ELBOW = '<joint name="elbow" axis="0 1 0" range="-120 120"/>'
+WORLD = "<worldbody>"
+EQUALITY = "<equality>"
+MJCF_ROWS = (
+    read("`<body>`, its `<inertial>`, or what its geoms weigh", "",
+         '<geom type="box" size="0.02 0.03 0.1"', '<geom mass="3" type="box" size="0.02 0.03 0.1"',
+         lambda arm: round(link(arm, "lower").inertial.mass, 9) == 3),
+    read("`<joint>` hinge, slide", "several of a body too", ELBOW, '<joint name="elbow"/>',
+         lambda arm: arm.joint_by_name["elbow"].kind == "continuous"),
+    read("`range`", "a hinge without turns on and on", ELBOW, ELBOW.replace("120", "90"),
+         lambda arm: round(arm.joint_by_name["elbow"].upper, 6) == 1.570796),
+    read("`pos`, `ref`", "", 'ref="20"', 'ref="0"',
+         lambda arm: np.allclose(arm.joint_by_name["lift"].pose.rotation, np.eye(3))),
+    read("`damping`, `frictionloss`", "", 'damping="0.5"', 'damping="0.7"',
+         lambda arm: arm.joint_by_name["lift"].damping == 0.7),
+    ignored("`armature`, `stiffness`", "told", ELBOW, ELBOW.replace("/>", ' armature="0.1"/>'),
+            "1 joints have an armature or a spring"),
+    read("`<geom>` box, sphere, cylinder, capsule, mesh", "of STL, OBJ or DAE files", BALL,
+         BALL.replace("sphere", "capsule").replace("0.01", "0.01 0.02"),
+         lambda arm: type(link(arm, "finger").collisions[0].geometry).__name__ == "Capsule"),
+    ignored("other geoms", "told; MuJoCo counts their mass", BALL,
+            BALL.replace('"sphere" size="0.01"', '"ellipsoid" mass="0" size="0.01 0.01 0.02"')
+            + BALL.replace("/>", ' mass="0.004188790204786391"/>'), "ellipsoid is left out"),
+    read("`contype` and `conaffinity` of 0", "is drawn, and touches nothing", BALL,
+         BALL.replace("/>", ' contype="0" conaffinity="0"/>'),
+         lambda arm: not link(arm, "finger").collisions),
+    read("`<site>`", "a frame", SITE, SITE + '<site name="more"/>', has_more),
+    read("`<equality>` of joints", "a mimic; of a curve the slope, told", "0.4 0 0 0", "0.5 0 0 0",
+         lambda arm: arm.joint_by_name["pinch"].mimic.multiplier == 0.5),
+    ignored("any other equality", "told", EQUALITY, EQUALITY + '<weld body1="finger"/>',
+            "an equality of the kind weld is ignored"),
+    read("`<keyframe>`", "a state of its name", 'qpos="0.1 0.5', 'qpos="0.1 0.6',
+         lambda arm: arm.start_state["lift"] == 0.6),
+    read("`<contact>`: `<exclude>`", "the pair may touch", "<contact>",
+         '<contact><exclude body1="base" body2="finger"/>',
+         lambda arm: ("base", "finger") in arm.allowed_collisions),
+    read("`actuatorfrcrange`, `forcerange`, `ctrlrange` of a motor", "the joint's effort",
+         'forcerange="-50 50"', 'forcerange="-40 40"',
+         lambda arm: arm.joint_by_name["pan"].effort == 40),
+    ignored("`<actuator>` otherwise", "told: every joint has the program's own servo",
+            "<actuator>", '<actuator><velocity joint="slide" kv="3"/>', "4 actuators"),
+    ignored("`<sensor>`", "told", EQUALITY, '<sensor><jointpos joint="pan"/></sensor>' + EQUALITY,
+            "1 sensors are ignored"),
+    ignored("`<tendon>`", "told", EQUALITY,
+            '<tendon><fixed><joint joint="pan" coef="1"/></fixed></tendon>' + EQUALITY,
+            "1 tendons are ignored"),
+    ignored("geoms of the world", "told", WORLD, WORLD + '<geom size="1"/>',
+            "2 geoms of the world body"),
+    ignored("bodies that are free or moved by hand", "told", WORLD,
+            WORLD + f'<body name="held" mocap="true">{BALL}</body>', "held, cube"),
+    ignored("`<option>`, `<visual>`, `<statistic>`", "the scenario's world says them", WORLD,
+            '<option gravity="0 0 -1"/>' + WORLD),
+    read("`<compiler>`, `<default>`, `<include>`, `<frame>`, `<replicate>`",
+         "as MuJoCo compiles them", WORLD, '<default><joint damping="2"/></default>' + WORLD,
+         lambda arm: arm.joint_by_name["elbow"].damping == 2),
+    refused("a slide without a range", "", ' range="0 0.1"', "", "has no range"),
+    refused("`<extension>`", "", EQUALITY, "<extension/>" + EQUALITY, "plugins are not loaded"),
+    refused("`<composite>`, `<flexcomp>`", "", BALL, BALL + '<flexcomp name="a"/>',
+            "bodies that bend"),
+    refused("`<model>`, `<attach>`", "", "<asset>", '<asset><model name="a" file="arm.xml"/>',
+            "are not attached"),
+    refused("a file outside of the given folders", "", "t.obj", "/etc/passwd", "outside"),
+    refused("DOCTYPE, entities", "", '<mujoco model="arm">',
+            '<!DOCTYPE m><mujoco model="arm">', "a DOCTYPE"),
+)  # fmt: skip
+
+CALIBRATION_ROWS = (
+    read("`shoulder` to `wrist_3`: `x` to `yaw`", "where planner and physics have the joint",
+         "z: 0.16261", "z: 0.163", lambda arm: height(arm, "shoulder_pan_joint") == 0.163),
+    ignored("`hash`", "", "hash: calib_1", "hash: calib_2"),
+    refused("a joint or number that lacks", "", "x: 0.00021\n", "a: 0.00021\n",
+            "a calibrated joint has `x`"),
+    refused("one that moves the flange by more than 20 mm or 0.05 rad", "is of another type",
+            "x: -0.42514", "x: -0.2", "of another type"),
+)  # fmt: skip
