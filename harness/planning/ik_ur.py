@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import product
+from math import acos, atan2, cos, hypot, inf, pi, remainder, sin, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -47,28 +48,19 @@ class UrGeometry:
 
 
 @dataclass(frozen=True, eq=False)
-class UrBranch:
-    """One of the eight: where the shoulder, the wrist and the elbow point, and the angles."""
-
-    shoulder: int
-    wrist: int
-    elbow: int
-    positions: FloatArray
-
-
-@dataclass(frozen=True)
 class UrAnswer:
     """The branches that exist, and by how much the others do not.
 
     Attributes:
-        branches: Angles in (-pi, pi], exact for the ideal geometry only.
+        branches: Angles in (-pi, pi], exact for the ideal geometry only, shape (N, 6) with N up
+            to 8; by shoulder, then wrist, then elbow, the positive one first.
         excess: How far the wrist is beyond what the upper arm and forearm can span, over the
             branches that were tried [m]; 0 when one was within reach.
         too_close: How far the wrist centre is inside the cylinder about joint 1 that cannot be
             reached [m]; 0 outside it.
     """
 
-    branches: tuple[UrBranch, ...]
+    branches: FloatArray
     excess: float
     too_close: float
 
@@ -91,6 +83,8 @@ def solve_ur(geometry: UrGeometry, T_base_wrist3: SE3, wrist_3_seed: float) -> U
 
     With z the common axis of joints 2, 3 and 4, seen from wrist 3 as (s5 c6, -s5 s6, c5), the
     shoulder follows from the wrist centre, the wrist from z, the elbow from a planar two-link arm.
+    All in plain floats: a call is too short for arrays.
+
     Descriptions have their right angles rounded (1.570796327), which the division by s5 turns into
     much more beside the wrist's singularity: a stretched arm may then seem a little too short. It
     is answered all the same, and whoever refines the answer finds whether it was.
@@ -105,91 +99,90 @@ def solve_ur(geometry: UrGeometry, T_base_wrist3: SE3, wrist_3_seed: float) -> U
         Georgia Institute of Technology, 2013 (the branch structure).
     """
     g = geometry
-    rotation, position = T_base_wrist3.rotation, T_base_wrist3.translation
-    center = position - g.d6 * rotation[:, 2]
-    radius = float(np.hypot(center[0], center[1]))
+    (r00, r01, r02), (r10, r11, r12), (r20, r21, r22) = T_base_wrist3.rotation.tolist()
+    px, py, pz = T_base_wrist3.translation.tolist()
+    east, north = px - g.d6 * r02, py - g.d6 * r12  # of the wrist centre
+    height = pz - g.d6 * r22 - g.d1
+    radius = hypot(east, north)
     if radius < abs(g.d4) * (1 - _EXACT):
-        return UrAnswer((), 0.0, abs(g.d4) - radius)
-    azimuth = np.arctan2(center[1], center[0])
-    side = np.arccos(np.clip(g.d4 / radius, -1, 1)) if radius > 0 else 0.0
-    branches: list[UrBranch] = []
-    excesses: list[float] = []
-    for shoulder, wrist in product((1, -1), (1, -1)):
-        q1 = azimuth + shoulder * side + np.pi / 2
-        s1, c1 = np.sin(q1), np.cos(q1)
-        z = rotation.T @ np.array([s1, -c1, 0.0])
-        sine = float(np.hypot(z[0], z[1]))
-        q5 = wrist * np.arctan2(sine, z[2])
-        is_singular = sine < _WRIST_SINGULAR
-        if is_singular and wrist < 0:
-            continue  # both wrist branches are one
-        T_shoulder_wrist3 = _shoulder_pose(g, q1).inverse() @ T_base_wrist3
-        if is_singular:
-            q6 = _free_wrist_3(g, T_shoulder_wrist3, q5, wrist_3_seed)
+        return UrAnswer(np.empty((0, 6)), 0.0, abs(g.d4) - radius)
+    azimuth = atan2(north, east) + 0.5 * pi
+    side = acos(max(-1.0, min(1.0, g.d4 / radius))) if radius > 0 else 0.0
+    found: list[tuple[float, float, float, float, float, float]] = []
+    least = inf
+    for q1 in (azimuth + side, azimuth - side):
+        s1, c1 = sin(q1), cos(q1)
+        x0, x1 = c1 * r00 + s1 * r10, c1 * r01 + s1 * r11  # wrist 3's axes along the upper arm's
+        x2 = c1 * r02 + s1 * r12
+        z0, z1, z2 = s1 * r00 - c1 * r10, s1 * r01 - c1 * r11, s1 * r02 - c1 * r12
+        along = c1 * east + s1 * north
+        sine = hypot(z0, z1)
+        q5 = atan2(sine, z2)
+        if sine < _WRIST_SINGULAR:  # both wrist branches are one
+            circle = _Circle(along, height, g.d5 * x0, g.d5 * x1, g.d5 * r20, g.d5 * r21)
+            q6 = _free_wrist_3(g.spans, circle, wrist_3_seed)
+            s6, c6, wrists = sin(q6), cos(q6), ((1.0, q5, q6),)
         else:
-            q6 = float(np.arctan2(-wrist * z[1], wrist * z[0]))
-        plane = T_shoulder_wrist3 @ _wrist_pose(g, q5, q6).inverse()
-        x, y = plane.translation[0], plane.translation[1]
-        reach = float(np.hypot(x, y))
-        bend = (x * x + y * y - g.a2**2 - g.a3**2) / (2 * g.a2 * g.a3)
-        if abs(bend) > 1 + _EXACT:
-            shortest, longest = g.spans
-            excesses.append(reach - longest if reach > longest else shortest - reach)
-        else:
-            excesses.append(0.0)
-        if abs(bend) > 1 + _NEARLY:
-            continue
-        turn = np.arctan2(plane.rotation[1, 0], plane.rotation[0, 0])
-        for elbow in (1, -1):
-            q3 = elbow * np.arccos(np.clip(bend, -1, 1))
-            q2 = np.arctan2(y, x) - np.arctan2(g.a3 * np.sin(q3), g.a2 + g.a3 * np.cos(q3))
-            angles = np.array([q1, q2, q3, turn - q2 - q3, q5, q6])
-            branches.append(UrBranch(shoulder, wrist, elbow, _wrapped(angles)))
-    return UrAnswer(tuple(branches), min(excesses, default=0.0), 0.0)
+            s6, c6, q6 = -z1 / sine, z0 / sine, atan2(-z1, z0)
+            wrists = ((1.0, q5, q6), (-1.0, -q5, q6 - pi if q6 > 0 else q6 + pi))
+        s5, c5 = sin(q5), cos(q5)
+        shift_x, shift_y = g.d5 * (s6 * x0 + c6 * x1), g.d5 * (s6 * r20 + c6 * r21)
+        turn = atan2(
+            c5 * (c6 * r20 - s6 * r21) - s5 * r22, c5 * (c6 * x0 - s6 * x1) - s5 * x2
+        )  # of the plane's x axis behind joint 4
+        for wrist, wrist_2, wrist_3 in wrists:
+            x, y = along + wrist * shift_x, height + wrist * shift_y
+            bend = (x * x + y * y - g.a2 * g.a2 - g.a3 * g.a3) / (2 * g.a2 * g.a3)
+            if -1 - _EXACT <= bend <= 1 + _EXACT:
+                least = 0.0
+            else:
+                shortest, longest = g.spans
+                reach = hypot(x, y)
+                least = min(least, max(reach - longest, shortest - reach))
+                if not -1 - _NEARLY <= bend <= 1 + _NEARLY:
+                    continue
+            bend = max(-1.0, min(1.0, bend))
+            q3 = acos(bend)
+            aim = atan2(y, x)
+            lead = atan2(g.a3 * sqrt(1 - bend * bend), g.a2 + g.a3 * bend)
+            rest = turn - aim if wrist > 0 else turn - aim + pi
+            found.append((q1, aim - lead, q3, rest + lead - q3, wrist_2, wrist_3))
+            found.append((q1, aim + lead, -q3, rest - lead + q3, wrist_2, wrist_3))
+    branches = np.array(found).reshape(-1, 6)
+    return UrAnswer(pi - (pi - branches) % (2 * pi), 0.0 if least == inf else least, 0.0)
 
 
-def _free_wrist_3(g: UrGeometry, T_shoulder_wrist3: SE3, q5: float, seed: float) -> float:
+class _Circle(NamedTuple):
+    """Where joint 4 can be when joint 6 is free: `(x, y) + sin(q6) (a, b) + cos(q6) (c, d)`."""
+
+    x: float
+    y: float
+    a: float
+    c: float
+    b: float
+    d: float
+
+    def squared_way(self, q6: float) -> float:
+        """From joint 2 [m^2]."""
+        s, c = sin(q6), cos(q6)
+        return (self.x + s * self.a + c * self.c) ** 2 + (self.y + s * self.b + c * self.d) ** 2
+
+
+def _free_wrist_3(spans: tuple[float, float], circle: _Circle, seed: float) -> float:
     """The angle nearest to a seed at which the arm can span the way to joint 4, which q6 moves.
 
     With joints 4 and 6 parallel, joint 4 lies on a circle about joint 6, and the square of the way
     is `middle + cosine cos(q6) + sine sin(q6)`. The seed, where no angle will do.
     """
-
-    def squared_way(q6: float) -> float:
-        plane = T_shoulder_wrist3 @ _wrist_pose(g, q5, q6).inverse()
-        return float(plane.translation[0] ** 2 + plane.translation[1] ** 2)
-
-    shortest, longest = g.spans
-    if shortest**2 <= squared_way(seed) <= longest**2:
+    shortest, longest = spans
+    if shortest**2 <= circle.squared_way(seed) <= longest**2:
         return seed
-    east, north, west = (squared_way(angle) for angle in (0.0, np.pi / 2, np.pi))
+    east, north, west = (circle.squared_way(angle) for angle in (0.0, 0.5 * pi, pi))
     middle = 0.5 * (east + west)
     cosine, sine = 0.5 * (east - west), north - middle
-    swing, phase = float(np.hypot(cosine, sine)), float(np.arctan2(sine, cosine))
+    swing, phase = hypot(cosine, sine), atan2(sine, cosine)
     shares = [(length**2 - middle) / max(swing, 1e-12) for length in (shortest, longest)]
-    turns = [np.arccos(np.clip(share, -1, 1)) for share in shares if abs(share) < 1 + _NEARLY]
+    turns = [acos(max(-1.0, min(1.0, share))) for share in shares if abs(share) < 1 + _NEARLY]
     angles = [phase + side * turn for turn in turns for side in (1, -1)]
-    away = [float(np.remainder(angle - seed + np.pi, 2 * np.pi) - np.pi) for angle in angles]
+    away = [remainder(angle - seed, 2 * pi) for angle in angles]
     return seed + min(away, key=abs, default=0.0)
-
-
-def _shoulder_pose(g: UrGeometry, q1: float) -> SE3:
-    """T_base_shoulder: joint 1, then the quarter turn to joint 2's axis."""
-    return SE3(
-        rotation_from_rpy((0, 0, q1)) @ rotation_from_rpy((np.pi / 2, 0, 0)),
-        np.array([0.0, 0.0, g.d1]),
-    )
-
-
-def _wrist_pose(g: UrGeometry, q5: float, q6: float) -> SE3:
-    """From behind joint 4's quarter turn to wrist_3_link; cancels that turn and d4 on the left."""
-    quarter = rotation_from_rpy((np.pi / 2, 0, 0))
-    fourth = SE3(quarter, np.array([0.0, 0.0, g.d4]))
-    fifth = SE3(rotation_from_rpy((0, 0, q5)) @ quarter.T, np.array([0.0, 0.0, g.d5]))
-    sixth = SE3(rotation_from_rpy((0, 0, q6)), np.array([0.0, 0.0, g.d6]))
-    return fourth @ fifth @ sixth
-
-
-def _wrapped(angles: FloatArray) -> FloatArray:
-    """The same angles in (-pi, pi]."""
-    return np.pi - np.mod(np.pi - angles, 2 * np.pi)

@@ -161,7 +161,7 @@ class PinocchioKinematics:
         T_world_base = self._in_front(joints[0])
         T_base_wrist3 = T_world_base.inverse() @ goal.pose @ T_last_link.inverse()
         answer = solve_ur(UrGeometry.of_joints(joints), T_base_wrist3, float(reference[-1]))
-        return [branch.positions for branch in answer.branches], max(answer.excess, 0.0)
+        return list(answer.branches), max(answer.excess, 0.0)
 
     def _planar(
         self,
