@@ -27,6 +27,7 @@ READY = np.array([0.0, -2.0, 1.9, -1.5, -1.57, 0.0])
 """Where half of the problems start, TCP in front of the arm, pointing down."""
 
 FINE = 1 / 128  # [rad]
+GROUND_HEIGHT = -0.06  # [m]
 MOST_DRAWS = 200
 
 
@@ -105,7 +106,10 @@ def _problem(
     model: str, family: str, number: int, made: Layout, rng: np.random.Generator
 ) -> Problem | None:
     scene, kinematics, _ = make_planning(arm(model))
-    for name, shapes, height in (("ground", [Shape(Plane())], -0.06), ("things", made.shapes, 0.0)):
+    for name, shapes, height in (
+        ("ground", [Shape(Plane())], GROUND_HEIGHT),
+        ("things", made.shapes, 0.0),
+    ):
         pose = SE3.from_xyz_rpy((0, 0, height), (0, 0, 0))
         thing = WorldObject(name, tuple(shapes), pose, True, 0.0, np.zeros(3), np.zeros((3, 3)))
         scene.add_object(thing, pose)

@@ -1,0 +1,111 @@
+"""RRT-Connect and shortcuts of the wheel `roboplan` (C++), on the same meshes and things."""
+
+import time
+from itertools import combinations, pairwise
+
+import numpy as np
+import roboplan.core as core
+import roboplan.rrt as rrt
+
+from harness.core.geometry import Box, Cylinder
+from harness.planning.verify import FINAL_RESOLUTION, VERIFIED_RESOLUTION
+from harness.robot.write_urdf import write_urdf
+from tests.benchmarks.planning.arms import arm, folder
+from tests.benchmarks.planning.contenders import PATIENCE, RANGE, SPACING, Outcome
+from tests.benchmarks.planning.problems import GROUND_HEIGHT, GROUP, Problem
+
+COLOUR = np.full(4, 0.5)
+GROUND = core.Box(10.0, 10.0, 1.0)
+MOST_NODES = 100_000
+
+
+def roboplan(problem: Problem, seed: int = 1) -> Outcome:
+    """As it comes: plan and cut corners at `SPACING`, nothing verified.
+
+    Reading the robot and taking the scene up are not timed, here and below.
+    """
+    return _planned(problem, seed, ((SPACING, SPACING),), None)
+
+
+def roboplan_verified(problem: Problem, seed: int = 1) -> Outcome:
+    """Held to what this project's paths are held to: verified, and finer when that fails."""
+    return _planned(problem, seed, LEVELS, VERIFIED_RESOLUTION)
+
+
+LEVELS = (
+    (SPACING, FINAL_RESOLUTION),
+    (FINAL_RESOLUTION, FINAL_RESOLUTION),
+    (FINAL_RESOLUTION, VERIFIED_RESOLUTION),
+    (VERIFIED_RESOLUTION, VERIFIED_RESOLUTION),
+)
+"""Spacings of states while planning and while cutting corners [rad]."""
+
+
+def _planned(
+    problem: Problem, seed: int, levels: tuple[tuple[float, float], ...], verify: float | None
+) -> Outcome:
+    scene = _scene(problem)
+    begin, planned = time.process_time(), None
+    for spacing, fine in levels:
+        path = _plan(scene, problem, spacing, seed)
+        if path is None:
+            continue
+        planned = planned or time.process_time()
+        options = core.PathShortcuttingOptions(group_name=GROUP, max_step_size=fine, seed=seed)
+        short = np.array(core.PathShortcutter(scene, options).shortcut(path).positions)
+        if verify is None or not any(
+            core.hasCollisionsAlongPath(scene, first, second, verify)
+            for first, second in pairwise(short)
+        ):
+            return Outcome(planned - begin, time.process_time() - begin, 0, short)
+    return Outcome(PATIENCE, PATIENCE, 0, None)
+
+
+def _plan(scene: core.Scene, problem: Problem, spacing: float, seed: int) -> core.JointPath | None:
+    options = rrt.RRTOptions(
+        group_name=GROUP,
+        max_nodes=MOST_NODES,
+        max_connection_distance=RANGE,
+        collision_check_step_size=spacing,
+        max_planning_time=PATIENCE,
+        rrt_connect=True,
+    )
+    planner = rrt.RRT(scene, options)
+    planner.setRngSeed(seed)
+    names = list(problem.space.joint_names)
+    try:
+        return planner.plan(
+            core.JointConfiguration(names, problem.start),
+            core.JointConfiguration(names, problem.goal),
+        )
+    except RuntimeError:  # nothing found
+        return None
+
+
+def _scene(problem: Problem) -> core.Scene:
+    """Arm, things and ground; the same pairs of links are checked."""
+    description = arm(problem.model)
+    urdf = write_urdf(problem.model, description.links, description.joints)
+    scene = core.Scene(
+        problem.model, core.loadUrdfSceneDescriptionFromXml(urdf, [str(folder().parent)])
+    )
+    scene.addGroup(GROUP, list(problem.space.joint_names))
+    solid = {link.name for link in description.links if link.collisions}
+    allowed = [pair for pair in description.allowed_collisions if solid.issuperset(pair)]
+    for number, shape in enumerate(problem.obstacles):
+        _add(scene, f"thing{number}", shape.geometry, shape.pose.matrix())
+    ground = np.eye(4)
+    ground[2, 3] = GROUND_HEIGHT - 0.5
+    scene.addBoxGeometry("ground", "universe", GROUND, np.asfortranarray(ground), COLOUR)
+    things = ["ground", *(f"thing{number}" for number in range(len(problem.obstacles)))]
+    scene.setCollisions([*allowed, *combinations(things, 2)], False)
+    return scene
+
+
+def _add(scene: core.Scene, name: str, geometry: Box | Cylinder, pose: np.ndarray) -> None:
+    place = np.asfortranarray(pose)
+    if isinstance(geometry, Box):
+        scene.addBoxGeometry(name, "universe", core.Box(*geometry.size), place, COLOUR)
+    else:
+        cylinder = core.Cylinder(geometry.radius, geometry.length)
+        scene.addCylinderGeometry(name, "universe", cylinder, place, COLOUR)
