@@ -1,9 +1,11 @@
-"""Lines of progress while cases run: rewritten in place on a terminal, plain elsewhere."""
+"""Lines of progress while cases run: steps on a terminal, one line a case elsewhere."""
 
 from __future__ import annotations
 
 import shutil
+from collections import defaultdict
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TextIO
 
 from harness.reporting.result import CaseResult, ProgressEvent
@@ -11,12 +13,16 @@ from harness.reporting.terminal import Style, case_line, step_done, step_running
 
 CLEAR_LINE = "\r\x1b[2K"
 
+Moment = tuple[float, float]
+"""Wall time and simulation time [s]."""
+
 
 class ProgressLines:
-    """Tells a case's steps as they end, and the case's outcome.
+    """Tells a case's steps as they begin and end, and the case's outcome.
 
     One case at a time has its file as a headline and its steps below; of several side by side,
-    every line begins with the case it belongs to.
+    every line begins with the case it belongs to. Where nobody watches, in a pipe or a file, and
+    of very many cases, a case is one line, told when it has ended.
     """
 
     def __init__(
@@ -32,32 +38,48 @@ class ProgressLines:
         self._cases = cases
         self._style = style
         self._is_side_by_side = is_side_by_side
-        self._is_brief = is_brief
+        self._is_brief = is_brief or not stream.isatty()
         self._rewrites = stream.isatty() and style.has_color and not is_side_by_side
         self._headline = -1
+        self._begun: dict[int, list[Moment]] = defaultdict(list)  # steps nest
 
     def step(self, index: int, event: ProgressEvent) -> None:
         """Take note of a sign of life."""
         if self._is_brief:
             return
-        if event.kind == "step_started" and self._rewrites:
-            self._begin(index)
-            width = shutil.get_terminal_size().columns
-            self._stream.write(f"{CLEAR_LINE}{step_running(event, self._style)[: width - 1]}")
-            self._stream.flush()
+        if event.kind == "step_started":
+            self._begun[index].append((event.wall_time, event.sim_time))
+            if self._rewrites:
+                self._begin(index)
+                width = shutil.get_terminal_size().columns
+                self._stream.write(f"{CLEAR_LINE}{step_running(event, self._style)[: width - 1]}")
+                self._stream.flush()
         elif event.kind == "step_finished":
             self._begin(index)
-            self._line(index, step_done(event, self._style))
+            speed = self._speed(index, event)
+            self._line(index, step_done(replace(event, speed=speed), self._style))
 
     def result(self, index: int, result: CaseResult) -> None:
         """Tell a case's outcome."""
-        if self._is_brief and not self._is_side_by_side:
-            self._line(index, f"{self._cases[index]}  {case_line(result, self._style)}")
+        if self._is_brief:
+            line = case_line(result, self._style)
+            self._line(index, f"  {line}" if self._is_side_by_side else self._named(index, line))
             return
         self._begin(index)
         self._line(index, f"  {case_line(result, self._style)}")
         for note in result.notes:
             self._line(index, f"  {self._style.quiet(note)}")
+
+    def _speed(self, index: int, event: ProgressEvent) -> float | None:
+        """Simulated over wall seconds of a step, its planning included."""
+        if not self._begun[index]:
+            return None
+        wall, simulated = self._begun[index].pop()
+        passed = event.wall_time - wall
+        return (event.sim_time - simulated) / passed if passed > 0 else None
+
+    def _named(self, index: int, line: str) -> str:
+        return f"{self._cases[index]}  {line}"
 
     def _begin(self, index: int) -> None:
         if not self._is_side_by_side and self._headline != index:

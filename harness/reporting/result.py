@@ -20,6 +20,8 @@ class ProgressEvent:
         step: Its summary in one line.
         status: What became of it, for `step_finished` and `judged`.
         sim_time: Simulation time so far [s].
+        wall_time: On a clock that only goes forward [s]; shown, never judged.
+        speed: Simulated over wall seconds of the step that finished; None where it is not known.
     """
 
     kind: Literal["compiled", "step_started", "step_finished", "judged", "written"]
@@ -29,6 +31,8 @@ class ProgressEvent:
     status: str
     sim_time: float
     message: str
+    wall_time: float = 0.0
+    speed: float | None = None
 
 
 @dataclass(frozen=True)

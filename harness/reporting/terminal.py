@@ -74,19 +74,29 @@ PLAIN = Style()
 def step_running(event: ProgressEvent, style: Style = PLAIN) -> str:
     """The line of a step that is under way."""
     dots = " …" if style.has_signs else " ..."
-    return f"    {_count(event)}  {event.step}{dots}"
+    return f"    {_count(event)}  {event.step}{dots}  t={event.sim_time:.2f} s"
 
 
 def step_done(event: ProgressEvent, style: Style = PLAIN) -> str:
-    """The line of a step that is over: sign, number, what it said, simulation time, failure."""
+    """The line of a step that is over: sign, number, what it said, simulation time, failure.
+
+    The speed is how many times faster than the real thing it was, where anything moved.
+    """
     is_good = event.status in {"passed", "expected_error"}
     line = f"  {style.mark(is_good)} {_count(event)}  {event.step}"
     line += style.quiet(f"  t={event.sim_time:.2f} s")
+    if event.speed:
+        line += style.quiet(f"  {speed_text(event.speed)}")
     if event.status == "expected_error":
         line += style.quiet("  failed as expected")
     if not is_good and event.message:
         line += f"  {event.message.splitlines()[0]}"
     return line
+
+
+def speed_text(speed: float) -> str:
+    """A speed factor: `12x real time`, `0.8x real time`."""
+    return f"{speed:.0f}x real time" if speed >= 9.5 else f"{speed:.1f}x real time"
 
 
 def _count(event: ProgressEvent) -> str:
@@ -103,7 +113,10 @@ def case_line(result: CaseResult, style: Style = PLAIN) -> str:
     parts = [f"{outcome}{style.strong(name)}"]
     if result.outcome in {"passed", "failed"}:
         held = sum(verdict.status == "passed" for verdict in result.verdicts)
-        parts.append(f"{_plural(len(result.steps), 'step')}, {result.sim_time:.1f} s simulated")
+        simulated = f"{result.sim_time:.1f} s simulated"
+        if wall := sum(result.wall_times.values()):
+            simulated += f" at {speed_text(result.sim_time / wall)}"
+        parts.append(f"{_plural(len(result.steps), 'step')}, {simulated}")
         parts.append(f"{held} of {_plural(len(result.verdicts), 'expectation')} hold")
         parts.append(style.quiet(f"digest {result.digest[:12]}"))
     return "  ".join(parts)

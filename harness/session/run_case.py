@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -251,6 +252,7 @@ def _step_teller(program: Program, on_progress: Notify, simulator: TimedSimulato
                 record.status if record else "",
                 simulator.time,
                 record.message if record else "",
+                time.monotonic(),
             )
         )
 

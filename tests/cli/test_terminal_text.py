@@ -1,6 +1,7 @@
 import io
 import json
 import math
+from dataclasses import replace
 
 from harness.core.errors import Problem
 from harness.recording.run import Measure, Verdict
@@ -57,7 +58,16 @@ def test_a_step_is_one_line_with_number_time_and_cause():
     assert step_done(failed) == (
         "  no  3/16  move_to mogi_home  t=4.25 s  GOAL_IN_COLLISION: wrist_3 and Table"
     )
-    assert step_running(finished("")) == "     3/16  move_to mogi_home ..."
+    assert step_running(finished("")) == "     3/16  move_to mogi_home ...  t=4.25 s"
+
+
+def test_speed_is_told_of_steps_and_cases_that_moved():
+    fast = step_done(replace(finished("passed"), speed=12.4))
+    assert fast.endswith("  t=4.25 s  12x real time")
+    assert step_done(replace(finished("passed"), speed=0.84)).endswith("  0.8x real time")
+    assert step_done(replace(finished("passed"), speed=0.0)).endswith("  t=4.25 s")
+    told = case_line(result(sim_time=9.0, wall_times={"plan": 0.5, "simulate": 1.0}))
+    assert "9.0 s simulated at 6.0x real time" in told
 
 
 def test_a_failed_step_is_told_with_place_code_report_and_command():
