@@ -147,6 +147,7 @@ def _tell(
     arguments: argparse.Namespace, suite: SuiteRun, seconds: float, page: Path | None
 ) -> None:
     """Failures, rates, tables and the last lines."""
+    from harness.reporting.sampled import missed
     from harness.reporting.terminal import Style, repeats, report_link, summary
 
     style = Style.of(sys.stdout)
@@ -160,7 +161,9 @@ def _tell(
             say(f"  run {index % arguments.repeat + 1} of {suite.jobs[index].file}: {said}")
     else:
         _tell_rates(suite, style)
-    say(summary(list(suite.results.values()), seconds, style))
+    rates = missed(suite.rates)
+    told = f"; {style.outcome('failed', rates)}" if rates else ""
+    say(f"{summary(list(suite.results.values()), seconds, style)}{told}")
     if suite.resumed:
         say(f"{suite.resumed} of them were known from before")
     written = [result for result in suite.results.values() if result.report_dir]

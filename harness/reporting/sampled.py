@@ -61,6 +61,12 @@ class SampledRate:
     outcome: Outcome
 
 
+def missed(rates: Sequence[SampledRate]) -> str:
+    """`1 of 4 rates not shown`; empty where all are. It fails a suite all of whose cases pass."""
+    count = sum(each.outcome != "passed" for each in rates)
+    return f"{count} of {len(rates)} rates not shown" if count else ""
+
+
 def rate_line(name: str, rate: Rate, style: Style = PLAIN) -> str:
     """`pick: 187 of 200 samples passed, 93.5% (89.2% to 96.2% at 95%): at least 90% is shown`."""
     share = f"{rate.passed / rate.total:.1%}" if rate.total else "no rate"

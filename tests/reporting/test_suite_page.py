@@ -25,7 +25,7 @@ def names(page):
 def test_it_tells_everything_and_hostile_names_stay_text(small, visit):
     seen = visit(small)
     page = seen.page
-    assert page.title() == "1 of 5 passed"
+    assert page.title() == "1 of 5 passed; 1 of 1 rates not shown"
     assert page.locator("tbody tr").count() == 5
     assert "<script>document.title" in seen.text("tbody")
     assert "8 of 10 samples passed, 80.0%" in seen.text("main")
@@ -58,6 +58,12 @@ def test_sorted_by_worst_margin_and_grouped_by_cause(small, visit):
     heads = page.locator("tr.group").all_inner_texts()
     assert len(heads) == 5
     assert heads[-1].strip() == "passed (1)"
+
+
+def test_a_rate_leads_to_its_samples(small, visit):
+    page = visit(small).page
+    page.click(".rate.failed")
+    assert names(page) == ["c0", "c1"]
 
 
 def test_two_thousand_rows_are_searched_and_sorted(large, visit):

@@ -14,7 +14,7 @@ from urllib.parse import quote
 from harness.reporting.html import bundle
 from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import CaseResult
-from harness.reporting.sampled import SampledRate, rate_line, table_lines
+from harness.reporting.sampled import SampledRate, missed, rate_line, table_lines
 from harness.reporting.suite.cause import cause_of
 from harness.reporting.suite.history import Key
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
@@ -41,7 +41,7 @@ def suite_html(
     passed = sum(result.outcome == "passed" for result in results)
     rows = [_row(i, case, folder, history or {}) for i, case in enumerate(record.cases)]
     return Template(_read("suite.html")).substitute(
-        title=f"{passed} of {len(results)} passed",
+        title="; ".join(filter(None, (f"{passed} of {len(results)} passed", missed(record.rates)))),
         style=bundle.theme() + _read("suite.css"),
         script=_read("suite.js"),
         pill="good" if record.outcome == "passed" else "bad",
@@ -79,10 +79,15 @@ def _causes(results: Sequence[CaseResult]) -> str:
 
 
 def _rates(rates: Sequence[SampledRate]) -> str:
+    """A row each, those that are not shown first."""
     if not rates:
         return ""
-    lines = "".join(_rate(each) for each in rates)
-    return f'<section class="panel"><h2>Success rates of samples</h2><ul>{lines}</ul></section>'
+    rows = "".join(_rate(each) for each in sorted(rates, key=lambda each: each.outcome == "passed"))
+    return (
+        '<section class="panel"><h2>Success rates of samples <span class="key">bar: interval'
+        " · black: measured · blue: asked</span></h2>"
+        f'<div class="rates">{rows}</div></section>'
+    )
 
 
 def _rate(sampled: SampledRate) -> str:
@@ -91,22 +96,34 @@ def _rate(sampled: SampledRate) -> str:
     asked = "" if rate.at_least is None else (
         f'<i class="asked" style="left:{100 * rate.at_least:.2f}%"></i>'
     )  # fmt: skip
+    said = rate_line("", rate).partition(": ")[2]
+    group = f' <span class="tag">{escape(sampled.group)}</span>' if sampled.group else ""
     return (
-        f'<li class="rate {sampled.outcome}"><span class="interval" aria-hidden="true">'
+        f'<button type="button" class="rate {sampled.outcome}" data-rate="{escape(name.lower())}"'
+        f' title="Show its samples"><i class="sign {sampled.outcome}"></i>'
+        f'<span class="interval" aria-hidden="true">'
         f'<i class="reach" style="left:{100 * rate.low:.2f}%;'
         f'width:{100 * (rate.high - rate.low):.2f}%"></i>'
         f'<i class="share" style="left:{100 * share:.2f}%"></i>{asked}</span>'
-        f"{escape(rate_line(name, rate, SIGNS))}</li>"
+        f"<span><b>{escape(Path(sampled.file).name)}</b>{group}"
+        f'<span class="quiet"> {escape(said)}</span></span></button>'
     )
 
 
 def _varied(cases: Sequence[SuiteCase]) -> str:
+    """A block for each quantity that varies; they flow side by side."""
     told = [(each.values, each.result.outcome == "passed") for each in cases if each.values]
-    lines = "\n".join(table_lines(told, SIGNS)) if told else ""
-    if not lines:
+    blocks: list[str] = []
+    for line in table_lines(told, SIGNS):
+        if line.startswith(" "):
+            blocks[-1] += f"\n{escape(line)}"
+        else:
+            blocks.append(escape(line))
+    if not blocks:
         return ""
+    inner = "".join(f"<pre>{block}</pre>" for block in blocks)
     heading = "<h2>By what varies</h2>"
-    return f'<section class="panel">{heading}<pre>{escape(lines)}</pre></section>'
+    return f'<section class="panel">{heading}<div class="varied">{inner}</div></section>'
 
 
 def _row(
@@ -155,13 +172,16 @@ def _margin(result: CaseResult) -> str:
 
 
 def _sparkline(shares: Sequence[float | None]) -> str:
-    """Worst margins over runs as a small line; the middle is where an expectation flips."""
+    """Worst margins over runs as a small line; the middle is where an expectation flips.
+
+    Heights are square roots: what happens near the middle is what matters.
+    """
     told = [(index, share) for index, share in enumerate(shares) if share is not None]
     if len(told) < 2:
         return ""
     step = SPARK_WIDTH / (len(shares) - 1)
     points = " ".join(
-        f"{index * step:.1f},{SPARK_HEIGHT * (1 - share) / 2:.1f}" for index, share in told
+        f"{index * step:.1f},{SPARK_HEIGHT * (1 - _root(share)) / 2:.1f}" for index, share in told
     )
     said = f"worst margin in {len(told)} runs, now {told[-1][1]:.0%} of its limit"
     middle = SPARK_HEIGHT / 2
@@ -171,6 +191,10 @@ def _sparkline(shares: Sequence[float | None]) -> str:
         f'<line x1="0" x2="{SPARK_WIDTH}" y1="{middle}" y2="{middle}"/>'
         f'<polyline points="{points}"/></svg>'
     )
+
+
+def _root(share: float) -> float:
+    return math.copysign(math.sqrt(abs(share)), share)
 
 
 def _link(result: CaseResult, folder: Path) -> str:

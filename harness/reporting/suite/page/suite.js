@@ -80,6 +80,13 @@
       show();
     });
   }
+  for (const button of document.querySelectorAll("[data-rate]")) {
+    button.addEventListener("click", () => {
+      search.value = button.dataset.rate;
+      show();
+      body.closest("section").scrollIntoView();
+    });
+  }
   search.addEventListener("input", show);
   order.addEventListener("change", show);
   addEventListener("hashchange", () => { recall(); show(); });
