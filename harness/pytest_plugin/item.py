@@ -8,8 +8,12 @@ from typing import Any
 
 import pytest
 
+from harness.pytest_plugin.session import TOLD
+from harness.pytest_plugin.session_files import ItemRecord, as_plain
 from harness.reporting.result import CaseResult
-from harness.reporting.sampled import rate_line
+from harness.reporting.sampled import SampledRate, rate_line
+from harness.reporting.suite.junit import case_properties, sample_properties
+from harness.reporting.suite.record import SuiteCase
 from harness.reporting.terminal import causes
 from harness.suite.cases import run_here, run_isolated
 from harness.suite.header import Header, read_header, source_lines
@@ -55,18 +59,21 @@ class ScenarioFile(pytest.File):
     def collect(self) -> Iterable[ScenarioItem]:
         header = read_header(self.path)
         title = header.title.replace("::", ":")
-        for case in header.variation.parametrized():
+        for number, case in enumerate(header.variation.parametrized()):
             name = f"{title}[{case.name}]" if case.name else title
-            yield ScenarioItem.from_parent(self, name=name, header=header, case=case.name)
+            yield ScenarioItem.from_parent(
+                self, name=name, header=header, case=case.name, number=number
+            )
 
 
 class ScenarioItem(pytest.Item):
     """One case of a scenario, or all samples of it."""
 
-    def __init__(self, *, header: Header, case: str, **keywords: Any) -> None:
+    def __init__(self, *, header: Header, case: str, number: int, **keywords: Any) -> None:
         super().__init__(**keywords)
         self._header = header
         self._case = case
+        self._number = number
         self.extra_keyword_matches.add(self.path.name)
         for tag in header.tags:
             self.extra_keyword_matches.add(tag)
@@ -83,15 +90,22 @@ class ScenarioItem(pytest.Item):
         sampling = Sampling(plan)
         results = self._run(plan, sampling)
         if self._header.variation.samples:
-            self._judge_samples(sampling, results)
+            self._judge_samples(plan, sampling, results)
             return
-        [result] = results.values()
-        self._tell(result)
+        [(index, result)] = results.items()
+        case = _suite_case(plan[index], result)
+        self._keep([case])
+        self._tell(case)
         if result.outcome != "passed":
             raise ScenarioNotPassed(result)
 
-    def _judge_samples(self, sampling: Sampling, results: Mapping[int, CaseResult]) -> None:
-        counted = sampling.counted(results)
+    def _judge_samples(
+        self, plan: Sequence[PlannedCase], sampling: Sampling, results: Mapping[int, CaseResult]
+    ) -> None:
+        counted = dict(sorted(sampling.counted(results).items()))
+        cases = [_suite_case(plan[index], result) for index, result in counted.items()]
+        self._keep(cases, sampling.groups())
+        self.user_properties += sample_properties(cases)
         broken = [each for each in counted.values() if each.outcome in ("invalid", "error")]
         if broken:
             raise ScenarioNotPassed(broken[0])
@@ -129,13 +143,24 @@ class ScenarioItem(pytest.Item):
             sampling.note(index, result.outcome)
         return results
 
-    def _tell(self, result: CaseResult) -> None:
+    def _keep(self, cases: Sequence[SuiteCase], rates: Sequence[SampledRate] = ()) -> None:
+        """Have the test's report carry what this came to, to the files of the session."""
+        record = ItemRecord(self.nodeid, self._number, tuple(cases), tuple(rates))
+        setattr(self, TOLD, as_plain(record))
+
+    def _tell(self, case: SuiteCase) -> None:
         """Put what a later reader needs beside the test's outcome."""
-        self.user_properties += [("seed", result.seed), ("digest", result.digest)]
+        result = case.result
+        self.user_properties += case_properties(case)
         if result.report_dir:
             self.user_properties.append(("report", result.report_dir))
         for note in result.notes:
             self.add_report_section("call", "scenario", note)
+
+
+def _suite_case(planned_case: PlannedCase, result: CaseResult) -> SuiteCase:
+    header = planned_case.header
+    return SuiteCase(result, planned_case.values, header.tags, header.verifies)
 
 
 def report_root(config: pytest.Config) -> Path | None:

@@ -6,12 +6,14 @@ scenario file is met.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from fnmatch import fnmatch
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+
+from harness.pytest_plugin.session import TOLD, SessionResults
 
 if TYPE_CHECKING:
     from harness.pytest_plugin.item import ScenarioFile
@@ -46,6 +48,24 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
     parser.addini("harness_report_dir", "where reports go, from the root folder", default="reports")
     parser.addini("harness_hard_cap", "wall seconds after which a scenario is an error", default="")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Gather results where they are told to a person: not in xdist's workers."""
+    if not hasattr(config, "workerinput"):
+        config.pluginmanager.register(SessionResults(config), "armharness-session")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(
+    item: pytest.Item, call: pytest.CallInfo[None]
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Send what a scenario came to with the report of its test."""
+    report = yield
+    told = getattr(item, TOLD, None)
+    if told is not None and call.when == "call":
+        setattr(report, TOLD, told)
+    return report
 
 
 @pytest.fixture

@@ -1,6 +1,9 @@
+import json
+import os
 import re
 import subprocess
 import sys
+from xml.etree import ElementTree
 
 import pytest
 
@@ -145,12 +148,14 @@ def test_a_run_without_scenarios_imports_nothing_of_the_harness_but_the_plugin(p
 
         def test_modules():
             ours = {name for name in sys.modules if name.split(".")[0] == "harness"}
-            assert ours == {"harness", "harness.pytest_plugin", "harness.pytest_plugin.plugin"}
+            plugin = "harness.pytest_plugin"
+            assert ours == {"harness", plugin, f"{plugin}.plugin", f"{plugin}.session"}
             assert not {"numpy", "pydantic", "yaml"} & set(sys.modules)
     """)
     result = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-p", "no:hypothesispytest"],
+        [sys.executable, "-m", "pytest", "-q", "-p", "harness.pytest_plugin.plugin"],
         cwd=pytester.path,
+        env={**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"},  # others import numpy
         capture_output=True,
         text=True,
         check=False,
@@ -212,3 +217,69 @@ def test_other_plugins_work_beside_it(pytester, write):
     done.assert_outcomes(passed=2)
     assert "Hold still" in (pytester.path / "report.html").read_text()
     assert (pytester.path / "coverage.json").is_file()
+
+
+TIGHT = """\
+scenario: Just in time
+verifies: [REQ-4, REQ-5]
+robot: open_manipulator_x
+steps:
+  - wait: 0.1 s
+    id: pause
+expect:
+  - duration: {at_most: 0.103 s}
+"""
+
+
+def properties(pytester):
+    [case] = ElementTree.parse(pytester.path / "junit.xml").iter("testcase")
+    return [(each.get("name"), each.get("value")) for each in case.iter("property")]
+
+
+def test_junit_of_samples_has_the_smallest_margin_and_every_seed_and_digest(pytester, write):
+    lines = "params: {time: 0.1 s}\nrandomize:\n  time: {uniform: [0.02 s, 0.09 s]}\nsamples: 3\n"
+    write(tight=TIGHT.replace("wait: 0.1 s", 'wait: "${time}"') + lines)
+    run(pytester, "--junitxml=junit.xml").assert_outcomes(passed=1)
+    found = dict(properties(pytester))
+    assert (found["passed"], found["samples"]) == ("3", "3")
+    assert len({found[f"seed:sample{i}"] for i in range(3)}) == 3
+    assert len({found[f"digest:sample{i}"] for i in range(3)}) == 3
+    assert re.fullmatch(r"0\.0\d+ s \(sample[012]\)", found["margin:duration, at most 0.1 s"])
+    results = json.loads((pytester.path / "reports/results.json").read_text())
+    assert len(results["cases"]) == 3
+    assert results["rates"][0]["rate"]["passed"] == 3
+
+
+@pytest.mark.parametrize("options", [[], ["-n2"]], ids=["alone", "xdist"])
+def test_a_session_leaves_the_files_of_a_suite_in_file_order(pytester, write, options):
+    write(a_fails=FAILS, b_holds=HOLDS, c_invalid=INVALID)
+    result = pytester.runpytest_subprocess(*options)
+    result.assert_outcomes(passed=1, failed=2)
+    result.stdout.re_match_lines([r"reports: .*reports/index.html"])
+    results = json.loads((pytester.path / "reports/results.json").read_text())
+    files = ["a_fails.scenario.yaml", "b_holds.scenario.yaml", "c_invalid.scenario.yaml"]
+    assert [case["file"] for case in results["cases"]] == files
+    assert (results["outcome"], results["exit_code"]) == ("invalid", 2)
+    assert "a_fails/report.html#t=" in (pytester.path / "reports/index.html").read_text()
+    [whole] = ElementTree.parse(pytester.path / "reports/junit.xml").iter("testsuites")
+    assert (whole.get("tests"), whole.get("failures"), whole.get("errors")) == ("3", "1", "1")
+
+
+def test_margins_are_in_junit_and_told_when_they_get_small(pytester, write):
+    def told(wait):
+        write(tight=TIGHT.replace("wait: 0.1 s", f"wait: {wait} s"))
+        result = pytester.runpytest("--harness-no-report", "--junitxml=junit.xml")
+        result.assert_outcomes(passed=1)
+        return [line for line in result.outlines if " of its limit" in line or "as they" in line]
+
+    assert told(0.05) == []
+    [line] = told(0.1)
+    assert re.match(r"holds by 2\.9% of its limit, was 51\.5% last time: duration, at most", line)
+    assert line.endswith("(tight.scenario.yaml::Just in time)")
+    assert told(0.1) == ["1 below 5% as they were last time"]
+    assert not (pytester.path / "reports").exists()
+    found = properties(pytester)
+    assert [name for name, _ in found[:2]] == ["seed", "digest"]
+    assert [value for name, value in found if name == "verifies"] == ["REQ-4", "REQ-5"]
+    assert ("margin:duration, at most 0.1 s", "0.003 s") in found
+    assert ("worst_margin", "duration, at most 0.1 s") in found

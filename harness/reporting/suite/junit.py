@@ -12,7 +12,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
-from harness.reporting.margins import worst
+from harness.recording.run import Verdict
+from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import CaseResult
 from harness.reporting.suite.cause import cause_of
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
@@ -64,7 +65,7 @@ def _add_case(suite: ET.Element, case: SuiteCase) -> None:
         time=f"{_seconds(result):.3f}",
     )
     properties = ET.SubElement(element, "properties")
-    for key, value in _properties(case):
+    for key, value in case_properties(case):
         ET.SubElement(properties, "property", name=_legal(key), value=_legal(value))
     cause = cause_of(result)
     if cause is not None:
@@ -81,14 +82,15 @@ def _seconds(result: CaseResult) -> float:
     return sum(result.wall_times.values())
 
 
-def _properties(case: SuiteCase) -> list[tuple[str, str]]:
+def case_properties(case: SuiteCase) -> list[tuple[str, str]]:
+    """Name and value of everything that a later reader needs beside the outcome."""
     result = case.result
     found = [("seed", str(result.seed)), ("digest", result.digest)]
     found.append(("simulated", f"{result.sim_time:.3f} s"))
-    found += [("verifies", each) for each in case.verifies]
+    found += _said_of(case)
     found += [(f"value:{path}", str(value)) for path, value in case.values.items()]
     found += [
-        (f"margin:{verdict.expectation}", f"{verdict.margin:.6g} {verdict.unit}".removesuffix(" 1"))
+        (f"margin:{verdict.expectation}", _margin(verdict))
         for verdict in result.verdicts
         if not math.isnan(verdict.margin)
     ]
@@ -96,6 +98,34 @@ def _properties(case: SuiteCase) -> list[tuple[str, str]]:
     if nearest is not None:
         found.append(("worst_margin", nearest.expectation))
     return found
+
+
+def sample_properties(cases: Sequence[SuiteCase]) -> list[tuple[str, str]]:
+    """Of samples together: seed and digest of each, the smallest margins and whose they are."""
+    found = [item for case in cases[:1] for item in _said_of(case)]
+    found += [(f"seed:{case.result.case}", str(case.result.seed)) for case in cases]
+    found += [(f"digest:{case.result.case}", case.result.digest) for case in cases]
+    least: dict[str, tuple[Verdict, str]] = {}
+    for case in cases:
+        for verdict in case.result.verdicts:
+            if math.isnan(verdict.margin):
+                continue
+            known = least.setdefault(verdict.expectation, (verdict, case.result.case))
+            if margin_share(verdict) < margin_share(known[0]):
+                least[verdict.expectation] = (verdict, case.result.case)
+    found += [(f"margin:{name}", f"{_margin(each)} ({c})") for name, (each, c) in least.items()]
+    nearest = worst([verdict for verdict, _ in least.values()])
+    if nearest is not None:
+        found.append(("worst_margin", nearest.expectation))
+    return found
+
+
+def _said_of(case: SuiteCase) -> list[tuple[str, str]]:
+    return [("verifies", each) for each in case.verifies]
+
+
+def _margin(verdict: Verdict) -> str:
+    return f"{verdict.margin:.6g} {verdict.unit}".removesuffix(" 1")
 
 
 def _attachments(result: CaseResult) -> list[str]:

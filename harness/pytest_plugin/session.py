@@ -1,0 +1,46 @@
+"""Gathers what scenarios came to in a pytest session; imports nothing until there is one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+TOLD = "harness_told"
+"""Attribute of a test report with an item's record as plain data."""
+
+
+class SessionResults:
+    """A plugin of the process that talks to the person: under xdist the one without workers' work.
+
+    Attributes:
+        told: Records as plain data by the item's name; a test that runs again counts once.
+    """
+
+    def __init__(self, config: pytest.Config) -> None:
+        self._config = config
+        self.told: dict[str, Any] = {}
+        self._lines: list[str] = []
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        told = getattr(report, TOLD, None)
+        if told is not None:
+            self.told[report.nodeid] = told
+
+    def pytest_sessionfinish(self) -> None:
+        if not self.told:
+            return
+        from harness.pytest_plugin.item import report_root
+        from harness.pytest_plugin.session_files import from_plains, small_margins, write_files
+
+        records = from_plains(list(self.told.values()))
+        self._lines = small_margins(records, getattr(self._config, "cache", None))
+        folder = report_root(self._config)
+        if folder is not None and (line := write_files(folder, records)):
+            self._lines.append(line)
+
+    def pytest_terminal_summary(self, terminalreporter: Any) -> None:
+        if self._lines:
+            terminalreporter.section("scenarios")
+            for line in self._lines:
+                terminalreporter.write_line(line)

@@ -1,0 +1,125 @@
+"""What a pytest session leaves of its scenarios: the suite's files, and margins that got small."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from harness.core.errors import HarnessError
+from harness.recording.plain import from_plain, to_plain
+from harness.recording.run import Outcome
+from harness.reporting.margins import SMALL, margin_share
+from harness.reporting.sampled import SampledRate
+from harness.reporting.suite.record import SuiteCase, SuiteRecord
+from harness.suite.outcome import EXIT_CODES
+
+CACHED = "armharness/margins"
+MOST_LINES = 5
+
+
+@dataclass(frozen=True)
+class ItemRecord:
+    """What one item's scenarios came to; as plain data it goes from xdist's workers home.
+
+    Attributes:
+        name: Node id of the item.
+        number: Of the item in its file.
+        cases: One, or all samples that count; never none.
+        rates: Of samples.
+    """
+
+    name: str
+    number: int
+    cases: tuple[SuiteCase, ...]
+    rates: tuple[SampledRate, ...] = ()
+
+    @property
+    def outcomes(self) -> list[Outcome]:
+        """Of the cases; of samples the rate's, and that of those that are invalid or broke."""
+        found: list[Outcome] = [each.outcome for each in self.rates]
+        told: list[Outcome] = [case.result.outcome for case in self.cases]
+        return found + [each for each in told if not self.rates or each in ("invalid", "error")]
+
+
+def as_plain(record: ItemRecord) -> Any:
+    """Data that a test report can carry."""
+    return to_plain(record)
+
+
+def from_plains(plains: Sequence[Any]) -> list[ItemRecord]:
+    """Records of a session in the order of the files, whoever ran them when."""
+    records = [from_plain(each, ItemRecord) for each in plains]
+    return sorted(records, key=lambda each: (each.cases[0].result.file, each.number))
+
+
+def write_files(folder: Path, records: Sequence[ItemRecord]) -> str:
+    """Write `index.html`, `junit.xml` and `results.json` of more than one case.
+
+    Returns:
+        A line on where the page is, or why there is none; empty for one case.
+    """
+    from harness.reporting.suite.write import write_suite
+
+    cases = [case for each in records for case in each.cases]
+    if len(cases) < 2:
+        return ""
+    rates = [rate for each in records for rate in each.rates]
+    outcomes: list[Outcome] = [told for each in records for told in each.outcomes]
+    gravest = max(outcomes, key=EXIT_CODES.__getitem__)
+    try:
+        page = write_suite(folder, SuiteRecord(gravest, cases, rates), EXIT_CODES[gravest])
+    except HarnessError as error:
+        return f"no page of the suite: {error}"
+    return f"reports: {page}"
+
+
+def small_margins(records: Sequence[ItemRecord], cache: pytest.Cache | None) -> list[str]:
+    """Lines on expectations that barely hold, and what they were last time.
+
+    Args:
+        records: Of the session.
+        cache: Remembers margins until the next session; None where pytest has none.
+    """
+    known: Mapping[str, Mapping[str, float]] = (cache.get(CACHED, None) if cache else None) or {}
+    now = {each.name: _shares(each) for each in records}
+    if cache:
+        cache.set(CACHED, {**known, **now})
+    small = sorted(
+        (share, said, name)
+        for name, shares in now.items()
+        for said, share in shares.items()
+        if share < SMALL
+    )
+    last = {(name, said): known.get(name, {}).get(said) for _, said, name in small}
+    news = [each for each in small if not _is_known(each[0], last[each[2], each[1]])]
+    lines = [_line(*each, last[each[2], each[1]]) for each in news[:MOST_LINES]]
+    if len(news) > MOST_LINES:
+        lines.append(f"... and {len(news) - MOST_LINES} more")
+    if len(small) > len(news):
+        lines.append(f"{len(small) - len(news)} below {SMALL:.0%} as they were last time")
+    return lines
+
+
+def _shares(record: ItemRecord) -> dict[str, float]:
+    """Smallest margin of each expectation that held, as a share of its limit."""
+    found: dict[str, float] = {}
+    for case in record.cases:
+        for verdict in case.result.verdicts:
+            share = margin_share(verdict)
+            if verdict.status == "passed" and not math.isnan(share):
+                found[verdict.expectation] = min(share, found.get(verdict.expectation, 1.0))
+    return found
+
+
+def _is_known(share: float, last: float | None) -> bool:
+    return last is not None and share > last - 1e-6
+
+
+def _line(share: float, said: str, name: str, last: float | None) -> str:
+    before = "" if last is None else f", was {last:.1%} last time"
+    return f"holds by {share:.1%} of its limit{before}: {said} ({name})"
