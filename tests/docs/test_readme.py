@@ -2,6 +2,7 @@
 
 import re
 import shlex
+import tomllib
 from pathlib import Path
 
 import cv2
@@ -33,10 +34,30 @@ def test_the_scenario_shown_is_the_file_named_above_it():
     assert shown == (ROOT / named).read_text(encoding="utf-8")
 
 
-def test_the_picture_is_there_and_small():
-    [name] = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", README)
-    assert (ROOT / name).stat().st_size < 200_000
-    assert cv2.imread(str(ROOT / name)).shape == (480, 640, 3)
+def test_the_pictures_are_there_and_small():
+    first, page = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", README)
+    assert (ROOT / first).stat().st_size < 200_000
+    assert cv2.imread(str(ROOT / first)).shape == (480, 640, 3)
+    assert ROOT / page == gallery.FOLDER / f"{gallery.PAGE[0]}.png"
+
+
+def test_the_order_is_picture_commands_scenario_report_links():
+    marks = ("![", "## Two commands", "```yaml", "gallery/page.png", "## More to read")
+    places = [README.index(mark) for mark in marks]
+    assert places == sorted(places)
+
+
+def test_every_page_beside_scenarios_robots_and_worlds_is_linked():
+    linked = set(LINK.findall(README))
+    told = {page.relative_to(ROOT).as_posix() for page in PAGES[1:] if page.parent != ROOT}
+    assert told <= linked
+
+
+def test_every_long_run_has_its_command():
+    declared = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    markers = declared["tool"]["pytest"]["ini_options"]["markers"]
+    told = re.findall(r"(?m)^python -m pytest -m (\w+)", README)
+    assert sorted(told) == sorted(marker.partition(":")[0] for marker in markers)
 
 
 def test_the_gallery_shows_every_lesson_and_the_page_and_says_how_it_was_made():
