@@ -10,6 +10,7 @@ from harness.assertions.joints import unit_of
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, Window
+from harness.core.types import FloatArray
 from harness.recording.run import JointRecord, Measure, Run
 from harness.spec.checks import Effort, TrackingError, WithinLimits
 
@@ -67,10 +68,26 @@ def within_limits(check: WithinLimits, window: Window) -> MarginSignal:
     return all_of(window, parts, text, shown=3)
 
 
+def _is_measured(recorded: FloatArray, joint: JointRecord, what: str) -> bool:
+    """Whether something is known of a joint in a run; one that follows another has no sensor.
+
+    Raises:
+        NotObservable: Nothing is, of a joint of its own.
+    """
+    if not np.isnan(recorded).all():
+        return True
+    if joint.is_mimic:
+        return False
+    raise NotObservable(f"the {what} of {joint.name} was not recorded")
+
+
 def _position_parts(window: Window, column: int, joint: JointRecord, may_rest: bool) -> list[Part]:
     if not (math.isfinite(joint.lower) and math.isfinite(joint.upper)):
         return []
-    values = window.cut(window.run.signals.joint_positions)[:, column]
+    recorded = window.run.signals.joint_positions[:, column]
+    if not _is_measured(recorded, joint, "position"):
+        return []
+    values = window.cut(recorded)
     softness = STOP_SOFTNESS * (joint.upper - joint.lower) if may_rest else 0.0
     scale = 0.5 * (joint.upper - joint.lower) or 1.0
     unit = unit_of(joint)
@@ -94,7 +111,7 @@ def _rate_part(window: Window, column: int, joint: JointRecord, kind: str) -> li
             values = np.zeros_like(commands)
             values[1:] = np.diff(commands, axis=0) / np.diff(signals.times)[:, None]
             limit, unit = joint.acceleration, f"{unit}/s^2"
-    if not math.isfinite(limit):
+    if not math.isfinite(limit) or not _is_measured(values[:, column], joint, kind):
         return []
     size = np.abs(window.cut(values)[:, column])
     return [Part(kind, size, limit * (1 + ROUNDING), "<=", unit, limit, detail=joint.name)]
@@ -146,7 +163,9 @@ def effort(check: Effort, window: Window) -> MarginSignal:
             detail=joint.name,
         )
         for column, joint in enumerate(window.run.robot.joints)
-        if math.isfinite(joint.effort) and joint.effort > 0
+        if math.isfinite(joint.effort)
+        and joint.effort > 0
+        and _is_measured(window.run.signals.joint_efforts[:, column], joint, "effort")
     ]
     if not parts:
         raise NotObservable("no effort limits are known")

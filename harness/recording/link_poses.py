@@ -21,13 +21,25 @@ def link_poses(
         joint_positions: Columns in the order of `robot.joints`, shape (N, n).
         links: Which to return; all when None.
     """
+    wanted = None if links is None else _with_carriers(robot, links)
     columns = {joint.name: column for column, joint in enumerate(robot.joints)}
     poses: dict[str, FloatArray] = {}
     for placement in robot.placements:
         parent = poses.setdefault(placement.parent, IDENTITY[None])
+        if wanted is not None and placement.link not in wanted:
+            continue
         moved = joint_positions[:, columns[placement.joint]] if placement.joint else None
         poses[placement.link] = compose(parent, placement_poses(placement, moved))
     return poses if links is None else {name: poses[name] for name in links if name in poses}
+
+
+def _with_carriers(robot: RobotRecord, links: Collection[str]) -> set[str]:
+    """The links, and all that they hang on: the others cost memory for nothing."""
+    wanted = set(links)
+    for placement in reversed(robot.placements):
+        if placement.link in wanted:
+            wanted.add(placement.parent)
+    return wanted
 
 
 def placement_poses(placement: LinkPlacement, positions: FloatArray | None) -> FloatArray:

@@ -6,7 +6,7 @@ import re
 import shutil
 import sqlite3
 import struct
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ from harness.core.errors import SpecError
 from harness.core.resources import data_folder
 from harness.importers.bag import reader, storage
 from harness.importers.bag.content import BagTopics
-from harness.recording.run import Verdict
+from harness.recording.run import Signals, Verdict
 from harness.recording.store import read_run
 from harness.reporting.rosbag.write import BagOptions, write_bag
 from harness.session.grade import grade_bag, graded
@@ -359,6 +359,40 @@ def test_the_page_says_what_a_recording_can_show(recording, tmp_path):
     verdicts = dict(zip(EACH, (row.verdict for row in grade.rows[1:]), strict=True))
     for kind, verdict in verdicts.items():
         assert (verdict.status == "not observable") == (kind in unseen), (kind, verdict)
+        assert verdict.status != "not reached", (kind, verdict)
+    assert verdicts["within_limits"].status == verdicts["effort"].status == "passed"
+
+
+def test_limits_are_not_observable_where_a_joint_is_not_recorded(recording, tmp_path):
+    """What a follower needs no sensor for, a joint of its own does."""
+    for message in recording.of("/joint_states"):
+        message.content = {**message.content, "effort": []}
+    file = tmp_path / "limits.scenario.yaml"
+    text = SCENARIO.read_text()
+    head = text[: text.index("\nexpect:\n")]
+    file.write_text(head + "\nexpect:\n  - within_limits: {}\n  - within_limits: {effort: false}\n")
+    rows = grade_bag(file, recording.write(tmp_path / "student.mcap"), GAZEBO).rows[1:]
+    lost, kept = (row.verdict for row in rows)
+    assert (lost.status, lost.reason) == (
+        "not observable", "the efforts of the joints were not recorded",
+    )  # fmt: skip
+    assert kept.status == "passed"
+    for message in recording.of("/joint_states"):
+        names = message.content["name"]
+        kept = [place for place, name in enumerate(names) if name != "elbow_joint"]
+        for key in ("name", "position", "velocity"):
+            message.content[key] = [message.content[key][place] for place in kept]
+    rows = grade_bag(file, recording.write(tmp_path / "one_less.mcap"), GAZEBO).rows[1:]
+    lost = rows[1].verdict
+    assert (lost.status, lost.reason) == (
+        "not observable", "the position of elbow_joint was not recorded",
+    )  # fmt: skip
+
+
+def test_what_a_recording_lacks_is_named_as_a_run_has_it(recording, tmp_path):
+    run = grade_bag(SCENARIO, recording.write(tmp_path / "student.mcap"), GAZEBO).run
+    known = {entry.name for entry in fields(Signals)} | {"attachments", "steps"}
+    assert {"contact_forces", "presses", "support_forces"} <= set(run.unrecorded) <= known
 
 
 def test_points_add_up_and_count_one_each_where_none_are_given():

@@ -33,7 +33,10 @@ from harness.recording.run import (
 )
 from harness.robot.description import RobotDescription
 
-NEVER_THERE = ("contact_forces", "grip_forces", "clearances", "planned_clearances")
+NEVER_THERE = (
+    *("contact_forces", "presses", "support_forces"),
+    *("clearances", "planned_clearances"),
+)
 """Signals that no recording has."""
 JOINT_SIGNALS = (
     "joint_velocities",
@@ -90,7 +93,7 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
         content.notes.append("there are no joint states; the joints are read from /tf")
         measured = joints_of_frames(content, placements, known.description, timeline, times)
     commanded = joint_rows(content.commands, known.description, timeline, times, "/joint_commands")
-    links = link_poses(known.robot, measured.positions)
+    links = link_poses(known.robot, measured.positions, _links_needed(known, content))
     frames = Frames(content, links, timeline, times)
     poses = {obj.name: frames.pose(obj.name) for obj in known.objects if frames.knows(obj.name)}
     signals = Signals(
@@ -128,6 +131,14 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
         findings=tuple(Finding(FINDING, note) for note in notes),
         unrecorded=_unrecorded(signals, events, has_steps=bool(steps)),
     )
+
+
+def _links_needed(known: Recorded, content: BagContent) -> set[str]:
+    """Links that expectations look at, or that something else hangs on."""
+    robot = set(known.robot.link_names)
+    edges = [*content.edges, *content.static_edges, *content.objects]
+    carriers = {parent for parent, child in edges if child not in robot}
+    return {known.robot.tcp_link, *known.frames, *(carriers & robot)}
 
 
 def _unrecorded(signals: Signals, events: list[Timed], *, has_steps: bool) -> tuple[str, ...]:
