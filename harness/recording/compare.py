@@ -11,9 +11,8 @@ import numpy as np
 from harness.core.types import FloatArray
 from harness.recording.arrays import arrays_of
 from harness.recording.run import Run, StepRecord, Verdict
+from harness.recording.scenario_lines import NONE, line_changes
 from harness.recording.store import StoredRun
-
-NONE = "-"
 
 DERIVED = ("clearance", "planned_clearances")
 """Distances are measured at some samples and drawn between: they part a little too early."""
@@ -24,7 +23,8 @@ class Change:
     """One thing that differs.
 
     Attributes:
-        what: `verdict`, `step`, `trajectory`, `version`, `robot`, `seed`, `outcome` ...
+        what: `scenario` (a line of the resolved file), `verdict`, `step`, `trajectory`, `version`,
+            `robot`, `seed`, `outcome` ...
         name: Of the step, expectation or library.
         before: In the first run, in words; `-` where it has none.
         after: In the second run.
@@ -73,6 +73,7 @@ def compare(first: StoredRun, second: StoredRun) -> Comparison:
     one, two = first.run, second.run
     changes = [
         *_words("outcome", "", first.outcome, second.outcome),
+        *(Change("scenario", "", before, after) for before, after in line_changes(one, two)),
         *_words("robot", "", one.robot.name, two.robot.name),
         *_words("seed", "", str(one.seed), str(two.seed)),
         *_versions(one.versions, two.versions),
@@ -169,6 +170,7 @@ def _steps(one: Sequence[StepRecord], two: Sequence[StepRecord]) -> list[Change]
         if a is None or b is None:
             changes.append(Change("step", name, _status(a), _status(b)))
             continue
+        changes += _words("step", name, a.summary, b.summary)
         changes += _words("step", name, _status(a), _status(b))
         changes += _trajectory(name, a, b)
         lasted = a.end_time - a.start_time, b.end_time - b.start_time

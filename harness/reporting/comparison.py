@@ -10,6 +10,7 @@ from harness.reporting.terminal import PLAIN, Style
 
 HEADINGS = {
     "outcome": "outcome",
+    "scenario": "scenario",
     "robot": "robot",
     "seed": "seed",
     "version": "versions",
@@ -50,6 +51,8 @@ def _parting(first: FirstDifference | None) -> str:
 
 def _line(change: Change) -> str:
     name = f"{change.name}: " if change.name else ""
+    if change.before == change.after:
+        return f"{name}{change.before}"
     line = f"{name}{change.before} -> {change.after}"
     if change.what == "trajectory" and change.unit:
         return f"{line}, up to {change.amount:.3g} {change.unit}"

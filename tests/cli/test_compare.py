@@ -1,12 +1,15 @@
 """`harness compare`: what changed from one saved run to another."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from harness.cli.main import main
+from harness.recording.scenario_lines import MOST, line_changes
 from harness.session.run_case import run_case
+from tests.assertions.synthetic_run import make_run
 
 PICK = Path(__file__).parents[2] / "scenarios/lessons/04_ur_pick_by_friction.scenario.yaml"
 
@@ -44,6 +47,8 @@ def test_another_verdict_on_the_same_motion_is_told_with_both_margins(runs, caps
     assert "outcome\n  passed -> failed" in text
     assert "lifted green_cylinder, for 1.0 s, above 2.0 m: - -> failed by" in text
     assert "trajectories" not in text
+    asked = "lifted: {object: green_cylinder, above: %s, for: 1 s}"
+    assert f"scenario\n  {asked % '9 cm'} -> {asked % '2 m'}\nverdicts" in text
 
 
 def test_another_speed_tells_step_signal_durations_and_margins(runs, capsys):
@@ -61,3 +66,33 @@ def test_another_speed_tells_step_signal_durations_and_margins(runs, capsys):
 def test_a_folder_without_a_run_is_wrong_usage(runs, tmp_path, capsys):
     assert main(["compare", str(runs / "one"), str(tmp_path)]) == 2
     assert "is no run's folder" in capsys.readouterr().err
+
+
+def test_another_version_of_the_file_is_told_by_its_lines_and_its_steps(tmp_path, capsys):
+    text = """\
+scenario: wait
+robot: {model: ur3e, base: {xyz: [0, 0, 1.02]}}
+world: lesson_ur
+steps:
+  - wait: 0.1 s
+  - STEP
+"""
+    for name, step in (("one", "wait: 0.2 s"), ("two", "settle: {}")):
+        file = tmp_path / "wait.scenario.yaml"
+        file.write_text(text.replace("STEP", step))
+        run_case(file, report_dir=tmp_path / name, stills=False, page=False)
+    assert main(["compare", str(tmp_path / "one"), str(tmp_path / "two")]) == 1
+    said = capsys.readouterr().out
+    assert "steps[1]: wait 0.2 s -> settle" in said
+    assert "steps[0]:" not in said
+    scenario = said[said.index("scenario\n") : said.index("steps\n")]
+    assert "wait" in scenario
+    assert "settle" in scenario
+
+
+def test_many_changed_lines_are_counted():
+    runs = [replace(make_run(), resolved="\n".join(f"{word} {n}" for n in range(50)))
+            for word in ("a", "b")]  # fmt: skip
+    changes = line_changes(*runs)
+    assert changes[0] == ("a 0", "b 0")
+    assert changes[MOST] == ("30 more lines", "30 more lines")
