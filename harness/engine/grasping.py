@@ -21,10 +21,13 @@ UP = np.array([0.0, 0.0, 1.0])
 def gripper_axes(cell: Cell) -> tuple[FloatArray, FloatArray]:
     """Unit approach and closing axes in the TCP frame, shape (3,) each.
 
-    The approach axis points from the palm to the TCP, the closing axis from one pad to the other.
+    The approach axis points from the palm to the TCP, the closing axis from one pad to the other
+    with the hand open: closed, the frames of the pads may be in one place.
     """
     gripper = cell.gripper
     state = cell.planning_start()
+    state[cell.description.joint_index[gripper.joint]] = gripper.open_position
+    state = cell.description.with_mimics(state)
     world_to_tcp = cell.kinematics.link_pose(state, cell.description.tcp_link).inverse()
     palm = world_to_tcp @ cell.kinematics.link_pose(state, gripper.palm_link)
     first, second = (

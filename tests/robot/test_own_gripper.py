@@ -1,10 +1,12 @@
 """The gripper that an imported arm brings: recognised from its SRDF, or named."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 from harness.core.errors import RobotError
-from tests.engine.front_door import run
+from tests.engine.front_door import check, run
 from tests.robot.arm_files import INERTIAL, SRDF, URDF, load_arm, write_arm
 
 PALM = f"""  <link name="palm">{INERTIAL}</link>
@@ -23,6 +25,26 @@ RIGHT = FINGER.format(name="right", y=-0.01, side=-1, mimic='<mimic joint="left_
 HAND = PALM + LEFT + RIGHT
 GROUP = """  <group name="hand"><joint name="left_joint"/></group>
   <end_effector name="grip" parent_link="tool" group="hand" parent_group="manipulator"/>
+"""
+
+
+LINKS = ("base_link", "a", "b", "c", "d", "e", "tool")
+AXES = ("0 0 1", "0 1 0", "0 1 0", "0 0 1", "0 1 0", "0 0 1")
+SIX = (
+    '<robot name="six">'
+    + "".join(f'<link name="{name}">{INERTIAL}</link>' for name in LINKS)
+    + "".join(
+        f'<joint name="{after}_joint" type="revolute"><parent link="{before}"/>'
+        f'<child link="{after}"/><origin xyz="0 0 0.15"/><axis xyz="{axis}"/>'
+        '<limit lower="-3" upper="3" velocity="2" effort="100"/></joint>'
+        for (before, after), axis in zip(pairwise(LINKS), AXES, strict=True)
+    )
+    + HAND
+    + "</robot>"
+)
+SIX_SRDF = f"""<robot name="six">
+  <group name="manipulator"><chain base_link="base_link" tip_link="tool"/></group>
+{GROUP}</robot>
 """
 
 
@@ -119,3 +141,15 @@ def test_an_imported_arm_with_its_own_gripper_holds_what_it_grasps(tmp_path):
     result, saved = run(tmp_path, steps, robot=robot, rest=rest)
     assert result.outcome == "passed", [step.message for step in result.steps]
     assert np.ptp(saved.signals.joint_positions[-1][-2:]) < 1e-3, "the fingers stay coupled"
+
+
+def test_a_hand_that_starts_closed_takes_a_box_from_above(tmp_path):
+    write_arm(tmp_path, SIX, SIX_SRDF)
+    rest = """
+        objects:
+          - {name: block, pose: {xyz: [0.3, 0, 0.03]}, box: {size: [0.03, 0.05, 0.06]}}
+    """
+    found = check(
+        tmp_path, "- pick: {object: block}", robot="{urdf: arm.urdf, srdf: arm.srdf}", rest=rest
+    )
+    assert (found.problems, found.predicted) == ((), ())
