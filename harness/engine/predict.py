@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from harness.engine.dry_run import DryPlanner, DrySimulator
 from harness.engine.execute import execute_program
 from harness.engine.program import Program, ProgramStep
-from harness.ports import Kinematics, MotionPlanner, PlanningScene
+from harness.ports import Kinematics, MotionPlanner, PlanningScene, Touch
 from harness.recording.run import StepRecord
 
 
@@ -25,6 +25,27 @@ def predict(
         keep_going=True,
     )
     return execution.steps
+
+
+def touches_at_start(program: Program, scene: PlanningScene) -> tuple[Touch, ...]:
+    """What of the world's objects the robot touches where it starts, deepest first.
+
+    A gripper that opens may leave what it touched, so that no step fails of it; the physics pushes
+    it away all the same.
+
+    Args:
+        program: Whose start.
+        scene: Empty; so it is left.
+    """
+    objects = [obj for obj in program.world.objects if obj.in_planning]
+    for obj in objects:
+        scene.add_object(obj, obj.pose)
+    touches = scene.touches(program.description.start_positions())
+    for obj in objects:
+        scene.remove_object(obj.name)
+    names = {obj.name for obj in objects}
+    found = [touch for touch in touches if {touch.first, touch.second} & names]
+    return tuple(sorted(found, key=lambda touch: touch.distance))
 
 
 def _unwatched(kind: str, step: ProgramStep, record: StepRecord | None) -> None:

@@ -9,8 +9,9 @@ from pathlib import Path
 from harness.assertions.wording import describe
 from harness.core.errors import Problem, SpecError
 from harness.engine.explain import explain
-from harness.engine.predict import predict, unexpected
+from harness.engine.predict import predict, touches_at_start, unexpected
 from harness.engine.program import Loc, Program
+from harness.ports import Touch
 from harness.reporting.explanation import explanation_lines
 from harness.session.prepare import prepare
 
@@ -45,6 +46,7 @@ def check_file(
     except SpecError as error:
         return CheckResult(path.name, problems=tuple(error.problems))
     program = prepared.program
+    touches = touches_at_start(program, prepared.scene)
     records = predict(program, prepared.scene, prepared.kinematics, prepared.planner)
     predicted: dict[Problem, tuple[str, ...]] = {}
     for record in unexpected(records):
@@ -56,8 +58,13 @@ def check_file(
         predicted=tuple(predicted),
         explanations=tuple(predicted.values()),
         steps=len(program.steps),
-        notes=prepared.notes,
+        notes=(*prepared.notes, *map(_told, touches)),
     )
+
+
+def _told(touch: Touch) -> str:
+    depth = -1000 * touch.distance
+    return f"where the robot starts, {touch.first} and {touch.second} touch ({depth:.1f} mm deep)"
 
 
 def _loc(program: Program, path: str) -> Loc:

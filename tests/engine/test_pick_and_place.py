@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.engine.front_door import UR, failures, run
+from tests.engine.front_door import UR, check, failures, run
 
 OM = "{model: open_manipulator_x, base: {xyz: [0, 0, 1.02]}}"
 
@@ -219,3 +219,19 @@ def test_a_grasp_that_is_blocked_is_taken_another_way(tmp_path, shape, grasps, t
     assert step.result["grasps"] == grasps
     assert step.result["grasp"] == max(taken, 1)
     assert result.outcome == ("passed" if taken else "failed"), failures(result)
+
+
+@pytest.mark.parametrize(("width", "touching"), [(0.046, 2), (0.040, 0)])
+def test_what_the_hand_touches_at_the_start_is_told_though_it_opens_first(
+    tmp_path, width, touching
+):
+    box = f"{{name: box, box: {{size: [0.02, {width}, 0.02]}}, pose: {{xyz: [0.286, 0, 0.188]}}}}"
+    found = check(
+        tmp_path,
+        "- pick: {object: box}",
+        robot="open_manipulator_x",
+        rest=f"objects: [{box}]",
+    )
+    told = [note for note in found.notes if note.startswith("where the robot starts")]
+    assert len(told) == touching
+    assert all("and box touch (2.0 mm deep)" in note for note in told)
