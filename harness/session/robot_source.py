@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -12,14 +13,25 @@ import numpy as np
 from harness.core.errors import RobotError
 from harness.core.types import FloatArray
 from harness.robot.description import RobotDescription
+from harness.robot.find_file import find_file
 from harness.robot.load import load_robot
 from harness.spec.load import load_scenario
 from harness.spec.mistakes import did_you_mean
 from harness.spec.scenario import RobotSpec
-from harness.spec.xml_file import read_xml
+from harness.spec.xml_file import XmlElement, read_xml
 
 ROBOT_YAML = "robot.yaml"
 KINDS = {".urdf": "urdf", ".xacro": "xacro", ".xml": "mjcf", ".mjcf": "mjcf"}
+XACRO_PREFIX = "xacro:"
+OPTIONS = {
+    "srdf": "--srdf",
+    "packages": "--package-path",
+    "gripper": "--gripper",
+    "args": "--args",
+    "group": "--group",
+    "tcp_link": "--tcp-link",
+}
+"""Fields that a scenario's own robot leaves no room for, by what the command line calls them."""
 
 
 @dataclass(frozen=True)
@@ -44,17 +56,26 @@ class RobotSource:
     tcp_link: str = ""
     group: str = ""
 
-    @property
+    @cached_property
     def kind(self) -> str:
-        """`urdf`, `xacro`, `mjcf`, `scenario` or `model`."""
+        """`urdf`, `xacro`, `mjcf`, `scenario` or `model`; of XML what it says, however it is named.
+
+        Raises:
+            SpecError: The file is no XML that can be read.
+        """
         path = Path(self.word)
         if path.name == ROBOT_YAML:
             return "model"
         if path.suffix.lower() in (".yaml", ".yml"):
             return "scenario"
-        if path.suffix.lower() == ".xml" and path.is_file():
-            return "urdf" if read_xml(path).tag == "robot" else "mjcf"
-        return KINDS.get(path.suffix.lower(), "model")
+        kind = KINDS.get(path.suffix.lower(), "model")
+        root = self._root() if kind in ("urdf", "mjcf") else None
+        if root is None or root.tag not in ("robot", "mujoco"):
+            return kind
+        if root.tag == "mujoco":
+            return "mjcf"
+        is_xacro = any(item.tag.startswith(XACRO_PREFIX) for item in root.walk())
+        return "xacro" if is_xacro else "urdf"
 
     @property
     def has_no_srdf(self) -> bool:
@@ -64,8 +85,8 @@ class RobotSource:
     @property
     def own_name(self) -> str:
         """What a URDF file that can be read calls its robot; else empty."""
-        path = Path(self.word)
-        return read_xml(path).get("name") if self.kind == "urdf" and path.is_file() else ""
+        root = self._root() if self.kind == "urdf" else None
+        return "" if root is None else root.get("name")
 
     def words(self) -> dict[str, Any]:
         """What a scenario's `robot:` would say, not of a scenario."""
@@ -81,6 +102,14 @@ class RobotSource:
                 words[key] = getattr(self, key)
         return words
 
+    def _root(self) -> XmlElement | None:
+        """The root element of a robot's file; None where there is no file."""
+        try:
+            path = find_file(self.word, "urdf", Path(), [Path(each) for each in self.packages])
+        except RobotError:
+            return None
+        return read_xml(path)
+
 
 def load(source: RobotSource) -> RobotDescription:
     """The robot, composed.
@@ -91,6 +120,9 @@ def load(source: RobotSource) -> RobotDescription:
     """
     if source.kind == "scenario":
         path = Path(source.word)
+        for option in OPTIONS:
+            if getattr(source, option):
+                raise RobotError(f"'{path}' says its robot itself: {OPTIONS[option]} is for others")
         return load_robot(load_scenario(path).scenario.robot, path.parent)
     return load_robot(RobotSpec.model_validate(source.words()))
 

@@ -15,7 +15,7 @@ from harness.planning.kinematics import PinocchioKinematics
 from harness.planning.pair_statistics import random_positions, self_touches
 from harness.robot.description import Inertial
 from harness.robot.srdf import parse_srdf
-from harness.session import robot_findings
+from harness.session import robot_check, robot_findings
 from tests.robot.arm_files import INERTIAL, LIMIT, SHAPE, SRDF, URDF, load_arm, write_arm
 from tests.robot.models import Arm, robot
 
@@ -104,9 +104,10 @@ UNIT = INERTIAL.replace('ixx="0.01" iyy="0.01" izz="0.002"', 'ixx="1" iyy="1" iz
     ],
     ids=["triangle", "states"],
 )  # fmt: skip
-def test_what_is_wrong_is_exit_code_1_and_told(old, new, said, folder, capsys):
+def test_what_is_wrong_is_exit_code_1_and_told(old, new, said, folder, monkeypatch, capsys):
     assert old in URDF
     write_arm(folder, URDF.replace(old, new), SRDF.replace('link2="wrist"', 'link2="tool"'))
+    monkeypatch.setattr(robot_check, "IK_SAMPLES", 5)
     code, page = check(capsys, "arm.urdf", "--srdf", "arm.srdf")
     assert code == 1
     assert said in page
@@ -123,8 +124,9 @@ def test_what_is_wrong_is_exit_code_1_and_told(old, new, said, folder, capsys):
         (URDF.replace('"tool"/>', f'"tool">{SHAPE}</link>', 1), "no <inertial>: tool"),
     ],
 )  # fmt: skip
-def test_what_looks_doubtful_is_told_and_is_no_failure(urdf, said, folder, capsys):
+def test_what_looks_doubtful_is_told_and_is_no_failure(urdf, said, folder, monkeypatch, capsys):
     write_arm(folder, urdf)
+    monkeypatch.setattr(robot_check, "IK_SAMPLES", 5)
     code, page = check(capsys, "arm.urdf", "--srdf", "arm.srdf")
     assert code == 0
     assert said in page
@@ -262,6 +264,7 @@ def test_a_picture_is_drawn_on_request(folder, capsys):
         (["check", "arm.urdf", "--image", "arm.gif"], "in .png or .jpg or .jpeg, not 'arm.gif'"),
         (["show", "arm.urdf", "--state", "hom"], "there is no state 'hom'; there are no states"),
         (["show", "arm.urdf", "--srdf", "arm.srdf", "--state", "hom"], "did you mean `home`?"),
+        (["check", "cell.yaml", "--gripper", "hand"], "its robot itself: --gripper is for others"),
         (["check", "arm.urdf", "--package-path", "no"], "robot.packages: there is no folder no"),
     ],
 )  # fmt: skip
@@ -285,6 +288,15 @@ def test_a_robot_that_is_never_free_is_told_so(capsys):
     assert code == 1
     assert "✗ reach: no configuration is free of self-collision" in page
     assert "inverse kinematics" not in page
+
+
+def test_a_xacro_file_is_known_by_its_content_too(folder, capsys):
+    root = '<robot name="three" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+    text = URDF.replace('<robot name="three">', f'{root}<xacro:arg name="high" default="2"/>')
+    (folder / "drawn.urdf").write_text(text.replace('upper="2"', 'upper="$(arg high)"'))
+    code, page = check(capsys, "drawn.urdf", "--srdf", "arm.srdf", "--args", "high=1.5")
+    assert code == 0
+    assert re.search(r"bend +revolute +-2 +1.5", page)
 
 
 def test_a_scenario_and_a_folder_name_a_robot_too(folder, capsys):
