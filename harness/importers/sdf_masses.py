@@ -65,7 +65,7 @@ def link_masses(
         link: The `<link>`.
         shapes: Its collisions with what they became, placed on the object; for automatic inertia.
         T_object_link: Where the link stands on the object.
-        notes: Told of a link without inertial.
+        notes: Told of a link without inertial or inertia.
 
     Raises:
         SpecError: No body can have these numbers.
@@ -82,6 +82,9 @@ def link_masses(
         (inertial.find("mass") or inertial).refuse(
             f"what can move has a mass above 0, not {mass:g} kg", "or say <static>true</static>"
         )
+    if inertial.find("inertia") is None:
+        message = "an <inertial> without <inertia> has 1 kg m^2 about each axis, as SDF has it"
+        notes.add(inertial.place, message)
     tensor = _tensor(inertial)
     own = MassProperties(mass, np.zeros(3), tensor).placed(pose_of(inertial).pose)
     return own.placed(T_object_link)

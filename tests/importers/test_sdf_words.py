@@ -310,6 +310,23 @@ def test_equal_notes_are_one_with_their_number(tmp_path):
     assert str(note).endswith("there is no battery (2 times; here first)")
 
 
+@pytest.mark.parametrize(
+    ("inertial", "told"),
+    [
+        ("<inertial><mass>1</mass></inertial>", "has 1 kg m^2 about each axis"),
+        ("", "has 1 kg and 1 kg m^2"),
+    ],
+)
+def test_what_sdf_takes_for_a_missing_inertia_is_told(tmp_path, inertial, told):
+    tensor = "<inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia>"
+    given = f"<inertial><mass>1</mass>{tensor}</inertial>"
+    text = text_with()
+    assert given in text
+    assert not any(told in note.message for note in load(tmp_path, text).notes)
+    found = load(tmp_path, text.replace(given, inertial, 1))
+    assert any(told in note.message for note in found.notes)
+
+
 AUTOMATIC = text_with("inertial", "").replace(
     "<inertial><mass>2</mass>\n     <inertia><ixx>0.02</ixx><iyy>0.02</iyy>"
     "<izz>0.02</izz></inertia></inertial>",
