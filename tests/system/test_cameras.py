@@ -86,7 +86,7 @@ def test_pictures_change_no_sample_of_the_physics(tmp_path):
         path = tmp_path / f"{number}.scenario.yaml"
         path.write_text(text.replace("color, depth, segmentation", kinds))
         folder = tmp_path / str(number)
-        run_case(path, report_dir=folder, stills=False)
+        run_case(path, report_dir=folder, stills=False, page=False)
         signals.append(read_run(folder).run.signals)
     np.testing.assert_array_equal(signals[0].joint_positions, signals[1].joint_positions)
     for name, rows in signals[0].object_poses.items():
@@ -103,12 +103,12 @@ def test_a_video_has_a_time_for_every_frame_within_the_run(case):
 
 
 def test_a_run_of_a_camera_is_the_same_twice_to_the_byte(tmp_path):
-    text = GRIPPER.read_text().split("  - lin:")[0]
+    text = GRIPPER.read_text().split("  - lin:")[0].replace("rate: 5 Hz", "rate: 2 Hz")
     path = tmp_path / "short.scenario.yaml"
     path.write_text(text)
     runs = []
     for number in range(2):
-        run_case(path, report_dir=tmp_path / str(number), stills=False)
+        run_case(path, report_dir=tmp_path / str(number), stills=False, page=False)
         runs.append(read_run(tmp_path / str(number)).run)
     first, second = (dict(run.files) for run in runs)
     assert first == second
