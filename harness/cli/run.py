@@ -233,6 +233,8 @@ def _command(arguments: argparse.Namespace, job: CaseJob) -> str:
         words += ["--seed", str(arguments.seed)]
     if arguments.samples is not None:
         words += ["--samples", str(arguments.samples)]
+    if arguments.bag:
+        words.append("--bag")
     if arguments.report_dir != "reports":
         words += ["--report-dir", arguments.report_dir]
     return shlex.join(words)

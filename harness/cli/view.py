@@ -29,11 +29,17 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _page(path: Path, *, is_rebuilt: bool) -> Path:
+    """A run's page, or the page of a folder of many runs."""
     from harness.recording.store import PAGE, RUN
+    from harness.reporting.suite import write as suite
 
     folder = path if path.is_dir() else path.parent
     if not path.exists() or not (folder / RUN).is_file():
-        raise UsageError(f"'{path}' is no run's folder: it has no {RUN}")
+        if all((folder / name).is_file() for name in (suite.PAGE, suite.RESULTS)):
+            return folder / suite.PAGE
+        below = next(folder.glob(f"**/{RUN}"), None) if path.is_dir() else None
+        hint = f"; a run is in '{below.parent}'" if below else ""
+        raise UsageError(f"'{path}' is no run's folder: it has no {RUN}{hint}")
     page = folder / PAGE
     if is_rebuilt or not page.is_file():
         from harness.reporting.html.write import write_page

@@ -2,6 +2,7 @@
 
 import pytest
 
+from harness.cli.main import main
 from harness.reporting.suite.write import write_suite
 from tests.reporting.suites import large_suite, small_suite
 
@@ -84,3 +85,12 @@ def test_without_scripts_and_on_a_phone_every_row_is_there(small, visit):
     assert not page.locator("#search").is_visible()
     phone = visit(small, width=390).page
     assert phone.evaluate("document.documentElement.scrollWidth") <= 390
+
+
+def test_view_opens_the_page_of_many_runs_and_says_where_a_run_is(small, tmp_path, capsys):
+    assert main(["view", str(small.parent), "--no-open"]) == 0
+    assert capsys.readouterr().out == f"{small}\n"
+    (tmp_path / "pick").mkdir()
+    (tmp_path / "pick/run.json").write_text("{}")
+    assert main(["view", str(tmp_path), "--no-open"]) == 2
+    assert f"a run is in '{tmp_path}/pick'" in capsys.readouterr().err

@@ -85,7 +85,7 @@ def _rates(rates: Sequence[SampledRate]) -> str:
     rows = "".join(_rate(each) for each in sorted(rates, key=lambda each: each.outcome == "passed"))
     return (
         '<section class="panel"><h2>Success rates of samples <span class="key">bar: interval'
-        " · black: measured · blue: asked</span></h2>"
+        " · stroke: measured · blue: asked</span></h2>"
         f'<div class="rates">{rows}</div></section>'
     )
 
