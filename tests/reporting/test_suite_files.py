@@ -2,17 +2,20 @@
 
 import json
 import math
+from dataclasses import replace
 from xml.etree import ElementTree as ET
 
 import pytest
 
 from harness.reporting.margins import margin_share, worst
+from harness.reporting.sampled import SampledRate
 from harness.reporting.suite.cause import cause_of, short_lines
 from harness.reporting.suite.github import error_annotations, job_summary
 from harness.reporting.suite.history import history_of
 from harness.reporting.suite.junit import junit_xml
-from harness.reporting.suite.record import SuiteRecord
+from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.reporting.suite.write import write_suite
+from harness.suite.rates import rate_of
 from tests.reporting.suites import BROKEN, INVALID, STUCK, failed, large_suite, passed, small_suite
 
 # element -> (required attributes, further ones, children in the order that all schemas know)
@@ -45,8 +48,8 @@ def check_schema(element):
 def test_junit_is_what_every_reader_of_it_knows():
     root = ET.fromstring(junit_xml(small_suite()))
     check_schema(root)
-    assert root.attrib["tests"] == "5"
-    assert (root.attrib["failures"], root.attrib["errors"]) == ("2", "2")
+    assert root.attrib["tests"] == "6", "five cases and a rate"
+    assert (root.attrib["failures"], root.attrib["errors"]) == ("3", "2")
     assert [suite.attrib["name"] for suite in root][:3] == [
         "a/pick.scenario.yaml", "b/place.scenario.yaml", "c/typo.scenario.yaml"
     ]  # fmt: skip
@@ -65,6 +68,23 @@ def test_junit_names_seed_digest_margins_requirements_and_report():
     said = second.find("system-out").text
     assert "report: a/pick/c1/report.html#t=2.00&expect=2" in said
     assert "[[ATTACHMENT|" in said
+
+
+@pytest.mark.parametrize(("asked", "failures"), [(0.4, 0), (0.9, 1)])
+def test_samples_may_fail_in_junit_and_a_rate_that_is_not_shown_may_not(asked, failures):
+    samples = [replace(failed(0), case="ur3e-sample0")]
+    samples += [replace(passed(1), case=f"ur3e-sample{number}") for number in range(1, 12)]
+    rate = rate_of([False] + [True] * 11, asked, 0.95, stop_early=False)
+    outcome = "failed" if failures else "passed"
+    rates = [SampledRate("a/pick.scenario.yaml", "ur3e", rate, outcome)]
+    root = ET.fromstring(junit_xml(SuiteRecord(outcome, [*map(SuiteCase, samples)], rates)))
+    check_schema(root)
+    assert (root.attrib["tests"], root.attrib["failures"]) == ("13", str(failures))
+    first, *_, last = root.iter("testcase")
+    assert first.find("failure") is None
+    assert first.find("system-out").text.startswith("failed, as samples may")
+    assert last.attrib["name"] == "success rate ur3e"
+    assert len(last.findall("failure")) == failures
 
 
 def test_results_are_strict_json_with_the_worst_margin(tmp_path):
@@ -104,7 +124,7 @@ def test_annotations_stand_at_their_lines_and_cannot_be_broken_out_of():
 
 def test_the_job_summary_has_the_worst_first_and_keeps_text_text():
     lines = job_summary(small_suite()).splitlines()
-    assert lines[0] == "## 💥 armharness: 1 of 5 passed"
+    assert lines[0] == "## 💥 armharness: 1 of 5 passed; 1 of 1 rates not shown"
     rows = [line for line in lines if line.startswith("| ")][1:]
     assert rows[0].startswith("| ❌ | Pick")
     assert rows[-1].startswith("| ✅ |")

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from harness.core.errors import Problem
 from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import CaseResult
-from harness.reporting.sampled import rate_line
+from harness.reporting.sampled import missed, rate_line
 from harness.reporting.suite.cause import cause_of
 from harness.reporting.suite.record import SuiteRecord
 
@@ -55,7 +55,8 @@ def job_summary(record: SuiteRecord) -> str:
     """Markdown: the count, a table with the worst first, and the rates of samples."""
     results = [case.result for case in record.cases]
     passed = sum(result.outcome == "passed" for result in results)
-    lines = [f"## {SIGNS[record.outcome]} armharness: {passed} of {len(results)} passed", ""]
+    told = "; ".join(filter(None, (f"{passed} of {len(results)} passed", missed(record.rates))))
+    lines = [f"## {SIGNS[record.outcome]} armharness: {told}", ""]
     lines += [f"- {rate_line(_cell(f'{r.file} {r.group}'.strip()), r.rate)}" for r in record.rates]
     lines += ["", "| | case | nearest to failing | why |", "|---|---|---|---|"]
     order = sorted(results, key=_urgency)

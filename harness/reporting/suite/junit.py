@@ -15,6 +15,7 @@ from xml.etree import ElementTree as ET
 from harness.recording.run import Verdict
 from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import CaseResult
+from harness.reporting.sampled import SampledRate, rate_line
 from harness.reporting.suite.cause import cause_of
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.reporting.terminal import causes, report_link
@@ -23,28 +24,40 @@ NAME = "armharness"
 ILLEGAL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 """What XML 1.0 cannot hold."""
 
+SAMPLE = re.compile(r"(?:^|-)sample\d+$")
+"""What the name of a sample adds to its group's."""
+
 
 def junit_xml(record: SuiteRecord) -> str:
-    """A document with one `testsuite` a scenario file; times are of the wall clock."""
+    """A document with one `testsuite` a scenario file; times are of the wall clock.
+
+    Samples may fail where a success rate is asked for: the rate is a `testcase` of its own, with
+    the `failure` when it is not shown.
+    """
     suites = ET.Element("testsuites", name=NAME)
     files: dict[str, list[SuiteCase]] = {}
     for case in record.cases:
         files.setdefault(case.result.file, []).append(case)
     for file, cases in files.items():
-        suite = ET.SubElement(suites, "testsuite", {"name": _legal(file), **_counts(cases)})
+        rates = [each for each in record.rates if each.file == file]
+        counts = _counts(cases, rates)
+        suite = ET.SubElement(suites, "testsuite", {"name": _legal(file), **counts})
         for case in cases:
-            _add_case(suite, case)
-    for name, count in _counts(record.cases).items():
+            _add_case(suite, case, rates)
+        for rate in rates:
+            _add_rate(suite, rate)
+    for name, count in _counts(record.cases, record.rates).items():
         suites.set(name, count)
     ET.indent(suites)
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(suites, encoding="unicode")}\n'
 
 
-def _counts(cases: Sequence[SuiteCase]) -> dict[str, str]:
-    outcomes = [case.result.outcome for case in cases]
+def _counts(cases: Sequence[SuiteCase], rates: Sequence[SampledRate]) -> dict[str, str]:
+    outcomes = [case.result.outcome for case in cases if not _may_fail(case.result, rates)]
+    outcomes += [rate.outcome for rate in rates]
     time = sum(_seconds(case.result) for case in cases)
     return {
-        "tests": str(len(cases)),
+        "tests": str(len(cases) + len(rates)),
         "failures": str(outcomes.count("failed")),
         "errors": str(outcomes.count("error") + outcomes.count("invalid")),
         "skipped": "0",
@@ -52,30 +65,51 @@ def _counts(cases: Sequence[SuiteCase]) -> dict[str, str]:
     }
 
 
-def _add_case(suite: ET.Element, case: SuiteCase) -> None:
+def _may_fail(result: CaseResult, rates: Sequence[SampledRate]) -> bool:
+    """Whether a case failed as one of samples, of which a rate tells what it means."""
+    return result.outcome == "failed" and any(
+        result.file == rate.file
+        and SAMPLE.sub("", result.case) == rate.group
+        and SAMPLE.search(result.case)
+        for rate in rates
+    )
+
+
+def _element(suite: ET.Element, file: str, name: str, seconds: float) -> ET.Element:
+    place = ".".join(Path(file).with_suffix("").with_suffix("").parts).strip("./")
+    said = {"name": name, "classname": place, "file": file, "time": f"{seconds:.3f}"}
+    return ET.SubElement(suite, "testcase", {key: _legal(value) for key, value in said.items()})
+
+
+def _add_rate(suite: ET.Element, sampled: SampledRate) -> None:
+    rate, name = sampled.rate, f"success rate {sampled.group}".strip()
+    element = _element(suite, sampled.file, name, 0.0)
+    properties = ET.SubElement(element, "properties")
+    for key, value in (("passed", rate.passed), ("samples", rate.total)):
+        ET.SubElement(properties, "property", name=key, value=str(value))
+    if sampled.outcome != "passed":
+        said = _legal(rate_line(f"{sampled.file} {sampled.group}".strip(), rate))
+        ET.SubElement(element, "failure", message=said, type="success rate").text = said
+
+
+def _add_case(suite: ET.Element, case: SuiteCase, rates: Sequence[SampledRate]) -> None:
     result = case.result
     name = f"{result.title}[{result.case}]" if result.case else result.title
-    place = ".".join(Path(result.file).with_suffix("").with_suffix("").parts).strip("./")
-    element = ET.SubElement(
-        suite,
-        "testcase",
-        name=_legal(name),
-        classname=_legal(place),
-        file=_legal(result.file),
-        time=f"{_seconds(result):.3f}",
-    )
+    element = _element(suite, result.file, name, _seconds(result))
     properties = ET.SubElement(element, "properties")
     for key, value in case_properties(case):
         ET.SubElement(properties, "property", name=_legal(key), value=_legal(value))
-    cause = cause_of(result)
-    if cause is not None:
+    cause, lines = cause_of(result), list[str]()
+    if cause is not None and _may_fail(result, rates):
+        lines += ["failed, as samples may; their rate is judged", *causes(result)]
+    elif cause is not None:
         kind = "failure" if result.outcome == "failed" else "error"
         told = ET.SubElement(element, kind, message=_legal(cause.said), type=_legal(cause.group))
         told.text = _legal("\n".join(causes(result)))
     if result.report_dir:
-        out = ET.SubElement(element, "system-out")
-        lines = [f"report: {report_link(result)}", *_attachments(result)]
-        out.text = _legal("\n".join(lines))
+        lines += [f"report: {report_link(result)}", *_attachments(result)]
+    if lines:
+        ET.SubElement(element, "system-out").text = _legal("\n".join(lines))
 
 
 def _seconds(result: CaseResult) -> float:
