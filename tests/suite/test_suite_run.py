@@ -172,7 +172,7 @@ def test_a_mistake_in_one_value_is_told_of_its_cases_alone(varied):
     assert "[0.05_s-1]: ok" in done.stdout
     ran = harness("run", path, "--no-report", cwd=path.parent)
     assert ran.returncode == 2
-    assert "4 passed, 2 invalid of 6 cases" in ran.stdout
+    assert "2 invalid, 4 passed of 6 cases" in ran.stdout
 
 
 def test_a_mistake_of_the_file_is_told_once_not_for_every_sample(varied):
