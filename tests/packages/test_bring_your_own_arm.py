@@ -33,6 +33,7 @@ def walked(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
         patch.setenv("COLUMNS", "200")
+        patch.setenv("NO_COLOR", "1")
         for language, text in BLOCKS:
             if language == "sh":
                 said = "".join(_run(line) for line in text.splitlines() if "pip" not in line)
@@ -41,10 +42,17 @@ def walked(tmp_path_factory):
     return folder, shown
 
 
+class Terminal(io.TextIOWrapper):
+    """Text for somebody who watches: a run is quiet in a pipe."""
+
+    def isatty(self):
+        return True
+
+
 def _run(line):
     program, *arguments = shlex.split(line)
     assert program == "harness"
-    stream = io.TextIOWrapper(io.BytesIO(), encoding="utf-8", write_through=True)
+    stream = Terminal(io.BytesIO(), encoding="utf-8", write_through=True)
     with contextlib.redirect_stdout(stream), contextlib.redirect_stderr(stream):
         code = main(arguments)
     said = stream.buffer.getvalue().decode()
