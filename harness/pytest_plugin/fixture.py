@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from harness.pytest_plugin.item import report_root, server_of, shown
+from harness.pytest_plugin.running import report_root, server_of, shown
 from harness.reporting.result import CaseResult
 from harness.suite.api import ScenarioResult, run_in_process, run_scenario
 from harness.suite.cases import CaseJob, run_isolated

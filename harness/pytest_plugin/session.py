@@ -30,7 +30,7 @@ class SessionResults:
     def pytest_sessionfinish(self) -> None:
         if not self.told:
             return
-        from harness.pytest_plugin.item import report_root
+        from harness.pytest_plugin.running import report_root
         from harness.pytest_plugin.session_files import from_plains, small_margins, write_files
 
         records = from_plains(list(self.told.values()))

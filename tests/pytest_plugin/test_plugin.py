@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 import pytest
 
 # pytester forgets modules that are new in its runs, and native ones come once only
-import harness.pytest_plugin.item
+import harness.pytest_plugin.running
 import harness.spec.yaml_file  # noqa: F401
 
 HOLDS = """\
@@ -283,3 +283,16 @@ def test_margins_are_in_junit_and_told_when_they_get_small(pytester, write):
     assert [value for name, value in found if name == "verifies"] == ["REQ-4", "REQ-5"]
     assert ("margin:duration, at most 0.1 s", "0.003 s") in found
     assert ("worst_margin", "duration, at most 0.1 s") in found
+
+
+def test_collecting_scenarios_imports_nothing_native(write):
+    write(holds=HOLDS + "parametrize: {seed: [1, 2, 3]}\n")
+    code = """if True:
+        import sys, pytest
+        pytest.main(["--collect-only", "-q", "-p", "no:cacheprovider", "-p", "no:randomly"])
+        native = {"numpy", "mujoco", "pinocchio", "coal", "ompl", "toppra", "cv2", "pydantic"}
+        print("imported:", sorted(native & set(sys.modules)))
+    """
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "Hold still[3]" in done.stdout
+    assert "imported: []" in done.stdout
