@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.assertions import temporal
+from harness.assertions.orientation import against
 from harness.assertions.registry import MarginSignal
 from harness.assertions.temporal import Decision, TooShort, longest_hold
 from harness.assertions.text import amount
@@ -101,7 +102,9 @@ def decide(terms: Terms, window: Window, margins: MarginSignal) -> Verdict:
         unit = evidence.unit
     reason = evidence.text + (f" at t={time:.3f} s" if evidence.is_moment else "")
     reason += _held(terms, values, times, decision)
-    measures = evidence.measures
+    measures = tuple(evidence.measures)
+    if terms.word == "never" or terms.predicate.check == "collision":
+        measures = against(measures, is_passed=decision.holds)
     return Verdict("", status, margin + 0.0, unit, time, reason=reason, measures=measures)
 
 

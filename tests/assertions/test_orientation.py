@@ -1,0 +1,39 @@
+"""What a verdict of `never` says of its measures stands as its status does."""
+
+import math
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from harness.assertions.orientation import against, holds
+from harness.recording.run import Measure
+
+numbers = st.floats(-10, 10).map(lambda value: round(value, 3))
+measures = st.lists(
+    st.builds(
+        Measure, st.just("height"), numbers, numbers, st.sampled_from(["<=", ">="]), st.just("m"),
+        st.just(1.0),
+    ),
+    min_size=1, max_size=4,
+)  # fmt: skip
+
+
+@given(measures)
+def test_no_measure_of_a_verdict_contradicts_it(found):
+    holds_as_predicate = all(map(holds, found))
+    told = against(found, is_passed=not holds_as_predicate)
+    limited = [each for each in told if math.isfinite(each.limit)]
+    assert limited
+    touching = [each for each in limited if each.value == each.limit]
+    if holds_as_predicate:
+        assert all(not holds(each) for each in limited if each not in touching)
+    else:
+        assert all(map(holds, limited))
+    assert [each.value for each in told] == [each.value for each in found]
+
+
+def test_measures_that_speak_against_the_predicate_stay():
+    force = Measure("contact force", 0.0, 0.0, "<=", "N", 1.0)
+    assert against([force], is_passed=True) == (force,)
+    hit = Measure("contact force", 4.0, 0.0, "<=", "N", 1.0)
+    assert against([hit], is_passed=False) == (hit,)
