@@ -109,7 +109,7 @@ def test_one_command_prints_plots_and_keeps_the_numbers(file, tmp_path, capsys):
     ("arguments", "said"),
     [
         (["--planners", "RRTConect"], "did you mean 'RRTConnect'?"),
-        (["--planners", "CHOMP"], "unknown planner 'CHOMP'"),
+        (["--planners", "CHOMP"], "planner 'CHOMP' is refused"),
         (["--planners", "PRM"], "planner 'PRM' is refused"),
     ],
 )

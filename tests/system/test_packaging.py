@@ -10,7 +10,8 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 TEST_COMMAND = (
-    "python3 -m venv .venv && .venv/bin/pip install -q -e '.[dev]' && .venv/bin/python -m pytest"
+    "python3 -m venv .venv && .venv/bin/pip install -q -e '.[dev]' && "
+    ".venv/bin/python -m pytest -n auto"
 )
 DEMO_COMMAND = (
     "python3 -m venv .venv && .venv/bin/pip install -q . && "
