@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import shlex
 import sys
 import time
@@ -103,6 +102,9 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
 
 def _write(arguments: argparse.Namespace, suite: SuiteRun) -> Path | None:
     """The files of a suite; GitHub's summary of the job where there is one."""
+    from harness.reporting.suite.github import append_summary
+
+    append_summary(suite.record)
     page = None
     if not arguments.no_report and len(suite.plan) > 1 and arguments.repeat == 1:
         from harness.reporting.suite.history import history_of
@@ -110,12 +112,6 @@ def _write(arguments: argparse.Namespace, suite: SuiteRun) -> Path | None:
 
         history = history_of(Path(arguments.history)) if arguments.history else {}
         page = write_suite(Path(arguments.report_dir), suite.record, suite.exit_code, history)
-    told = os.environ.get("GITHUB_STEP_SUMMARY")
-    if told:
-        from harness.reporting.suite.github import job_summary
-
-        with Path(told).open("a", encoding="utf-8") as summary:
-            summary.write(job_summary(suite.record))
     return page
 
 
@@ -148,6 +144,7 @@ def _tell(
 ) -> None:
     """Failures, rates, tables and the last lines."""
     from harness.reporting.sampled import missed
+    from harness.reporting.suite.github import annotations_for_action
     from harness.reporting.terminal import Style, repeats, report_link, summary
 
     style = Style.of(sys.stdout)
@@ -172,11 +169,8 @@ def _tell(
     elif written:
         one = report_link(written[0], style)
         say(f"report: {one}" if len(written) == 1 else f"reports: {arguments.report_dir}")
-    if os.environ.get("GITHUB_ACTIONS") == "true":
-        from harness.reporting.suite.github import error_annotations
-
-        for line in error_annotations(list(suite.results.values())):
-            say(line)
+    for line in annotations_for_action(suite.record):
+        say(line)
     if suite.is_interrupted:
         complain(f"interrupted: {suite.missing} of {len(suite.jobs)} runs did not finish")
         if len(suite.jobs) > 1 and arguments.repeat == 1 and not arguments.no_report:

@@ -35,6 +35,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--harness-no-report", action="store_true", default=False, help="write no reports"
     )
     group.addoption(
+        "--harness-history",
+        metavar="DIR",
+        default=None,
+        help="a folder of earlier results.json files, whose margins the session's page shows",
+    )
+    group.addoption(
         "--harness-in-process",
         action="store_true",
         default=False,

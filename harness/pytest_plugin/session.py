@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -30,14 +31,28 @@ class SessionResults:
     def pytest_sessionfinish(self) -> None:
         if not self.told:
             return
+        from harness.core.errors import HarnessError
         from harness.pytest_plugin.running import report_root
-        from harness.pytest_plugin.session_files import from_plains, small_margins, write_files
+        from harness.pytest_plugin.session_files import (
+            from_plains,
+            small_margins,
+            suite_of,
+            write_files,
+        )
+        from harness.reporting.suite.github import annotations_for_action, append_summary
 
         records = from_plains(list(self.told.values()))
         self._lines = small_margins(records, getattr(self._config, "cache", None))
-        folder = report_root(self._config)
-        if folder is not None and (line := write_files(folder, records)):
+        folder, suite = report_root(self._config), suite_of(records)
+        asked = self._config.getoption("--harness-history")
+        history = Path(asked) if asked else None
+        if folder is not None and (line := write_files(folder, suite, history)):
             self._lines.append(line)
+        try:
+            append_summary(suite)
+        except HarnessError as error:
+            self._lines.append(str(error))
+        self._lines += annotations_for_action(suite)
 
     def pytest_terminal_summary(self, terminalreporter: Any) -> None:
         if self._lines:

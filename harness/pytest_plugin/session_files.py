@@ -57,22 +57,35 @@ def from_plains(plains: Sequence[Any]) -> list[ItemRecord]:
     return sorted(records, key=lambda each: (each.cases[0].result.file, each.number))
 
 
-def write_files(folder: Path, records: Sequence[ItemRecord]) -> str:
+def suite_of(records: Sequence[ItemRecord]) -> SuiteRecord:
+    """The session's scenarios as one suite."""
+    outcomes: list[Outcome] = [told for each in records for told in each.outcomes]
+    return SuiteRecord(
+        max(outcomes, key=EXIT_CODES.__getitem__),
+        [case for each in records for case in each.cases],
+        [rate for each in records for rate in each.rates],
+    )
+
+
+def write_files(folder: Path, suite: SuiteRecord, history: Path | None) -> str:
     """Write `index.html`, `junit.xml` and `results.json` of more than one case.
+
+    Args:
+        folder: Of the session's reports.
+        suite: What it came to.
+        history: A folder of earlier results, whose margins the page shows.
 
     Returns:
         A line on where the page is, or why there is none; empty for one case.
     """
+    from harness.reporting.suite.history import history_of
     from harness.reporting.suite.write import write_suite
 
-    cases = [case for each in records for case in each.cases]
-    if len(cases) < 2:
+    if len(suite.cases) < 2:
         return ""
-    rates = [rate for each in records for rate in each.rates]
-    outcomes: list[Outcome] = [told for each in records for told in each.outcomes]
-    gravest = max(outcomes, key=EXIT_CODES.__getitem__)
+    earlier = history_of(history) if history else {}
     try:
-        page = write_suite(folder, SuiteRecord(gravest, cases, rates), EXIT_CODES[gravest])
+        page = write_suite(folder, suite, EXIT_CODES[suite.outcome], earlier)
     except HarnessError as error:
         return f"no page of the suite: {error}"
     return f"reports: {page}"

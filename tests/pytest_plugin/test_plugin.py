@@ -296,3 +296,14 @@ def test_collecting_scenarios_imports_nothing_native(write):
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "Hold still[3]" in done.stdout
     assert "imported: []" in done.stdout
+
+
+def test_in_an_action_of_github_a_session_annotates_and_sums_up(pytester, write, monkeypatch):
+    write(holds=HOLDS, fails=FAILS)
+    summary = pytester.path / "summary.md"
+    monkeypatch.setenv("GITHUB_ACTIONS", "true")
+    monkeypatch.setenv("GITHUB_STEP_SUMMARY", str(summary))
+    result = run(pytester, "--harness-no-report")
+    result.assert_outcomes(passed=1, failed=1)
+    result.stdout.fnmatch_lines(["::error file=fails.scenario.yaml,line=8,title=Too short::*"])
+    assert summary.read_text().startswith("## ❌ armharness: 1 of 2 passed")

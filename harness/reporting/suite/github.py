@@ -7,9 +7,11 @@ References:
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
-from harness.core.errors import Problem
+from harness.core.errors import HarnessError, Problem
 from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import missed, rate_line
@@ -29,6 +31,28 @@ def error_annotations(results: Sequence[CaseResult]) -> Iterator[str]:
         elif cause is not None:
             name = f"{result.title} [{result.case}]" if result.case else result.title
             yield _command(result.file, cause.line, cause.column, name, cause.said)
+
+
+def append_summary(record: SuiteRecord) -> None:
+    """Append to the job's summary, where an action runs: GitHub sets GITHUB_STEP_SUMMARY.
+
+    Raises:
+        HarnessError: The summary cannot be written.
+    """
+    file = os.environ.get("GITHUB_STEP_SUMMARY")
+    if file:
+        try:
+            with Path(file).open("a", encoding="utf-8") as summary:
+                summary.write(job_summary(record))
+        except OSError as error:
+            raise HarnessError(f"'{file}' cannot be written: {error.strerror}") from error
+
+
+def annotations_for_action(record: SuiteRecord) -> list[str]:
+    """Lines to print where an action runs: GitHub sets GITHUB_ACTIONS; else none."""
+    if os.environ.get("GITHUB_ACTIONS") != "true":
+        return []
+    return list(error_annotations([case.result for case in record.cases]))
 
 
 def problem_annotation(problem: Problem) -> str:
