@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from statistics import NormalDist
 
 from harness.reporting.sampled import Rate, RateVerdict
@@ -55,39 +54,53 @@ def decided(passed: int, total: int, at_least: float, confidence: float) -> Rate
     return "shown" if passed / total > at_least else "refuted"
 
 
-def rate_of(
-    outcomes: Sequence[bool],
-    at_least: float | None,
-    confidence: float,
-    *,
-    stop_early: bool,
-    wanted: int | None = None,
-) -> Rate:
-    """What samples in their order show; those behind an early end do not count.
+class Tally:
+    """Samples counted one after the other, in the order of their numbers.
 
-    Args:
-        outcomes: Whether each sample passed, in the order of their numbers.
-        at_least: Rate to be shown; None: every one must pass.
-        confidence: Of the interval and of the sequential test.
-        stop_early: Whether the sequential test may end the sampling.
-        wanted: How many samples there would be without it; None: as many as there are.
+    Attributes:
+        passed: Of `total`.
+        total: Samples that count: those behind an early end do not.
+        is_decided: Whether the sequential test has ended the sampling.
     """
-    wanted = len(outcomes) if wanted is None else wanted
-    passed = 0
-    for index, is_good in enumerate(outcomes):
-        passed += is_good
-        if at_least is not None and stop_early:
-            verdict = decided(passed, index + 1, at_least, confidence)
-            if verdict != "open":
-                low, high = wilson_interval(passed, index + 1, confidence)
-                early = index + 1 < wanted
-                return Rate(passed, index + 1, low, high, confidence, at_least, verdict, early)
-    total = len(outcomes)
-    low, high = wilson_interval(passed, total, confidence)
-    if at_least is None:
-        verdict = "shown" if passed == total else "refuted"
-    elif low >= at_least:
-        verdict = "shown"
-    else:
-        verdict = "refuted" if high < at_least else "open"
-    return Rate(passed, total, low, high, confidence, at_least, verdict)
+
+    def __init__(self, at_least: float | None, confidence: float, *, stop_early: bool) -> None:
+        """Count nothing yet.
+
+        Args:
+            at_least: Rate to be shown; None: every one must pass.
+            confidence: Of the interval and of the sequential test.
+            stop_early: Whether the sequential test may end the sampling.
+        """
+        self.passed, self.total = 0, 0
+        self.is_decided = False
+        self._at_least, self._confidence, self._stop_early = at_least, confidence, stop_early
+
+    def add(self, is_good: bool) -> None:
+        """Count the next sample."""
+        if self.is_decided:
+            return
+        self.passed += is_good
+        self.total += 1
+        if self._at_least is not None and self._stop_early:
+            verdict = decided(self.passed, self.total, self._at_least, self._confidence)
+            self.is_decided = verdict != "open"
+
+    def rate(self, wanted: int) -> Rate:
+        """What the samples show.
+
+        Args:
+            wanted: How many there would be without an early end.
+        """
+        passed, total, asked = self.passed, self.total, self._at_least
+        low, high = wilson_interval(passed, total, self._confidence)
+        verdict: RateVerdict = "open"
+        if asked is None:
+            verdict = "shown" if passed == total else "refuted"
+        elif self.is_decided:
+            verdict = decided(passed, total, asked, self._confidence)
+        elif low >= asked:
+            verdict = "shown"
+        elif high < asked:
+            verdict = "refuted"
+        early = self.is_decided and total < wanted
+        return Rate(passed, total, low, high, self._confidence, asked, verdict, early)

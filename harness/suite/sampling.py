@@ -8,9 +8,7 @@ from harness.recording.run import Outcome
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate
 from harness.suite.plan import PlannedCase
-from harness.suite.rates import decided, rate_of
-
-Key = tuple[str, str]
+from harness.suite.rates import Tally
 
 
 class Sampling:
@@ -22,54 +20,32 @@ class Sampling:
 
     def __init__(self, plan: Sequence[PlannedCase]) -> None:
         self._plan = plan
-        self._groups: dict[Key, list[int]] = {}
+        self._groups: dict[tuple[str, str], _Group] = {}
+        self._places: dict[int, tuple[_Group, int]] = {}
         for index, each in enumerate(plan):
             if each.rate_key is not None:
-                self._groups.setdefault(each.rate_key, []).append(index)
-        self._outcomes: dict[int, Outcome] = {}
-        self._ends: dict[Key, int] = {}
-        self._invalid: set[Key] = set()
+                group = self._groups.setdefault(each.rate_key, _Group(each))
+                self._places[index] = group, group.wanted
+                group.wanted += 1
 
     def note(self, index: int, outcome: Outcome) -> None:
         """Take in an outcome."""
-        self._outcomes[index] = outcome
-        key = self._plan[index].rate_key
-        variation = self._plan[index].variation
-        if key is not None and outcome == "invalid":
-            self._invalid.add(key)
-        if key is None or key in self._ends or variation.at_least is None:
-            return
-        if not variation.stop_early:
-            return
-        outcomes = self._prefix(key)
-        passed = 0
-        for count, is_good in enumerate(outcomes, start=1):
-            passed += is_good
-            if decided(passed, count, variation.at_least, variation.confidence) != "open":
-                self._ends[key] = count
-                return
+        if index in self._places:
+            group, place = self._places[index]
+            group.note(place, outcome)
 
     def is_needless(self, index: int) -> bool:
         """Whether a sample would not count any more, or tell but the mistake of another."""
-        key = self._plan[index].rate_key
-        if key is None:
+        if index not in self._places:
             return False
-        if key in self._invalid:
-            return index not in self._outcomes
-        return key in self._ends and index in self._groups[key][self._ends[key] :]
+        group, place = self._places[index]
+        return group.is_needless(place)
 
     def groups(self) -> list[SampledRate]:
         """Every group with its rate, from the samples that came in without a gap."""
         found: list[SampledRate] = []
-        for key, indices in self._groups.items():
-            variation = self._plan[indices[0]].variation
-            rate = rate_of(
-                self._prefix(key),
-                variation.at_least,
-                variation.confidence,
-                stop_early=variation.stop_early,
-                wanted=len(indices),
-            )
+        for key, group in self._groups.items():
+            rate = group.tally.rate(group.wanted)
             outcome: Outcome = "passed" if rate.verdict == "shown" else "failed"
             found.append(SampledRate(*key, rate, outcome))
         return found
@@ -82,15 +58,35 @@ class Sampling:
         """What the whole comes to: cases, and groups of samples in place of failed samples."""
         told: list[Outcome] = [group.outcome for group in self.groups()]
         for index, result in self.counted(results).items():
-            if self._plan[index].rate_key is None or result.outcome in ("invalid", "error"):
+            if index not in self._places or result.outcome in ("invalid", "error"):
                 told.append(result.outcome)
         return told
 
-    def _prefix(self, key: Key) -> list[bool]:
-        """Whether samples passed, in order, up to the first that has not come in."""
-        outcomes: list[bool] = []
-        for index in self._groups[key]:
-            if index not in self._outcomes:
-                break
-            outcomes.append(self._outcomes[index] == "passed")
-        return outcomes
+
+class _Group:
+    """Samples that share a rate.
+
+    Attributes:
+        wanted: How many there are.
+        tally: Of those that came in without a gap.
+    """
+
+    def __init__(self, sample: PlannedCase) -> None:
+        said = sample.variation
+        self.wanted = 0
+        self.tally = Tally(said.at_least, said.confidence, stop_early=said.stop_early)
+        self._outcomes: dict[int, Outcome] = {}
+        self._next = 0
+        self._is_invalid = False
+
+    def note(self, place: int, outcome: Outcome) -> None:
+        self._outcomes[place] = outcome
+        self._is_invalid |= outcome == "invalid"
+        while self._next in self._outcomes:
+            self.tally.add(self._outcomes[self._next] == "passed")
+            self._next += 1
+
+    def is_needless(self, place: int) -> bool:
+        if self._is_invalid:
+            return place not in self._outcomes
+        return self.tally.is_decided and place >= self.tally.total

@@ -7,7 +7,7 @@ from harness.recording.run import Measure, Verdict
 from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.sampled import SampledRate
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
-from harness.suite.rates import rate_of
+from tests.suite.samples import rate_of
 
 HOSTILE = "</td><script>document.title = 'taken over'</script>'\"& \x07 ]]>"
 

@@ -15,8 +15,8 @@ from harness.reporting.suite.history import history_of
 from harness.reporting.suite.junit import junit_xml
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.reporting.suite.write import write_suite
-from harness.suite.rates import rate_of
 from tests.reporting.suites import BROKEN, INVALID, STUCK, failed, large_suite, passed, small_suite
+from tests.suite.samples import rate_of
 
 # element -> (required attributes, further ones, children in the order that all schemas know)
 SCHEMA = {

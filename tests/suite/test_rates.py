@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import binomtest
 
-from harness.suite.rates import decided, rate_of, wilson_interval
+from harness.suite.rates import decided, wilson_interval
+from tests.suite.samples import rate_of
 
 
 @given(st.integers(1, 400), st.floats(0, 1), st.sampled_from([0.8, 0.95, 0.99]))
