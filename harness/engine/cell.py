@@ -156,7 +156,7 @@ class Cell:
         self.notes.result.setdefault("added", []).append(obj.name)
         known.pose = pose
         known.intervals.append([self.simulator.time, float("inf")])
-        self.believe(name=obj.name, pose=pose)
+        self.believe(obj.name, pose)
         if obj.in_simulation:
             self.simulator.add_object(obj.name, pose)
         if obj.in_planning:
@@ -164,11 +164,7 @@ class Cell:
 
     def remove_from_scene(self, name: str) -> None:
         """Take an object out of the planning scene and the physics."""
-        presence = self.presence.get(name)
-        if presence is None or not presence.is_there:
-            raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is not in the scene now")
-        if name in self.scene.attached():
-            raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is attached: detach it first")
+        presence = self._free_object(name)
         self.notes.result.setdefault("removed", []).append(name)
         presence.intervals[-1][1] = self.simulator.time
         self.believe(name, None)
@@ -179,11 +175,7 @@ class Cell:
 
     def move_in_scene(self, name: str, pose: SE3) -> None:
         """Put an object somewhere else, at rest, in planning scene and physics."""
-        presence = self.presence.get(name)
-        if presence is None or not presence.is_there:
-            raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is not in the scene now")
-        if name in self.scene.attached():
-            raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is attached: detach it first")
+        presence = self._free_object(name)
         presence.pose = pose
         presence.intervals[-1][1] = self.simulator.time
         presence.intervals.append([self.simulator.time, float("inf")])
@@ -192,6 +184,15 @@ class Cell:
             self.simulator.move_object(name, pose)
         if name in self.scene.object_names():
             self.scene.move_object(name, pose)
+
+    def _free_object(self, name: str) -> Presence:
+        """An object that is in the scene, and not attached."""
+        presence = self.presence.get(name)
+        if presence is None or not presence.is_there:
+            raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is not in the scene now")
+        if name in self.scene.attached():
+            raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is attached: detach it first")
+        return presence
 
     def believe(self, name: str, pose: SE3 | None, link: str = "") -> None:
         """Note where an object of the planning scene alone stands from now on."""

@@ -23,7 +23,6 @@ DEFAULT_TRAVEL = 0.1  # [m]
 @execute.handles(Pick)
 def pick(step: Pick, cell: Cell) -> None:
     """Open, go to where the approach begins, approach straight, grasp, lift."""
-    current, notes = cell.current, cell.notes
     children = [
         cell.child(
             "open",
@@ -42,10 +41,7 @@ def pick(step: Pick, cell: Cell) -> None:
             f"move_relative lift {step.object}",
         ),
     ]
-    try:
-        cell.run_steps(children)
-    finally:
-        cell.step, cell.notes = current, notes
+    cell.run_children(children)
 
 
 def _approach(step: Pick, cell: Cell) -> list[ProgramStep]:

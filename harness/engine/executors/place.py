@@ -33,7 +33,6 @@ UP = np.array([0.0, 0.0, 1.0])
 @execute.handles(Place)
 def place(step: Place, cell: Cell) -> None:
     """Go above the target, lower straight, release, retreat against the gripper's approach axis."""
-    current, notes = cell.current, cell.notes
     name = step.object or (cell.held[-1] if cell.held else None)
     if name is None or name not in cell.scene.attached():
         what = f"'{name}' is not held" if name else "nothing is held"
@@ -61,10 +60,7 @@ def place(step: Place, cell: Cell) -> None:
             "move_relative back",
         ),
     ]
-    try:
-        cell.run_steps(children)
-    finally:
-        cell.step, cell.notes = current, notes
+    cell.run_children(children)
 
 
 def _touching(step: ProgramStep) -> ProgramStep:
