@@ -52,11 +52,8 @@ class TcpGoal:
 
 
 def group_of(cell: Cell, group: str | None) -> str:
-    """The step's planning group: its own, else the arm's, else the gripper's."""
-    if group is not None:
-        return group
-    gripper = cell.description.gripper
-    return cell.description.arm_group or (gripper.group if gripper else "")
+    """The step's planning group: its own, else the robot's default."""
+    return cell.description.default_group if group is None else group
 
 
 def resolve_goal(goal: GoalFields, group: str, cell: Cell) -> Goal:

@@ -145,8 +145,7 @@ class Scope:
     def check_group(self, name: str | None, loc: Loc) -> str:
         """A planning group; returns the one that is meant."""
         if name is None:
-            gripper = self.description.gripper
-            return self.description.arm_group or (gripper.group if gripper else "")
+            return self.description.default_group
         if name not in self.description.groups:
             self.problems.unknown(loc, "planning group", name, self.description.groups)
         return name

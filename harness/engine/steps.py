@@ -34,6 +34,7 @@ from harness.spec.steps import (
     Release,
     RemoveObject,
     Sequence,
+    Travel,
     Wait,
 )
 
@@ -321,10 +322,8 @@ def _pick(step: Pick, at: At) -> None:
     _check_graspable(step.object, at)
     if step.grasp_pose is not None:
         _check_pose(step.grasp_pose, at, "grasp_pose")
-    for key in ("approach", "lift"):
-        travel = getattr(step, key)
-        if travel is not None and travel.direction is not None:
-            at.scope.check_frame(travel.direction.frame, at.key(key, "direction", "frame"))
+    _check_travel(step.approach, at, "approach")
+    _check_travel(step.lift, at, "lift")
     at.scope.attached[step.object] = None
 
 
@@ -334,13 +333,16 @@ def _place(step: Place, at: At) -> None:
     _check_pose(step.pose, at, "pose")
     if step.object is not None:
         at.scope.check_object(step.object, at.key("object"))
-    for key in ("approach", "retreat"):
-        travel = getattr(step, key)
-        if travel is not None and travel.direction is not None:
-            at.scope.check_frame(travel.direction.frame, at.key(key, "direction", "frame"))
+    _check_travel(step.approach, at, "approach")
+    _check_travel(step.retreat, at, "retreat")
     name = step.object or next(reversed(at.scope.attached), None)
     if name is not None:
         at.scope.attached.pop(name, None)
+
+
+def _check_travel(travel: Travel | None, at: At, key: str) -> None:
+    if travel is not None and travel.direction is not None:
+        at.scope.check_frame(travel.direction.frame, at.key(key, "direction", "frame"))
 
 
 @check.handles(Inject)

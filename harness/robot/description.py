@@ -248,6 +248,11 @@ class RobotDescription:
                 static.add(joint.child)
         return frozenset(static)
 
+    @property
+    def default_group(self) -> str:
+        """What a step moves that names no group: the arm, else the gripper."""
+        return self.arm_group or (self.gripper.group if self.gripper else "")
+
     def group_indices(self, group: str) -> tuple[int, ...]:
         """Places of a group's joints in description order."""
         return tuple(self.joint_index[name] for name in self.groups[group].joint_names)

@@ -17,7 +17,7 @@ from harness.engine.executors.pick import (
     world_pose_spec,
 )
 from harness.engine.goals import TcpGoal, group_of
-from harness.engine.grasping import gripper_axes, pitch_of
+from harness.engine.grasping import UP, gripper_axes, pitch_of
 from harness.engine.program import ProgramStep
 from harness.engine.registry import execute
 from harness.ports import PositionGoal
@@ -27,7 +27,6 @@ from harness.spec.steps import Place, Release, Travel
 REFINEMENTS = 4
 PUT_DOWN_GAP = 0.001  # [m] above the target, so that the support is touched when the fingers open
 DEFAULT_RETREAT = Travel(min_distance=0.03, max_distance=0.1)
-UP = np.array([0.0, 0.0, 1.0])
 
 
 @execute.handles(Place)
