@@ -574,17 +574,3 @@ class Simulator(Protocol):
     def finish(self) -> Signals:
         """Everything recorded, without clearances."""
         ...
-
-
-class ClearanceObserver(Protocol):
-    """Computes distances along a recorded run, exact wherever they are below the cutoff."""
-
-    def observe(
-        self,
-        signals: Signals,
-        objects: Sequence[ObjectRecord],
-        attachments: Sequence[AttachmentRecord],
-        cutoff: float,
-    ) -> Signals:
-        """The same signals with `clearances` and `clearance_links` filled in."""
-        ...

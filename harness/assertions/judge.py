@@ -50,7 +50,7 @@ def judge(run: Run, expectations: Sequence[PlacedExpectation]) -> tuple[Verdict,
 
 
 def _judge(run: Run, placed: PlacedExpectation) -> Verdict:
-    text = placed.text or describe(placed.spec)
+    text = describe(placed.spec)
     try:
         with np.errstate(invalid="ignore"):
             verdict = _verdict(run, placed.spec, placed.step)

@@ -15,10 +15,8 @@ class PlacedExpectation:
         spec: The expectation's model.
         step: Id (or path) of the step it stands on; empty for the whole run.
         line: In the scenario file, from 1; 0 if unknown.
-        text: One line for people; `harness.assertions.wording.describe` makes it when empty.
     """
 
     spec: AnyExpectation
     step: str = ""
     line: int = 0
-    text: str = ""

@@ -29,7 +29,6 @@ class Terms:
     hold: float | None
     within: float | None
     step: str
-    points: float | None
 
 
 def terms_of(spec: AnyPredicate | Always | Never | Eventually, step: str) -> Terms:
@@ -48,7 +47,6 @@ def terms_of(spec: AnyPredicate | Always | Never | Eventually, step: str) -> Ter
         max(holds, default=None),
         min(withins, default=None),
         one_step((spec.during, predicate.during), step),
-        predicate.points if spec.points is None else spec.points,
     )
 
 

@@ -77,7 +77,7 @@ class _Clearances:
 
 
 class CoalClearance:
-    """The port `ClearanceObserver` for a composed robot."""
+    """Distances along a recorded run, exact wherever they are below the cutoff."""
 
     def __init__(self, description: RobotDescription) -> None:
         self.description = description

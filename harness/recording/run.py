@@ -17,7 +17,6 @@ StepStatus = Literal["passed", "failed", "expected_error", "not_reached"]
 VerdictStatus = Literal["passed", "failed", "not reached", "not observable"]
 Outcome = Literal["passed", "failed", "invalid", "error"]
 Pair = tuple[str, str]
-Shapes = tuple[Shape, ...]
 Floats = tuple[float, ...]
 
 

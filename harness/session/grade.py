@@ -12,7 +12,6 @@ import numpy as np
 from harness.assertions.judge import judge
 from harness.assertions.observations import Observations, observations
 from harness.assertions.placed import PlacedExpectation
-from harness.assertions.wording import describe
 from harness.importers.bag.content import BagTopics
 from harness.importers.bag.recorded_run import Recorded, run_of_bag
 from harness.recording.run import Run, Verdict
@@ -100,10 +99,7 @@ def grade_bag(
     run = run_of_bag(bag, topics or BagTopics(), known)
     if _speaks_of_distance(specs):
         run = _with_distances(prepared, run, needed)
-    placed = [
-        PlacedExpectation(item.spec, item.step, item.line, describe(item.spec))
-        for item in program.expectations
-    ]
+    placed = [PlacedExpectation(item.spec, item.step, item.line) for item in program.expectations]
     verdicts = [_honest(verdict) for verdict in judge(run, placed)]
     notes = tuple(finding.message for finding in run.findings)
     return Grade(run, graded(verdicts), notes)

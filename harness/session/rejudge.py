@@ -7,7 +7,6 @@ from pathlib import Path
 
 from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
-from harness.assertions.wording import describe
 from harness.recording.run import Verdict
 from harness.recording.store import read_run
 from harness.spec.load import LoadedScenario, load_scenario
@@ -42,10 +41,10 @@ def expectations_of(loaded: LoadedScenario) -> list[PlacedExpectation]:
             step_id = f"{step.id}{block.suffix}" if step.id else path
             for number, spec in enumerate(step.expect):
                 line, _ = loaded.lines.line_of((*loc, "expect", number))
-                found.append(PlacedExpectation(spec, step_id, line, describe(spec)))
+                found.append(PlacedExpectation(spec, step_id, line))
 
     visit(Block(loaded.scenario.steps, ("steps",), "steps"))
     for number, spec in enumerate(loaded.scenario.expect):
         line, _ = loaded.lines.line_of(("expect", number))
-        found.append(PlacedExpectation(spec, "", line, describe(spec)))
+        found.append(PlacedExpectation(spec, "", line))
     return found

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Literal
 from harness.assertions.judge import judge
 from harness.assertions.observations import observations
 from harness.assertions.placed import PlacedExpectation
-from harness.assertions.wording import describe
 from harness.core.errors import HarnessError, SpecError
 from harness.core.types import FloatArray
 from harness.engine.execute import Execution, execute_program
@@ -260,10 +259,7 @@ def _step_teller(program: Program, on_progress: Notify, simulator: TimedSimulato
 
 
 def _placed(program: Program) -> list[PlacedExpectation]:
-    return [
-        PlacedExpectation(item.spec, item.step, item.line, describe(item.spec))
-        for item in program.expectations
-    ]
+    return [PlacedExpectation(item.spec, item.step, item.line) for item in program.expectations]
 
 
 def _outcome(run: Run, verdicts: tuple[Verdict, ...]) -> Outcome:
