@@ -10,7 +10,7 @@ from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
-from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
+from harness.recording.run import Signals
 
 LONGEST_RUN = 600.0
 """Simulated time of one run at most [s]: a file cannot fill the machine's memory or its day."""

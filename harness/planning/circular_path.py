@@ -17,9 +17,6 @@ LARGEST_RADIUS_DIFFERENCE = 1e-2
 SMALLEST_CROSS_PRODUCT = 1e-5
 """Of the ways from the start to the other two points [m^2]: below they are on one line (Pilz)."""
 
-SMALLEST_RADIUS = 1e-3
-"""[m]"""
-
 _STRAIGHT_ANGLE = 1e-3  # [rad] nearer to half a circle about a centre, the plane is undefined
 
 

@@ -56,13 +56,10 @@ class UrAnswer:
             to 8; by shoulder, then wrist, then elbow, the positive one first.
         excess: How far the wrist is beyond what the upper arm and forearm can span, over the
             branches that were tried [m]; 0 when one was within reach.
-        too_close: How far the wrist centre is inside the cylinder about joint 1 that cannot be
-            reached [m]; 0 outside it.
     """
 
     branches: FloatArray
     excess: float
-    too_close: float
 
 
 def is_ur_like(joints: tuple[Joint, ...]) -> bool:
@@ -105,7 +102,7 @@ def solve_ur(geometry: UrGeometry, T_base_wrist3: SE3, wrist_3_seed: float) -> U
     height = pz - g.d6 * r22 - g.d1
     radius = hypot(east, north)
     if radius < abs(g.d4) * (1 - _EXACT):
-        return UrAnswer(np.empty((0, 6)), 0.0, abs(g.d4) - radius)
+        return UrAnswer(np.empty((0, 6)), 0.0)
     azimuth = atan2(north, east) + 0.5 * pi
     side = acos(max(-1.0, min(1.0, g.d4 / radius))) if radius > 0 else 0.0
     found: list[tuple[float, float, float, float, float, float]] = []
@@ -149,7 +146,7 @@ def solve_ur(geometry: UrGeometry, T_base_wrist3: SE3, wrist_3_seed: float) -> U
             found.append((q1, aim - lead, q3, rest + lead - q3, wrist_2, wrist_3))
             found.append((q1, aim + lead, -q3, rest - lead + q3, wrist_2, wrist_3))
     branches = np.array(found).reshape(-1, 6)
-    return UrAnswer(pi - (pi - branches) % (2 * pi), 0.0 if least == inf else least, 0.0)
+    return UrAnswer(pi - (pi - branches) % (2 * pi), 0.0 if least == inf else least)
 
 
 class _Circle(NamedTuple):

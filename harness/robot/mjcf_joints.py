@@ -16,7 +16,7 @@ from harness.core.types import FloatArray
 from harness.robot.description import Joint, Mimic
 from harness.spec.xml_file import XmlElement
 
-HINGE, SLIDE = 3, 2
+SLIDE = 2  # of mjtJoint
 
 
 def body_chain(
