@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from harness.suite.cases import CaseJob
 from harness.suite.discovery import UsageError
@@ -25,7 +25,7 @@ class Wanted:
         cases: Patterns of case names; empty for all.
         overrides: Dotted path -> value as YAML; they count more than a case's own.
         seed: Instead of the files'.
-        samples: Instead of the files'.
+        samples: Instead of the files', of those that have some.
         report_root: Where reports go; None writes none.
         keep: Whose reports are written: `all`, `failed`, or by default of samples the failed ones.
         page: Whether a report gets its page.
@@ -77,7 +77,8 @@ def planned(files: Sequence[Path], wanted: Wanted) -> list[PlannedCase]:
     """Every case of the files that is asked for, in file order.
 
     Raises:
-        UsageError: Nothing is selected, or `-k` cannot be read.
+        UsageError: Nothing is selected, `-k` cannot be read, or there is nothing to sample.
+        SpecError: There is nothing to sample in a file with mistakes.
     """
     root = wanted.report_root
     folders = [None] * len(files) if root is None else report_folders(files, root)
@@ -92,7 +93,21 @@ def planned(files: Sequence[Path], wanted: Wanted) -> list[PlannedCase]:
         if wanted.cases:
             asked = f"--case '{wanted.cases[0]}'"
         raise UsageError(f"{asked} selects none of {len(files)} scenarios{_names(files, wanted)}")
+    if wanted.samples is not None and all(each.case.sample is None for each in found):
+        _refuse_samples(files, wanted)
     return found
+
+
+def _refuse_samples(files: Sequence[Path], wanted: Wanted) -> NoReturn:
+    """Say that nothing is sampled; mistakes in a file, which may hide its samples, come first."""
+    from harness.spec.load import load_scenario
+
+    for file in files:
+        load_scenario(file, wanted.overrides)
+    raise UsageError(
+        f"--samples {wanted.samples}: nothing is random here; say what is with `randomize:` in the"
+        f" file, or `samples: {wanted.samples}` there for as many seeds"
+    )
 
 
 def _is_wanted(file: Path, header: Header, case: Case, wanted: Wanted) -> bool:

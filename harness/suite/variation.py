@@ -80,7 +80,7 @@ class Variation:
         for distribution in randomize.values():
             _drawn(distribution, random.Random(0))
         rate = cast("dict[str, Any]", values.get("expect_rate") or {})
-        default = DEFAULT_SAMPLES if randomize or rate else 0
+        default = DEFAULT_SAMPLES if randomize else 0
         variation = cls(
             parametrize=values.get("parametrize"),
             randomize=randomize,
@@ -105,10 +105,10 @@ class Variation:
 
         Args:
             seed: Instead of the file's.
-            samples: Instead of the file's.
+            samples: Instead of the file's, where it has some.
         """
         base = self.seed if seed is None else seed
-        count = self.samples if samples is None else samples
+        count = samples if samples and self.samples else self.samples
         for case in self.parametrized():
             if not count:
                 yield case

@@ -121,6 +121,24 @@ def test_a_rate_that_cannot_be_shown_fails_and_says_what_to_do(varied):
     assert "at least 60.0% is not shown: take more samples, or ask for less" in done.stdout
 
 
+def test_samples_of_what_has_none_are_refused_and_leave_files_beside_sampled_ones_alone(varied):
+    path = varied()
+    plain = path.with_name("plain.scenario.yaml")
+    plain.write_text(VARIED.partition("randomize:")[0])
+    refused = harness("run", plain, "--samples", 3, cwd=path.parent)
+    assert refused.returncode == 2
+    assert "--samples 3: nothing is random here" in refused.stderr
+    assert not (path.parent / "reports").exists()
+    broken = path.with_name("broken.scenario.yaml")
+    broken.write_text(VARIED.replace("uniform: [", "uniform: [x"))
+    assert (
+        "broken.scenario.yaml:10:20"
+        in harness("run", broken, "--samples", 3, cwd=path.parent).stderr
+    )
+    both = results(path, plain, "--samples", 2, "--no-report", cwd=path.parent)
+    assert [case["case"] for case in both["cases"]] == ["sample0", "sample1", ""]
+
+
 def test_a_table_tells_which_quantity_decides(varied):
     path = varied(GRID)
     done = harness("run", path, "--no-report", cwd=path.parent)
