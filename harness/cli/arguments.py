@@ -1,0 +1,74 @@
+"""What the arguments of commands are: text in, a value out, or a sentence why not."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+
+def folder(text: str) -> Path:
+    """A folder that exists."""
+    if not Path(text).is_dir():
+        raise argparse.ArgumentTypeError(f"there is no folder '{text}'")
+    return Path(text)
+
+
+def override(text: str) -> tuple[str, str]:
+    """`PATH=VALUE` of `--set`."""
+    path, equals, value = text.partition("=")
+    if not equals or not path.strip():
+        raise argparse.ArgumentTypeError(f"'{text}' is not PATH=VALUE, as in robot.model=ur5e")
+    return path.strip(), value
+
+
+def names_of(text: str) -> list[str]:
+    """Names with commas between them, each once."""
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    if not names:
+        raise argparse.ArgumentTypeError("no planner is named")
+    return list(dict.fromkeys(names))
+
+
+def object_topic(text: str) -> tuple[str, str]:
+    """`NAME=TOPIC` of an object's pose."""
+    name, equals, topic = text.partition("=")
+    if not equals or not name.strip() or not topic.strip():
+        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=TOPIC, as in red_box=/red_box/pose")
+    return name.strip(), topic.strip()
+
+
+def count(text: str) -> int:
+    """A number from 1."""
+    if not text.isdigit() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number from 1")
+    return int(text)
+
+
+def metres(text: str) -> float:
+    """A length above 0 [m]."""
+    return _positive(text, "metres")
+
+
+def radians(text: str) -> float:
+    """An angle above 0 [rad]."""
+    return _positive(text, "radians")
+
+
+def seconds(text: str) -> float:
+    """A duration above 0 [s]."""
+    return _positive(text, "seconds")
+
+
+def rate(text: str) -> float:
+    """Messages a second, above 0."""
+    return _positive(text, "messages a second")
+
+
+def _positive(text: str, what: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = float("nan")
+    if not 0 < number < float("inf"):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of {what} above 0")
+    return number

@@ -1,0 +1,321 @@
+"""The options of every command: read by `--help`, so nothing here takes time to import."""
+
+from __future__ import annotations
+
+import argparse
+
+from harness.cli.arguments import (
+    count,
+    folder,
+    metres,
+    names_of,
+    object_topic,
+    override,
+    radians,
+    rate,
+    seconds,
+)
+from harness.cli.robot_options import ROBOT, add_robot_options
+
+IMPORTS = ("sdf", "scene", "srdf")
+FORMATS = ("full", "short", "json", "github")
+BAGS = ("mcap", "sqlite3")
+LISTS = ("robots", "worlds", "scenarios", "steps", "expectations", "planners")
+
+
+def _format_options(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--format",
+        choices=FORMATS,
+        default="full",
+        help="full: for people; short: a line each; json: one document; github: annotations",
+    )
+    command.add_argument(
+        "--json",
+        action="store_const",
+        const="json",
+        dest="format",
+        help="the same as --format json",
+    )
+
+
+def for_run(run: argparse.ArgumentParser) -> None:
+    """Of `harness run`."""
+    _file_options(run)
+    run.add_argument(
+        "-k",
+        metavar="EXPR",
+        dest="expression",
+        default="",
+        help="only scenarios whose path, title or tags match: 'pick and not ur5e'",
+    )
+    run.add_argument(
+        "-j",
+        metavar="N",
+        dest="workers",
+        type=count,
+        default=1,
+        help="run N scenarios side by side",
+    )
+    run.add_argument(
+        "--repeat",
+        metavar="N",
+        type=count,
+        default=1,
+        help="run each N times and say whether all digests are the same",
+    )
+    run.add_argument(
+        "--case",
+        metavar="NAME",
+        dest="cases",
+        action="append",
+        default=[],
+        help="only the case of this name, or of names that match: 'ur5e-*'",
+    )
+    run.add_argument(
+        "--samples", metavar="N", type=count, default=None, help="in place of the file's"
+    )
+    run.add_argument(
+        "--keep",
+        choices=("all", "failed"),
+        default="",
+        help="whose reports are written (default: all; of samples those that failed)",
+    )
+    run.add_argument(
+        "--resume",
+        action="store_true",
+        help="go on where the same command was interrupted, without computing again",
+    )
+    run.add_argument(
+        "--report-dir", metavar="DIR", default="reports", help="where reports go (default: reports)"
+    )
+    run.add_argument("--no-report", action="store_true", help="write no report")
+    run.add_argument("--no-page", action="store_true", help="write the report without its page")
+    run.add_argument("--bag", action="store_true", help="write a rosbag2 into the report too")
+    run.add_argument(
+        "--history",
+        metavar="DIR",
+        default=None,
+        help="a folder of earlier results.json files, whose margins the suite's page shows",
+    )
+    _format_options(run)
+    run.add_argument(
+        "--hard-cap",
+        metavar="SECONDS",
+        type=seconds,
+        default=None,
+        help="wall time after which a scenario ends as an error (default: 600)",
+    )
+    run.add_argument("--in-process", action="store_true",
+                     help="no process for each scenario: for debuggers")  # fmt: skip
+
+
+def for_check(check: argparse.ArgumentParser) -> None:
+    """Of `harness check`."""
+    _file_options(check)
+    _format_options(check)
+
+
+def for_explain(explain: argparse.ArgumentParser) -> None:
+    """Of `harness explain`."""
+    _file_options(explain)
+
+
+def for_bench(bench: argparse.ArgumentParser) -> None:
+    """Of `harness bench`."""
+    _paths(bench)
+    bench.add_argument(
+        "--planners",
+        metavar="A,B",
+        type=names_of,
+        default=[],
+        help="planner ids to compare (default: all that `harness list planners` names)",
+    )
+    bench.add_argument(
+        "--seeds",
+        metavar="N",
+        type=count,
+        default=5,
+        help="plan with seeds 1 to N (default: 5)",
+    )
+    bench.add_argument(
+        "--report-dir", metavar="DIR", default="reports", help="files go to DIR/bench"
+    )
+    bench.add_argument("--no-report", action="store_true", help="write no files")
+    bench.add_argument("--json", action="store_true", help="one JSON document on stdout")
+
+
+def for_list(listing: argparse.ArgumentParser) -> None:
+    """Of `harness list`."""
+    listing.add_argument("kind", choices=LISTS)
+
+
+def for_view(view: argparse.ArgumentParser) -> None:
+    """Of `harness view`."""
+    view.add_argument("run", metavar="RUN", help="the run's report folder, or a file in it;"
+                      " '#t=10.1' behind it opens that moment")  # fmt: skip
+    view.add_argument("--rebuild", action="store_true", help="write the page anew")
+    view.add_argument("--no-open", action="store_true", help="only say where the page is")
+
+
+def for_judge(judge: argparse.ArgumentParser) -> None:
+    """Of `harness judge`."""
+    judge.add_argument("folder", metavar="RUN", help="the run's report folder")
+    judge.add_argument("--with", metavar="FILE", dest="with_file",
+                       help="by the expectations of this scenario")  # fmt: skip
+    judge.add_argument("--contacts", action="store_true",
+                       help="list who touched whom: first time, duration, peak force")  # fmt: skip
+    judge.add_argument("--json", action="store_true", help="one JSON document on stdout")
+
+
+def for_grade(grade: argparse.ArgumentParser) -> None:
+    """Of `harness grade`."""
+    grade.add_argument("scenario", metavar="SCENARIO", help="a scenario file, or a bundled name")
+    grade.add_argument("bag", metavar="BAG", help="a rosbag2 folder, an .mcap or a .db3 file")
+    grade.add_argument("--joint-states", metavar="TOPIC", default="/joint_states",
+                       help="where the joints are (default: /joint_states)")  # fmt: skip
+    grade.add_argument("--objects", metavar="TOPIC", action="append", default=[],
+                       help="a topic with poses of objects by name: TFMessage, as Gazebo's bridge"
+                       " sends them, or ModelStates")  # fmt: skip
+    grade.add_argument("--object", metavar="NAME=TOPIC", dest="object_poses", action="append",
+                       type=object_topic, default=[],
+                       help="the topic with the pose of one object")  # fmt: skip
+    grade.add_argument("--set", metavar="PATH=VALUE", dest="overrides", action="append",
+                       type=override, default=[], help="change a value of the file")  # fmt: skip
+    _package_option(grade)
+    grade.add_argument("--json", action="store_true", help="one JSON document on stdout")
+
+
+def for_compare(compare: argparse.ArgumentParser) -> None:
+    """Of `harness compare`."""
+    compare.add_argument("first", metavar="RUN", help="a run's report folder")
+    compare.add_argument("second", metavar="RUN", help="another")
+    compare.add_argument("--json", action="store_true", help="one JSON document on stdout")
+
+
+def for_new(new: argparse.ArgumentParser) -> None:
+    """Of `harness new`."""
+    new.add_argument("file", metavar="FILE", help="for example first.scenario.yaml")
+    new.add_argument("--robot", metavar="ROBOT", default="", help=ROBOT)
+    add_robot_options(new)
+
+
+def for_export(export: argparse.ArgumentParser) -> None:
+    """Of `harness export`."""
+    export.add_argument("run", metavar="RUN", help="the run's report folder")
+    export.add_argument("--bag", metavar="DIR", help="write a rosbag2 into this new folder")
+    export.add_argument("--urdf", metavar="FILE", help="write the robot's URDF")
+    export.add_argument("--storage", choices=BAGS, default="mcap",
+                        help="of the bag (default: mcap, compressed)")  # fmt: skip
+    export.add_argument("--rate", metavar="HZ", type=rate, default=100.0,
+                        help="of joints, frames and clock (default: 100)")  # fmt: skip
+    export.add_argument("--raw-images", action="store_true",
+                        help="the cameras' pictures uncompressed too")  # fmt: skip
+    export.add_argument("--meshes", choices=("package", "file"), default="package",
+                        help="how the URDF names mesh files: as package://, or where they are"
+                        " on this machine")  # fmt: skip
+    export.add_argument("--force", action="store_true", help="overwrite what is there")
+
+
+def for_import(importing: argparse.ArgumentParser) -> None:
+    """Of `harness import`."""
+    importing.add_argument("kind", choices=IMPORTS, help="what FILE is")
+    importing.add_argument("file", metavar="FILE", help="an SDF world, a MoveIt scene or an SRDF")
+    importing.add_argument("-o", "--output", metavar="FILE",
+                           help="what to write (default: FILE's name with .yaml; of an SRDF"
+                           " a folder of FILE's name)")  # fmt: skip
+    importing.add_argument("--model-path", metavar="DIR", action="append", default=[],
+                           help="look models up here before GZ_SIM_RESOURCE_PATH")  # fmt: skip
+    importing.add_argument("--force", action="store_true", help="overwrite what is there")
+    importing.add_argument("--robot", metavar="FILE", default="",
+                           help="the URDF, xacro or MJCF that an SRDF is of")  # fmt: skip
+    add_robot_options(importing, has_srdf=False)
+
+
+def for_ik_test(test: argparse.ArgumentParser) -> None:
+    """Of `harness ik-test`."""
+    add = test.add_argument
+    add("solver", metavar="SOLVER", help="module:function or file.py:function; `own` is ours")
+    add("--robot", metavar="ROBOT", required=True, help=ROBOT)
+    add_robot_options(test)
+    add("--link", metavar="LINK", default="", help="that is placed (default: the TCP)")
+    add("--branches", action="store_true", help="it claims to find every way to a target")
+    add("--examples", metavar="N", type=count, default=100,
+        help="cases of each property (default: 100)")  # fmt: skip
+    add("--seed", metavar="N", type=int, default=0, help="of the cases (default: 0)")
+    add("--position-tolerance", metavar="M", type=metres, default=1e-4,
+        help="of answers [m] (default: 0.0001)")  # fmt: skip
+    add("--orientation-tolerance", metavar="RAD", type=radians, default=1e-3,
+        help="of answers [rad] (default: 0.001)")  # fmt: skip
+    add("--call-limit", metavar="SECONDS", type=seconds, default=5.0,
+        help="wall time after which a call hangs (default: 5)")  # fmt: skip
+    add("--report-dir", metavar="DIR", default="reports",
+        help="where reports go (default: reports)")  # fmt: skip
+    add("--no-report", action="store_true", help="no report and no pictures")
+    add("--json", action="store_true", help="one JSON document on stdout")
+
+
+def for_robot(robot: argparse.ArgumentParser) -> None:
+    """Of `harness robot`."""
+    actions = robot.add_subparsers(dest="action", metavar="ACTION", required=True)
+    check = actions.add_parser(
+        "check",
+        help="limits, masses, kinematics, self-collisions, reach",
+        description="Look a robot over; exit code 1 when something is wrong.",
+    )
+    show = actions.add_parser("show", help="draw it", description="Draw a robot.")
+    for action in (check, show):
+        action.add_argument("robot", metavar="ROBOT", help=f"{ROBOT}; or a scenario")
+        add_robot_options(action)
+        action.add_argument("--state", metavar="NAME", default="",
+                            help="for the picture: a named state (default: the start)")  # fmt: skip
+        action.add_argument("--image", metavar="FILE", default="", help="a picture, PNG or JPEG")
+    check.add_argument("--samples", metavar="N", type=count, default=None,
+                       help="random configurations (default: 2000; for an SRDF 10000)")  # fmt: skip
+    check.add_argument("--seed", metavar="N", type=int, default=0, help="of them (default: 0)")
+    check.add_argument("--write-srdf", metavar="FILE", default="",
+                       help="write an SRDF with the pairs that need not be checked")  # fmt: skip
+    check.add_argument("--force", action="store_true", help="overwrite that file")
+    check.add_argument("--json", action="store_true", help="one JSON document on stdout")
+
+
+def for_schema(schema: argparse.ArgumentParser) -> None:
+    """Of `harness schema`."""
+    schema.add_argument("--write", metavar="FILE", help="write it to a file instead")
+
+
+def _file_options(command: argparse.ArgumentParser) -> None:
+    _paths(command)
+    command.add_argument("--seed", metavar="N", type=int, default=None,
+                         help="in place of the file's")  # fmt: skip
+
+
+def _paths(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "paths",
+        metavar="PATH",
+        nargs="+",
+        help="a scenario file, a folder of *.scenario.yaml, or a bundled name",
+    )
+    command.add_argument(
+        "--set",
+        metavar="PATH=VALUE",
+        dest="overrides",
+        action="append",
+        type=override,
+        default=[],
+        help="change a value of the file: --set robot.model=ur5e",
+    )
+    _package_option(command)
+
+
+def _package_option(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--package-path",
+        metavar="DIR",
+        dest="package_folders",
+        action="append",
+        type=folder,
+        default=[],
+        help="where package:// is looked up and meshes may be read",
+    )
