@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from functools import cache
 from importlib.metadata import version
 
 from harness.engine.execute import Execution
@@ -90,6 +92,12 @@ def _gripper_record(description: RobotDescription) -> GripperRecord | None:
     )
 
 
+@cache
+def library_versions() -> Mapping[str, str]:
+    """What a run may depend on; looked up once, each takes a millisecond or two."""
+    return {name: version(name) for name in LIBRARIES}
+
+
 def run_record(
     program: Program,
     kinematics: Kinematics,
@@ -120,7 +128,7 @@ def run_record(
         findings=(*told(notes), *findings_of(steps), *findings),
         source=source,
         resolved=resolved,
-        versions={name: version(name) for name in LIBRARIES},
+        versions=library_versions(),
         ended_early=execution.ended_early,
         cameras=tuple(program.cameras.values()),
     )
