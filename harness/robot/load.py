@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import importlib.util
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -46,6 +46,17 @@ def _catalogue() -> dict[str, tuple[Path, RobotYaml]]:
 def robot_names() -> tuple[str, ...]:
     """Names of the bundled robots that `model` accepts, grippers included."""
     return tuple(_catalogue())
+
+
+def read_bundled(names: Collection[str]) -> None:
+    """Read bundled robots and grippers ahead: this process, and its forks, do not read them again.
+
+    Args:
+        names: Those that are not bundled are left out.
+    """
+    for name in _catalogue():
+        if name in names:
+            _bundled(name, ())
 
 
 def gripper_names() -> tuple[str, ...]:

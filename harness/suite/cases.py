@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import time
 import traceback
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from harness.core.errors import SpecError
 from harness.reporting.result import CaseResult, ProgressEvent
 from harness.suite.environment import use_one_thread
 from harness.suite.leftovers import clean_leftovers
@@ -20,6 +23,8 @@ HARD_CAP_SECONDS = 600.0
 
 
 LONGEST_WAIT = 60.0  # [s], then deadlines are looked at again
+
+_WORD = re.compile(r"\w+")
 
 
 @dataclass(frozen=True)
@@ -85,6 +90,15 @@ def run_case(job: CaseJob, notify: Callable[[ProgressEvent], None]) -> CaseResul
     )
 
 
+def read_ahead(words: Collection[str]) -> None:
+    """Do once what every run does: read the bundled robots that are named, look up versions."""
+    from harness.robot.load import read_bundled
+    from harness.session.record import library_versions
+
+    library_versions()
+    read_bundled(words)
+
+
 def run_here(
     jobs: Sequence[CaseJob],
     *,
@@ -133,6 +147,8 @@ def run_isolated(
     cap = hard_cap_seconds() if hard_cap is None else hard_cap
     waiting = list(enumerate(jobs))[::-1]
     running: dict[int, _Running] = {}
+    if function is run_case:
+        server.prepare(read_ahead, _words(jobs))
     try:
         while waiting or running:
             while waiting and len(running) < workers:
@@ -163,6 +179,18 @@ def run_isolated(
         for case in running.values():
             _clean(case.job)
         raise
+
+
+def _words(jobs: Sequence[CaseJob]) -> frozenset[str]:
+    """Every word in the scenarios, names of robots among them."""
+    from harness.spec.yaml_file import read_text
+
+    texts = {job.text for job in jobs if job.text is not None}
+    texts.update(value for job in jobs for value in job.overrides.values())
+    for file in {job.file for job in jobs if job.text is None}:
+        with suppress(SpecError):  # its case tells
+            texts.add(read_text(file))
+    return frozenset(word for text in texts for word in _WORD.findall(text))
 
 
 def _patience(running: Mapping[int, _Running]) -> float:

@@ -5,8 +5,9 @@ it never waits on anything but that socket and its children. `multiprocessing`'s
 the caller's main module in every child, hides a failing import, and is one per process, shared
 with whatever else the caller does; hence this one.
 
-Messages in, pickled: ("run", job, callable, arguments) with the descriptors of a pipe and of a
-log, ("kill", job). Out: ("ready",), ("broken", why), ("started", job, pid), ("ended", job, code),
+Messages in, pickled: ("prepare", callable, arguments) for what this process does before it forks
+again, ("run", job, callable, arguments) with the descriptors of a pipe and of a log, ("kill", job).
+Out: ("ready",), ("broken", why), ("started", job, pid), ("ended", job, code),
 where a code below zero is a signal's number, as `subprocess` has it.
 """
 
@@ -44,10 +45,16 @@ def main() -> None:
     except BaseException:  # noqa: BLE001 - whatever an import raises is told to the caller
         send(control, ("broken", traceback.format_exc()))
         os._exit(1)
-    gc.freeze()  # children share these pages as long as no collector writes into them
     gc.enable()
+    share()
     send(control, ("ready",))
     Server(control).serve()
+
+
+def share() -> None:
+    """Keep the collector from writing into what is there, so that children share its pages."""
+    gc.collect()
+    gc.freeze()
 
 
 def preload(modules: Sequence[str]) -> None:
@@ -126,12 +133,19 @@ class Server:
 
     def _obey(self) -> None:
         message, fds = receive(self._control)
-        if message[0] == "kill":
-            for pid, job in self._jobs.items():
-                if job == message[1]:
-                    _kill_group(pid)
-            return
-        _run, job, call, arguments = message
+        match message:
+            case ("kill", number):
+                for pid, job in self._jobs.items():
+                    if job == number:
+                        _kill_group(pid)
+            case ("prepare", call, arguments):
+                _prepare(call, arguments)
+            case (_run, job, call, arguments):
+                self._fork(job, call, arguments, fds)
+            case _:
+                raise AssertionError(message)
+
+    def _fork(self, job: int, call: bytes, arguments: bytes, fds: Sequence[int]) -> None:
         pid = os.fork()
         if pid == 0:
             self._control.close()
@@ -152,6 +166,13 @@ class Server:
             _kill_group(pid)  # what the child started and left behind
             _pid, status = os.waitpid(pid, 0)
             send(self._control, ("ended", self._jobs.pop(pid), os.waitstatus_to_exitcode(status)))
+
+
+def _prepare(call: bytes, arguments: bytes) -> None:
+    """Do here what every child would do; what cannot be done, the child that needs it tells."""
+    with contextlib.suppress(Exception):
+        pickle.loads(call)(*pickle.loads(arguments))
+    share()
 
 
 def _kill_group(pid: int) -> None:

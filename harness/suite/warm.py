@@ -131,6 +131,16 @@ class WarmServer:
                 pass_fds=[theirs.fileno()], start_new_session=True,
             )  # fmt: skip
 
+    def prepare(self, function: Callable[..., None], *arguments: object) -> None:
+        """Let the server itself do something before its next fork; every later job finds it done.
+
+        It must leave no threads behind; what it raises is not told.
+        """
+        self.open()
+        assert self._control is not None
+        with contextlib.suppress(OSError):  # the server is gone: `wait` tells
+            send(self._control, ("prepare", pickle.dumps(function), pickle.dumps(arguments)))
+
     def start(self, function: Callable[..., Any], *arguments: object) -> int:
         """Run `function(*arguments, notify)` in a child; the function is found by its name there.
 

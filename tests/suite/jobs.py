@@ -70,3 +70,25 @@ def counts_threads(job, _notify):
     threads = re.search(r"Threads:\s+(\d+)", Path("/proc/self/status").read_text())
     server = re.search(r"Threads:\s+(\d+)", Path(f"/proc/{os.getppid()}/status").read_text())
     return CaseResult(str(job.file), "", f"{threads[1]} {server[1]}", "passed")
+
+
+REMEMBERED = []
+
+
+def remember(word):
+    REMEMBERED.append(word)
+
+
+def forget_by_mistake():
+    REMEMBERED.clear()
+    raise ZeroDivisionError("what is prepared may fail")
+
+
+def tells_what_is_remembered(job, _notify):
+    return CaseResult(str(job.file), "", " ".join(REMEMBERED), "passed")
+
+
+def tells_robots_already_read(job, _notify):
+    from harness.robot.load import _bundled
+
+    return CaseResult(str(job.file), "", str(_bundled.cache_info().currsize), "passed")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from harness.core.errors import HarnessError
-from harness.suite.cases import CaseJob, run_here, run_isolated
+from harness.suite.cases import CaseJob, read_ahead, run_here, run_isolated
 from harness.suite.warm import ServerStartError, WarmServer
 from tests.suite import jobs
 
@@ -190,3 +190,21 @@ def test_server_and_child_have_one_thread_with_every_solver_imported():
     modules = ("numpy", "mujoco", "pinocchio", "coal", "ompl.base")
     with WarmServer(modules) as server:
         assert outcome(server, jobs.counts_threads).title == "1 1"
+
+
+def test_every_child_finds_what_the_server_has_prepared(server):
+    server.prepare(jobs.remember, "this")
+    assert outcome(server, jobs.tells_what_is_remembered).title == "this"
+    server.prepare(jobs.remember, "and that")
+    assert outcome(server, jobs.tells_what_is_remembered).title == "this and that"
+
+
+def test_a_preparation_that_fails_leaves_the_server_at_work(server):
+    server.prepare(jobs.remember, "this")
+    server.prepare(jobs.forget_by_mistake)
+    assert outcome(server, jobs.tells_what_is_remembered).title == ""
+
+
+def test_bundled_robots_that_scenarios_name_are_read_once_for_all(server):
+    server.prepare(read_ahead, frozenset({"Pick", "open_manipulator_x", "rh_p12_rn_a"}))
+    assert outcome(server, jobs.tells_robots_already_read).title == "2"
