@@ -14,8 +14,12 @@ from harness.core.types import FloatArray
 LARGEST_RADIUS_DIFFERENCE = 1e-2
 """Of start and goal about a given centre [m]: Pilz's rule; the centre is moved by half of it."""
 
-SMALLEST_CROSS_PRODUCT = 1e-5
-"""Of the ways from the start to the other two points [m^2]: below they are on one line (Pilz)."""
+FLATTEST = 1e-5
+"""Height of a triangle over its longest side below which its corners are on one line [m].
+
+Pilz looks at twice the area instead, with 1e-5 m^2: the same for sides of a metre, but it refuses
+small arcs, as a twelfth of a circle of 2 cm.
+"""
 
 _STRAIGHT_ANGLE = 1e-3  # [rad] nearer to half a circle about a centre, the plane is undefined
 
@@ -56,9 +60,9 @@ class Arc:
         u, t = interim - first, last - first
         normal = np.cross(u, t)
         size = float(np.linalg.norm(normal))
-        if size < SMALLEST_CROSS_PRODUCT:
-            raise _no_plane("start, interim point and goal are on one line")
         v = interim - last
+        if size <= FLATTEST * _longest(u, v, t):
+            raise _no_plane("start, interim point and goal are on one line")
         center = first + (u * (t @ t) * (u @ v) - t * (u @ u) * (t @ v)) * 0.5 / size**2
         axis = normal / size
         return cls(link, start, end, center, axis, _angle(first - center, last - center, axis))
@@ -82,7 +86,8 @@ class Arc:
             )
         normal = np.cross(first, last)
         size = float(np.linalg.norm(normal))
-        if size < max(SMALLEST_CROSS_PRODUCT, _STRAIGHT_ANGLE * radii[0] * radii[1]):
+        flattest = FLATTEST * _longest(first, last, last - first)
+        if size <= max(flattest, _STRAIGHT_ANGLE * radii[0] * radii[1]):
             raise _no_plane(
                 "start, centre and goal are on one line, so there is no shorter arc; "
                 "give an `interim` point"
@@ -136,6 +141,11 @@ def _equidistant(center: FloatArray, first: FloatArray, second: FloatArray) -> F
     return center - across * float((center - 0.5 * (first + second)) @ across) / float(
         across @ across
     )
+
+
+def _longest(*sides: FloatArray) -> float:
+    """Length of the longest of some ways [m]."""
+    return max(float(np.linalg.norm(side)) for side in sides)
 
 
 def _no_plane(why: str) -> PlanningFailed:

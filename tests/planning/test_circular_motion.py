@@ -114,6 +114,21 @@ def test_cartesian_limits_hold_on_the_final_samples_and_are_used(cell, kind):
     assert np.linalg.norm(accelerations, axis=1).max() > 0.07
 
 
+@pytest.mark.parametrize(
+    ("kind", "radius", "sweep"), [("interim", 0.02, np.pi / 6), ("center", 0.002, np.pi / 2)]
+)
+def test_a_small_arc_is_no_line(cell, kind, radius, sweep):
+    start = here(cell).translation
+    center, axis = moved(start, radius, 0, 0), np.array([0, 0, 1.0])
+    end, middle = (on_circle(start, center, axis, share * sweep) for share in (1.0, 0.5))
+    point = ArcPoint(kind, middle if kind == "interim" else center)
+    plan = cell.planner.plan_circular(ARM, cell.state, PositionGoal(TCP, end), point, FAST)
+    assert plan.explanation["sweep"] == pytest.approx(sweep)
+    assert plan.explanation["radius"] == pytest.approx(radius)
+    track = np.array([pose.translation for pose in poses(cell, plan)])
+    assert np.linalg.norm(track - center, axis=1) == pytest.approx(radius, abs=1e-4)
+
+
 def no_circle(cell, goal, point):
     with pytest.raises(PlanningFailed) as caught:
         cell.planner.plan_circular(ARM, cell.state, PositionGoal(TCP, goal), point, FAST)
@@ -121,7 +136,7 @@ def no_circle(cell, goal, point):
     return caught.value.message
 
 
-def test_points_that_make_no_circle_are_refused_as_pilz_does(cell):
+def test_points_that_make_no_circle_are_refused(cell):
     start = here(cell).translation
     x = np.array([1.0, 0, 0])
     on_a_line = no_circle(cell, start + 0.06 * x, ArcPoint("interim", start + 0.03 * x))
