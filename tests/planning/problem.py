@@ -9,6 +9,7 @@ import pinocchio as pin
 from harness.core.errors import PlanningFailed
 from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3
+from harness.planning.checker import MARGIN_SLACK
 from harness.planning.verify import EFFORT_TOLERANCE, FINAL_RESOLUTION, LIMIT_TOLERANCE
 from harness.ports import MotionPlan, PlanningOptions, PoseGoal
 from tests.planning.lesson import Cell, at, open_manipulator, thing, ur
@@ -21,6 +22,7 @@ OPTIONS = PlanningOptions(
     padding=0.002,  # as scenarios have it when they say nothing
 )
 FINE = FINAL_RESOLUTION / 3  # [rad]
+ROUNDING = 1e-6  # [m] of the distance between two shapes that touch
 
 UR_BENT = (-0.86, -1.5, 1.6, -1.7, -1.57, -1.6)  # the gripper points down, in front of the arm
 HOMES = {"ur3e": UR_BENT, "ur5e": UR_BENT, "open_manipulator_x": (0.0, -1.05, 0.35, 0.7)}
@@ -75,6 +77,11 @@ class Problem:
         rotation = pin.exp3(np.array(turn, dtype=float)) @ here.rotation
         return PoseGoal(self.link, SE3(rotation, here.translation + np.array(shift)))
 
+    def block(self, goal, size) -> None:
+        """Put a cube where the straight way to joint positions has the link halfway."""
+        middle = self.pose(0.5 * (self.start + goal)).translation
+        self.cell.add(thing("block", at(*middle), Shape(Box((size, size, size)))))
+
     def plan(self, what, *arguments, **more) -> MotionPlan | None:
         """A plan that keeps what every plan must; None when it failed as planning may."""
         more = {"options": OPTIONS, **more}
@@ -123,7 +130,12 @@ class Problem:
             assert np.all(np.abs(pin.rnea(robot.model, data, q, v, a)[arm]) <= most)
 
     def _check_free(self, positions) -> None:
-        """No pair touches by its exact shapes, at a third of the planner's finest resolution."""
+        """No pair touches by its exact shapes, at a third of the planner's finest resolution.
+
+        A pair that touches at the start already may leave, and gets no deeper than `MARGIN_SLACK`.
+        """
+        scene, start = self.cell.scene, self.cell.with_arm(positions[0])
+        at_start = {(touch.first, touch.second): touch.distance for touch in scene.touches(start)}
         model = self.cell.scene.collision_model()
         robot, geometry = model.robot, model.geometry
         data, geometry_data = robot.model.createData(), geometry.createData()
@@ -132,6 +144,9 @@ class Problem:
             for share in np.arange(1, count + 1) / count:
                 state = self.cell.with_arm(first + share * (second - first))
                 q = robot.configuration(state)
-                assert not pin.computeCollisions(
-                    robot.model, data, geometry, geometry_data, q, True
-                )
+                if pin.computeCollisions(robot.model, data, geometry, geometry_data, q, True):
+                    touches = scene.touches(state)
+                    assert touches
+                    for touch in touches:
+                        least = at_start.get((touch.first, touch.second), np.inf) - MARGIN_SLACK
+                        assert touch.distance > least - ROUNDING

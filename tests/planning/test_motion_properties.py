@@ -77,6 +77,7 @@ def around(size, count):
 any_arm = st.sampled_from(["ur3e", "ur5e", "open_manipulator_x"])
 six_joints = st.sampled_from(["ur3e", "ur5e"])
 nearby, far = around(0.3, 6), around(1.2, 6)
+TURN_OF_BASE = np.eye(6)[0]
 boxes = st.lists(
     st.tuples(
         around(0.08, 3).map(lambda size: size + 0.12),
@@ -86,13 +87,24 @@ boxes = st.lists(
 )
 
 
-@motion(model=any_arm, off=nearby, boxes=boxes, target=far, seed=st.integers(0, 2**32 - 1))
-def a_free_motion_ends_where_asked_and_comes_out_the_same_again(model, off, boxes, target, seed):
+@motion(
+    model=any_arm,
+    off=nearby,
+    boxes=boxes,
+    swing=st.floats(-1.6, -1.2),
+    target=nearby,
+    block=st.floats(0.04, 0.08),
+    seed=st.integers(0, 2**32 - 1),
+)
+def a_motion_round_a_block_ends_where_asked_and_comes_out_the_same_again(
+    model, off, boxes, swing, target, block, seed
+):
     options = replace(OPTIONS, seed=seed)
     plans = []
     for _ in range(2):
         problem = Problem(model, off, boxes)
-        goal = problem.from_home(target)
+        goal = problem.from_home(target + swing * TURN_OF_BASE)
+        problem.block(goal, block)
         plans.append(problem.plan("plan", JointGoal(goal), options=options))
     first, second = plans
     if first is None or second is None:
@@ -150,7 +162,7 @@ def a_ptp_is_straight_in_joint_space(model, off, target):
     if plan is None:
         return False
     track, way = plan.trajectory.positions, goal - problem.start
-    shares = (track - problem.start) @ way / max(float(way @ way), 1e-12)
+    shares = (track - problem.start) @ way / max(float(way @ way), 1e-18)
     assert np.abs(track - problem.start - shares[:, None] * way).max() < 1e-9
     assert np.abs(track[-1] - goal).max() < 1e-9
     return True
@@ -303,14 +315,16 @@ def off_lines(place, points):
     model=six_joints,
     off=nearby,
     shift=around(0.1, 3),
-    tilt=st.floats(0.05, 0.5),
+    across=st.floats(0.2, 0.35),
+    tilt=st.floats(0.02, 0.5),
     yaw=st.sampled_from([0.3, 4.0]),
 )
-def a_cone_a_box_and_a_band_hold_on_every_sample_and_between(model, off, shift, tilt, yaw):
+def a_cone_a_box_and_a_band_hold_on_every_sample_and_between(model, off, shift, across, tilt, yaw):
     problem = Problem(model, off)
+    shift = shift + np.array([0, across, 0.1])  # the straight joint motion bulges out of the box
     here, goal = problem.pose(problem.start), problem.moved(shift)
     middle = 0.5 * (here.translation + goal.pose.translation)
-    size = np.abs(shift) + 0.06
+    size = np.abs(shift) + 0.02
     names = [joint.name for joint in problem.joints]
     held = PathConstraints(
         OrientationBand(problem.link, here.rotation, (tilt, tilt, yaw)),
