@@ -17,7 +17,7 @@ from harness.assertions.contacts import (
     side_forces,
     weld_note,
 )
-from harness.assertions.poses import is_round, link_poses, object_poses, present
+from harness.assertions.poses import link_poses, object_poses, present
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
 from harness.assertions.temporal import episodes
 from harness.assertions.text import amount
@@ -31,6 +31,7 @@ from harness.core.pose_arrays import (
     rotate,
     rotation_angle,
 )
+from harness.core.symmetry import ANY, equal_turns
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import Measure, Run
 from harness.spec.checks import Grasped, Released, Slip
@@ -180,7 +181,7 @@ def drift_in_hand(run: Run, name: str) -> tuple[str, FloatArray, FloatArray, Boo
         held = during & (np.arange(count) >= gripped[0])
         speaks |= held
         drift[held] = np.linalg.norm(error[held, :3] - zero[:3], axis=1)
-        if is_round(object_record(run, record.represents)):
+        if equal_turns(object_record(run, record.represents).shapes, np.eye(3)) == ANY:
             axis = np.array([0.0, 0.0, 1.0])
             turned = angle_between(rotate(error[:, 3:], axis), rotate(zero[3:], axis))
         else:

@@ -6,10 +6,9 @@ import numpy as np
 
 from harness.assertions.temporal import TIME_RESOLUTION
 from harness.assertions.window import NotObservable, object_record
-from harness.core.geometry import Capsule, Cylinder, Sphere
 from harness.core.pose_arrays import IDENTITY
 from harness.core.types import BoolArray, FloatArray
-from harness.recording.run import ObjectRecord, Run
+from harness.recording.run import Run
 
 JUMP = 0.005
 """An object that a scene step moves further than this between two samples was put there [m]."""
@@ -115,13 +114,3 @@ def speeds(run: Run, poses: FloatArray) -> tuple[FloatArray, FloatArray]:
         linear[1:][appeared] = angular[1:][appeared] = 0.0
     linear[np.isnan(poses[:, 0])] = angular[np.isnan(poses[:, 0])] = np.nan
     return linear, angular
-
-
-def is_round(record: ObjectRecord) -> bool:
-    """Whether turning about the object's own z axis leaves it as it is."""
-    return bool(record.shapes) and all(
-        isinstance(shape.geometry, Cylinder | Capsule | Sphere)
-        and float(np.abs(shape.pose.translation[:2]).max()) < 1e-9
-        and (isinstance(shape.geometry, Sphere) or abs(shape.pose.rotation[2, 2]) > 1 - 1e-12)
-        for shape in record.shapes
-    )

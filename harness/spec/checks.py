@@ -88,7 +88,11 @@ class Released(ObjectCheck):
 
 
 class Placed(ObjectCheck):
-    """The object rests on a support, released and still, at a pose if one is given."""
+    """The object rests on a support, released and still, at a pose if one is given.
+
+    A `pose` without a rotation allows every turn about the vertical after which the object looks
+    the same, as `place` does.
+    """
 
     check: Literal["placed"] = "placed"
     on: Name | None = Field(

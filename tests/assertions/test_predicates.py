@@ -345,6 +345,36 @@ def test_what_is_not_quite_placed_is_told_why(changes, spec, said):
     assert said in answer.reason
 
 
+@pytest.mark.parametrize(
+    ("shape", "yaw", "stated", "error"),
+    [
+        (Box((0.04, 0.05, 0.04)), 0.005, None, 0.005),
+        (Box((0.04, 0.05, 0.04)), np.pi + 0.005, None, 0.005),
+        (Box((0.04, 0.05, 0.04)), np.pi / 2, None, np.pi / 2),
+        (Box((0.04, 0.04, 0.04)), 0.005 - np.pi / 2, None, 0.005),
+        (Cylinder(0.02, 0.04), 1.0, None, 0.0),
+        (Box((0.04, 0.04, 0.04)), 1.5, (0, 0, 0), 1.5),
+        (Cylinder(0.02, 0.04), 1.0, (0, 0, 0), 1.0),
+    ],
+)
+def test_what_looks_the_same_turned_is_placed_where_no_rotation_is_stated(
+    shape, yaw, stated, error
+):
+    standing = at(200, (0, 0, 0.02))
+    standing[:, 3:] = SE3.from_xyz_rpy(rpy=(0, 0, yaw)).quat_wxyz
+    run = make_run(
+        objects=(TABLE, thing("box", shape)),
+        contact_forces=STANDING,
+        object_poses={"box": standing},
+    )
+    pose = Pose(xyz=(0, 0, 0.02), rpy=stated)
+    tolerance = PoseTolerance(position=0.01, orientation=0.01)
+    answer = verdict(run, Placed(object="box", pose=pose, tolerance=tolerance))
+    assert answer.status == ("passed" if error < 0.01 else "failed")
+    measure = next(each for each in answer.measures if each.name == "orientation error")
+    assert measure.value == pytest.approx(error, abs=1e-9)
+
+
 def test_a_turning_point_of_a_swing_is_not_still():
     swing = at(200, (0, 0, 0.02))
     swing[:, 0] = 0.001 * np.cos(np.arange(200) * 2 * np.pi / 20)

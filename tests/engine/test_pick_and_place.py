@@ -235,3 +235,53 @@ def test_what_the_hand_touches_at_the_start_is_told_though_it_opens_first(
     told = [note for note in found.notes if note.startswith("where the robot starts")]
     assert len(told) == touching
     assert all("and box touch (2.0 mm deep)" in note for note in told)
+
+
+STANDING_AT = "{frame: base_link, xyz: [0.28, -0.1, 0.055]"
+
+
+@pytest.mark.parametrize(
+    ("shape", "stated", "turns", "taken"),
+    [
+        ("cylinder: {radius: 2 cm, length: 12 cm}", "", 8, 2),
+        ("box: {size: [4 cm, 4 cm, 12 cm]}", "", 4, 2),
+        ("cylinder: {radius: 2 cm, length: 12 cm}", ", rpy: [0, 0, 0]", 1, 0),
+    ],
+)
+def test_what_looks_the_same_turned_is_placed_where_one_turn_is_blocked(
+    tmp_path, shape, stated, turns, taken
+):
+    """Plates that the planner alone knows stand where fingers would go."""
+    added = "".join(
+        f"""
+            - name: {name}
+              box: {{size: [0.06, 0.01, 0.13]}}
+              pose: {{frame: base_link, xyz: [0.28, {y}, 0.07]}}
+              in: planning"""
+        for name, y in (("plate", -0.03), ("other_plate", -0.17))
+    )
+    placed = f"pose: {STANDING_AT}{stated}}}"
+    result, record = run(
+        tmp_path,
+        f"""
+        - remove_object: [green_cylinder, coke_can_steel, red_box]
+        - settle: {{}}
+        - move_to: mogi_home
+        - pick: thing
+        - add_object:{added}
+        - place: {{{placed}}}
+        - settle: {{}}
+          expect:
+            - placed: {{object: thing, {placed}, tolerance: {{position: 5 mm, orientation: 2 deg}}}}
+        """,
+        robot=UR,
+        world="lesson_ur",
+        rest=f"""
+        objects:
+          - {{name: thing, {shape}, pose: {{frame: base_link, xyz: [0.25, -0.3, 0.056]}}}}
+        """,
+    )
+    step = next(step for step in record.steps if step.verb == "place")
+    assert step.result["turns"] == turns
+    assert step.result["turn"] == max(taken, 1)
+    assert result.outcome == ("passed" if taken else "failed"), failures(result)

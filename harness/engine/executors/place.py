@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
 from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.spatial import SE3
+from harness.core.symmetry import equal_turns
 from harness.core.types import FloatArray
 from harness.engine.cell import Cell
 from harness.engine.executors.pick import (
@@ -17,7 +19,8 @@ from harness.engine.executors.pick import (
     world_pose_spec,
 )
 from harness.engine.goals import TcpGoal, group_of
-from harness.engine.grasping import UP, gripper_axes, pitch_of
+from harness.engine.grasp_choice import first_that_goes
+from harness.engine.grasping import UP, gripper_axes, pitch_of, turn_about
 from harness.engine.program import ProgramStep
 from harness.engine.registry import execute
 from harness.ports import PositionGoal
@@ -26,6 +29,8 @@ from harness.spec.steps import Place, Release, Travel
 
 REFINEMENTS = 4
 PUT_DOWN_GAP = 0.001  # [m] above the target, so that the support is touched when the fingers open
+TURNS_OF_ROUND = 8
+"""As many turns are tried of what is round about the vertical."""
 DEFAULT_RETREAT = Travel(min_distance=0.03, max_distance=0.1)
 
 
@@ -36,22 +41,9 @@ def place(step: Place, cell: Cell) -> None:
     if name is None or name not in cell.scene.attached():
         what = f"'{name}' is not held" if name else "nothing is held"
         raise StepFailed("INVALID_OBJECT_NAME", f"{what}, so nothing can be placed")
-    stated = cell.world_pose(step.pose)
-    target = SE3(stated.rotation, stated.translation + PUT_DOWN_GAP * UP)
-    along = -UP
-    if step.approach is not None and step.approach.direction is not None:
-        along = cell.world_direction(step.approach.direction)
-    before = SE3(target.rotation, target.translation - travel_distance(step.approach) * along)
     backwards = _retreat_direction(cell)
     children = [
-        cell.child(
-            "reach",
-            _tcp_goal(name, before, step, cell).move_to(step.group),
-            f"move_to above the place of {name}",
-        ),
-        _touching(
-            cell.child("lower", _tcp_goal(name, target, step, cell).lin(step.group), f"lin {name}")
-        ),
+        *_lowering(name, step, cell),
         cell.child("release", Release(object=name), f"release {name}"),
         cell.child(
             "retreat",
@@ -60,6 +52,56 @@ def place(step: Place, cell: Cell) -> None:
         ),
     ]
     cell.run_children(children)
+
+
+def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
+    """The free motion above the place, and the straight one down to it."""
+    along = -UP
+    if step.approach is not None and step.approach.direction is not None:
+        along = cell.world_direction(step.approach.direction)
+    back = travel_distance(step.approach) * along
+    ways: list[tuple[TcpGoal, TcpGoal]] = []
+    for stated in _equal_poses(name, step, cell):
+        target = SE3(stated.rotation, stated.translation + PUT_DOWN_GAP * UP)
+        before = SE3(target.rotation, target.translation - back)
+        ways.append((_tcp_goal(name, before, step, cell), _tcp_goal(name, target, step, cell)))
+    chosen = first_that_goes(
+        ways,
+        group_of(cell, step.group),
+        cell,
+        padding=0.0,
+        may_end=lambda state: _can_open(state, cell),
+    )
+    cell.notes.result.update(turns=len(ways), turn=chosen + 1)
+    before, target = ways[chosen]
+    return [
+        cell.child("reach", before.move_to(step.group), f"move_to above the place of {name}"),
+        _touching(cell.child("lower", target.lin(step.group), f"lin {name}")),
+    ]
+
+
+def _can_open(state: FloatArray, cell: Cell) -> bool:
+    """Whether the open hand touches nothing but what it holds, the arm standing so."""
+    hand_open = np.array(state)
+    hand_open[cell.description.joint_index[cell.gripper.joint]] = cell.gripper.open_position
+    return not cell.scene.touches(cell.description.with_mimics(hand_open))
+
+
+def _equal_poses(name: str, step: Place, cell: Cell) -> list[SE3]:
+    """T_world_object of every way to put it there: as stated, then turned further and further.
+
+    An arm of fewer than six joints turns the object as it reaches there: it has one way.
+    """
+    stated = cell.world_pose(step.pose)
+    if step.pose.has_rotation or not arm_has_six_joints(cell, step.group):
+        return [stated]
+    obj = cell.presence[name].obj
+    count = equal_turns(obj.visuals or obj.shapes, stated.rotation) or TURNS_OF_ROUND
+    turns = sorted(range(count), key=lambda turn: min(turn, count - turn))
+    return [
+        SE3(turn_about(UP, 2 * math.pi * turn / count) @ stated.rotation, stated.translation)
+        for turn in turns
+    ]
 
 
 def _touching(step: ProgramStep) -> ProgramStep:
