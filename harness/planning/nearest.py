@@ -39,14 +39,11 @@ class ShapePair:
         """Signed distance at a sample [m]."""
         seen = coal.Transform3s(self.seen.rotations[sample], self.seen.translations[sample])
         a, b = self.first, self.second
-        return float(
-            coal.distance(
-                a.geometry, seen * a.pose, b.geometry, b.pose, _REQUEST, coal.DistanceResult()
-            )
-        )
+        _RESULT.clear()
+        return coal.distance(a.geometry, seen * a.pose, b.geometry, b.pose, _REQUEST, _RESULT)
 
 
-_REQUEST = coal.DistanceRequest()
+_REQUEST, _RESULT = coal.DistanceRequest(), coal.DistanceResult()
 
 
 def pairs_between(
@@ -83,31 +80,33 @@ def smallest_distances(pairs: Sequence[ShapePair], cutoff: float) -> tuple[Float
     near = np.flatnonzero(first - total < cutoff)
     if not len(near):
         return nearest, which
-    kept = [pairs[int(index)] for index in near]
+    kept = [pairs[index] for index in near.tolist()]
     travelled = np.column_stack([pair.travel for pair in kept])  # (N, K)
-    known = first[near].copy()  # the distance last measured
-    at = np.zeros(len(kept), dtype=np.int64)  # and the sample
-    key = known.copy()  # known + travel then: the lower bound at j is key - travelled[j]
+    known: list[float] = first[near].tolist()  # the distance last measured
+    at = [0] * len(kept)  # and the sample
+    key = first[near]  # known + travel then: the lower bound at j is key - travelled[j]
     sample, best_pair = 0, -1
 
     def measured(index: int) -> float:
         if travelled[sample, index] - travelled[at[index], index] > STILL:
-            known[index] = kept[index].distance(sample)
+            known[index] = distance = kept[index].distance(sample)
             at[index] = sample
-            key[index] = known[index] + travelled[sample, index]
-        return float(known[index])
+            key[index] = distance + travelled[sample, index]
+        return known[index]
 
     while sample < count:
         previous, best, best_pair = best_pair, cutoff, -1
         if previous >= 0 and measured(previous) < best:  # most likely the smallest again
-            best, best_pair = float(known[previous]), previous
+            best, best_pair = known[previous], previous
         bound = key - travelled[sample]
-        rivals = np.flatnonzero(bound < best)
-        for index in map(int, rivals[np.argsort(bound[rivals], kind="stable")]):
-            if bound[index] >= best:
+        rivals = (bound < best).nonzero()[0]
+        bounds = bound[rivals]
+        order = bounds.argsort(kind="stable")
+        for index, lowest in zip(rivals[order].tolist(), bounds[order].tolist(), strict=True):
+            if lowest >= best:
                 break
             if measured(index) < best:
-                best, best_pair = float(known[index]), index
+                best, best_pair = known[index], index
         until = _unchanged_until(sample, best_pair, best, key, travelled, at, cutoff)
         nearest[sample:until] = best
         which[sample:until] = near[best_pair] if best_pair >= 0 else -1
@@ -121,7 +120,7 @@ def _unchanged_until(
     best: float,
     key: FloatArray,
     travelled: FloatArray,
-    at: IntArray,
+    at: Sequence[int],
     cutoff: float,
 ) -> int:
     """The first sample after this one at which something has to be measured again."""
