@@ -139,11 +139,10 @@ class ContactRecord:
     def _by_pair(self, begin: int, end: int) -> Iterator[tuple[tuple[int, int], Array]]:
         """Numbers of two bodies that touch, the smaller first, and which contacts are theirs."""
         bodies = self._physics.model.geom_bodyid[self._geoms[begin:end]]
-        bodies.sort(axis=1)
-        codes = bodies[:, 0].astype(np.int64) * self._physics.model.nbody + bodies[:, 1]
-        for code in np.unique(codes):
-            first, second = divmod(int(code), self._physics.model.nbody)
-            yield (first, second), codes == code
+        first, second = bodies.T
+        codes = np.minimum(first, second) * self._physics.model.nbody + np.maximum(first, second)
+        for code in np.unique(codes).tolist():
+            yield divmod(code, self._physics.model.nbody), codes == code
 
     def _pair(self, first: int, second: int) -> BodyPair:
         """Names of two bodies: a robot's link first, else sorted."""
