@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
@@ -17,6 +18,7 @@ from harness.suite.cases import CaseJob
 
 FORMAT = "armharness-stream/1"
 FILE = "results.jsonl"
+MESHES = (".stl", ".obj", ".dae")
 INPUTS = (
     ".yaml",
     ".yml",
@@ -26,11 +28,11 @@ INPUTS = (
     ".xacro",
     ".srdf",
     ".xml",
-    ".stl",
-    ".obj",
-    ".dae",
+    *MESHES,
 )
-"""Files whose text counts where a scenario names them."""
+"""Files that count where a scenario, or a file that it names, names them."""
+
+_NAME = re.compile(r"""\"([^\"\n]+)\"|'([^'\n]+)'|([^\s\"',\[\]{}<>=]+)""")
 
 
 class Stream:
@@ -107,7 +109,11 @@ def _sorted(overrides: Mapping[str, str]) -> list[str]:
 
 @cache
 def _file_hash(file: Path) -> str:
-    """Hash of a scenario file and of the files that it names, and those that they name."""
+    """Hash of a scenario file and of the files that it names, and those that they name.
+
+    A name is any word or quoted text with the ending of an input, from the folder of the file that
+    says it: to read one too many does no harm. What packages hold is not followed.
+    """
     hasher = hashlib.sha256()
     waiting, seen = [file], set[Path]()
     while waiting:
@@ -120,8 +126,8 @@ def _file_hash(file: Path) -> str:
         except OSError:
             continue
         hasher.update(data)
-        if path.suffix.lower() in (".yaml", ".yml"):
-            words = data.decode("utf-8", "replace").replace(",", " ").replace("}", " ").split()
-            names = sorted({word.strip("\"'[]{}") for word in words})
+        if path.suffix.lower() not in MESHES:
+            text = data.decode("utf-8", "replace")
+            names = sorted({"".join(groups) for groups in _NAME.findall(text)})
             waiting += [path.parent / name for name in names if name.lower().endswith(INPUTS)]
     return hasher.hexdigest()

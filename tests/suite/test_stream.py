@@ -1,0 +1,32 @@
+"""What a result follows from, so that a run that goes on computes what changed."""
+
+import pytest
+
+from harness.suite.cases import CaseJob
+from harness.suite.stream import fingerprint
+
+
+@pytest.fixture
+def cell(tmp_path):
+    """A scenario that names a robot, which names a mesh; returns its job."""
+
+    def write(name, mesh=b"solid", quote='"'):
+        folder = tmp_path / name
+        (folder / "my meshes").mkdir(parents=True)
+        (folder / "my meshes/arm.stl").write_bytes(mesh)
+        (folder / "arm.urdf").write_text('<mesh filename="my meshes/arm.stl"/>')
+        path = folder / "one.scenario.yaml"
+        path.write_text(f"robot: {{urdf: {quote}arm.urdf{quote}}}\n")
+        return CaseJob(path)
+
+    return write
+
+
+def test_the_same_inputs_are_the_same_wherever_they_stand(cell):
+    assert fingerprint(cell("here")) == fingerprint(cell("there"))
+
+
+@pytest.mark.parametrize("quote", ["", "'", '"'])
+def test_what_a_named_file_names_counts(cell, quote):
+    before, after = cell("before", quote=quote), cell("after", b"other", quote)
+    assert fingerprint(before) != fingerprint(after)
