@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.robot.description import Joint, RobotDescription
+from harness.robot.chain import rotations_about
+from harness.robot.description import RobotDescription
 
 
 class LinkPoses:
@@ -41,7 +42,7 @@ class LinkPoses:
                 if joint.kind == "prismatic":
                     p = p + (R @ joint.axis) * value[:, None]
                 else:
-                    R = R @ _turns(joint, value)
+                    R = R @ rotations_about(joint.axis, value)
             self.rotations[joint.child] = R
             self.translations[joint.child] = p
 
@@ -57,14 +58,6 @@ def _ancestors(description: RobotDescription, links: Sequence[str] | None) -> se
             needed.add(name)
             name = parent.get(name)
     return needed
-
-
-def _turns(joint: Joint, angles: FloatArray) -> FloatArray:
-    """Rotations about the joint's axis, shape (N, 3, 3): Rodrigues' formula."""
-    x, y, z = joint.axis
-    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    sine, cosine = np.sin(angles)[:, None, None], np.cos(angles)[:, None, None]
-    return np.eye(3) + sine * K + (1.0 - cosine) * (K @ K)
 
 
 def quats_wxyz(rotations: FloatArray) -> FloatArray:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from harness.core.spatial import SE3
+from harness.robot.chain import motion
 from harness.robot.description import Joint, Link
 from harness.robot.solids import coal_geometry
 from harness.robot.srdf import link_pair
@@ -74,20 +75,9 @@ def link_poses(urdf: Urdf, positions: Mapping[str, float]) -> dict[str, SE3]:
         if joint.mimic is not None:
             value = joint.mimic.multiplier * positions.get(joint.mimic.joint, 0.0)
             value += joint.mimic.offset
-        moved = SE3.identity()
-        if joint.kind == "prismatic":
-            moved = SE3(np.eye(3), joint.axis * value)
-        elif joint.is_movable:
-            moved = SE3(_turn(joint.axis, value), np.zeros(3))
+        moved = motion(joint, value) if joint.is_movable else SE3.identity()
         poses[joint.child] = poses[joint.parent] @ joint.pose @ moved
     return poses
-
-
-def _turn(axis: np.ndarray, angle: float) -> np.ndarray:
-    """Rotation about a unit axis: Rodrigues' formula, shape (3, 3)."""
-    x, y, z = axis
-    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * (K @ K)
 
 
 def coal_transform(pose: SE3) -> Any:
