@@ -167,7 +167,7 @@ class _Composer:
             if isinstance(event, yaml.MappingEndEvent):
                 break
             place = self._place(event)
-            key = self._key(event, events, depth)
+            key = self._key(event, events, depth, place)
             value = self._value(next(events), events, depth + 1)
             if key is None:
                 continue
@@ -178,9 +178,8 @@ class _Composer:
                 entries[key] = Entry(place, value)
         return entries
 
-    def _key(self, event: Any, events: Iterator[Any], depth: int) -> str | None:
+    def _key(self, event: Any, events: Iterator[Any], depth: int, place: Place) -> str | None:
         """A key's text; keys are names, whatever they look like."""
-        place = self._place(event)
         item = self._value(event, events, depth + 1) if _is_nested(event) else None
         if item is not None and isinstance(item.value, dict | list):
             self.problems.append(place.problem("a key is text, not a list or a mapping"))

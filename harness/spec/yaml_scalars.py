@@ -13,6 +13,7 @@ INTEGER = re.compile(r"[-+]?[0-9]+")
 BASED = re.compile(r"0o[0-7]+|0x[0-9a-fA-F]+")
 FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
 NOT_FINITE = re.compile(r"[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)")
+BEGINNINGS = frozenset("-+.0123456789")  # of whatever the four match
 CONSTANTS: dict[str, Scalar] = {
     **dict.fromkeys(("", "~", "null", "Null", "NULL"), None),
     **dict.fromkeys(("true", "True", "TRUE"), True),
@@ -22,8 +23,10 @@ CONSTANTS: dict[str, Scalar] = {
 
 def is_plain_text(text: str) -> bool:
     """Whether a text without quotes is text: no number, boolean or null."""
+    if text in CONSTANTS:
+        return False
     patterns = (INTEGER, FLOAT, BASED, NOT_FINITE)
-    return text not in CONSTANTS and not any(each.fullmatch(text) for each in patterns)
+    return text[0] not in BEGINNINGS or not any(each.fullmatch(text) for each in patterns)
 
 
 def scalar_of(text: str) -> Scalar:
