@@ -17,10 +17,10 @@ from harness.planning.task import PlanningTask
 from harness.planning.timing import TimingError, time_blended, time_stopping, time_straight
 from harness.planning.verify import (
     FINAL_RESOLUTION,
-    VERIFIED_RESOLUTION,
     Defect,
     distances_to_path,
     find_departure,
+    verified_resolution,
 )
 from harness.ports import MotionPlan
 
@@ -76,7 +76,7 @@ def _searched(
     defect: Defect | None = None
     try:
         for found in verified_paths(task.checker, task.start, goals, task.options, effort):
-            for resolution in (FINAL_RESOLUTION, VERIFIED_RESOLUTION):
+            for resolution in (FINAL_RESOLUTION, verified_resolution(task.checker.padding)):
                 short = shorten(found.waypoints, task.checker, resolution, found.seed)
                 timed = _timed(task, short)
                 if isinstance(timed, JointTrajectory):

@@ -10,6 +10,9 @@ from harness.planning.checker import MotionChecker
 TRIES = 60
 """Random shortcuts tried on a path."""
 
+WORTH = 0.01
+"""Share of a path that a random shortcut must save to be checked: most save next to nothing."""
+
 
 def shorten(
     waypoints: FloatArray, checker: MotionChecker, resolution: float, seed: int
@@ -66,6 +69,8 @@ def _shortcut(
         + (points[index + 1] - points[index]) * ((place - knots[index]) / _length(knots, index))
         for place, index in ((first, before), (second, after))
     )
+    if second - first - float(np.linalg.norm(b - a)) < WORTH * knots[-1]:
+        return path
     edges = ((a, b), (points[before], a), (b, points[after + 1]))  # parts are checked at new states
     if not all(checker.edge_free(*edge, resolution) for edge in edges):
         return path

@@ -13,7 +13,7 @@ import ompl.util as ou
 from harness.planning.compiled import When, use_compiled
 from harness.planning.path_search import Effort, verified_paths
 from harness.planning.shortening import shorten
-from harness.planning.verify import FINAL_RESOLUTION, VERIFIED_RESOLUTION
+from harness.planning.verify import FINAL_RESOLUTION, verified_resolution
 from harness.ports import PlanningOptions
 from tests.benchmarks.planning.problems import EveryPair, Problem
 
@@ -54,12 +54,12 @@ def ours(problem: Problem, when: When, seed: int = 1) -> Outcome:
     begin = time.process_time()
     checker, effort = problem.checker(), Effort()
     options = PlanningOptions(seed=seed, max_state_checks=2_000_000)
-    planned = None
+    planned, fine = None, verified_resolution(checker.padding)
     for found in verified_paths(checker, problem.start, [problem.goal], options, effort):
         planned = planned or time.process_time()
-        for resolution in (FINAL_RESOLUTION, VERIFIED_RESOLUTION):
+        for resolution in (FINAL_RESOLUTION, fine):
             short = shorten(found.waypoints, checker, resolution, found.seed)
-            if checker.path_free(short, VERIFIED_RESOLUTION):
+            if checker.path_free(short, fine):
                 done = time.process_time()
                 return Outcome(planned - begin, done - begin, effort.checks, short)
     spent = time.process_time() - begin

@@ -8,7 +8,7 @@ import roboplan.core as core
 import roboplan.rrt as rrt
 
 from harness.core.geometry import Box, Cylinder
-from harness.planning.verify import FINAL_RESOLUTION, VERIFIED_RESOLUTION
+from harness.planning.verify import FINAL_RESOLUTION, UNPADDED_RESOLUTION
 from harness.robot.write_urdf import write_urdf
 from tests.benchmarks.planning.arms import arm, folder
 from tests.benchmarks.planning.contenders import PATIENCE, RANGE, SPACING, Outcome
@@ -29,14 +29,14 @@ def roboplan(problem: Problem, seed: int = 1) -> Outcome:
 
 def roboplan_verified(problem: Problem, seed: int = 1) -> Outcome:
     """Held to what this project's paths are held to: verified, and finer when that fails."""
-    return _planned(problem, seed, LEVELS, VERIFIED_RESOLUTION)
+    return _planned(problem, seed, LEVELS, UNPADDED_RESOLUTION)
 
 
 LEVELS = (
     (SPACING, FINAL_RESOLUTION),
     (FINAL_RESOLUTION, FINAL_RESOLUTION),
-    (FINAL_RESOLUTION, VERIFIED_RESOLUTION),
-    (VERIFIED_RESOLUTION, VERIFIED_RESOLUTION),
+    (FINAL_RESOLUTION, UNPADDED_RESOLUTION),
+    (UNPADDED_RESOLUTION, UNPADDED_RESOLUTION),
 )
 """Spacings of states while planning and while cutting corners [rad]."""
 

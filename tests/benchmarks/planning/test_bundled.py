@@ -1,0 +1,90 @@
+"""Planning with the bundled arms, all of primitive shapes, on the lesson's tables."""
+
+import statistics
+import time
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from harness.planning.checker import MotionChecker
+from harness.planning.compiled import use_compiled
+from harness.planning.path_search import Effort, verified_paths
+from harness.planning.robot_model import GroupSpace
+from harness.planning.shortening import shorten
+from harness.planning.verify import FINAL_RESOLUTION
+from harness.ports import PlanningOptions
+from tests.planning.lesson import FIRST_BOXES, Cell, boxes
+from tests.planning.problem import HOMES, description_of
+
+GOALS = 60
+"""Random free positions that each arm goes to, one after the other."""
+
+OPTIONS = PlanningOptions(seed=1, padding=0.002)
+"""As scenarios have it when they say nothing."""
+
+FEW = GOALS // 4
+"""Of them may not be found within the budget: nobody made them to be solvable."""
+
+WHEN = ("never", "always")
+LONGEST = {"never": 0.15, "always": 0.03}
+"""Medians that would be a step back [s], twice those on a busy machine; 10 ms are wanted."""
+
+
+@pytest.mark.benchmark
+@pytest.mark.parametrize("when", WHEN)
+@pytest.mark.parametrize("model", list(HOMES))
+def test_bundled_arms_plan_and_shorten_in_milliseconds(model, when, tell):
+    use_compiled(when)
+    cell = Cell(description_of(model))
+    cell.add(boxes(*FIRST_BOXES))
+    ends = list(_free_positions(cell, np.array(HOMES[model])))
+    _motion(cell, ends[0], ends[1])  # warm
+    spent = {"straight": [], "searched": [], "not solved": []}
+    for start, end in pairwise(ends):
+        seconds, how = _motion(cell, start, end)
+        spent[how].append(seconds)
+    use_compiled("when it pays")
+    every = [seconds for part in spent.values() for seconds in part]
+    heading = (
+        "bundled arms on the lesson's tables: number of motions, median ms to plan and shorten"
+    )
+    if (model, when) == (next(iter(HOMES)), WHEN[0]):
+        tell(heading, "arm", "compiled", "all", *spent)
+    tell(heading, model, when, *(_cell(part) for part in (every, *spent.values())))
+    assert len(spent["not solved"]) <= FEW
+    assert statistics.median(every) <= LONGEST[when]
+
+
+def _motion(cell: Cell, start: np.ndarray, end: np.ndarray) -> tuple[float, str]:
+    """Time of what `move_to` does before it times a path [s], and how the path came about."""
+    begin = time.process_time()
+    group = cell.description.arm_group
+    space = GroupSpace(cell.kinematics.robot, group, cell.with_arm(start))
+    checker = MotionChecker(cell.scene, space, start, OPTIONS.padding)
+    how = "straight"
+    if not checker.edge_free(start, end, FINAL_RESOLUTION):
+        how = "not solved"
+        for found in verified_paths(checker, start, [end], OPTIONS, Effort()):
+            shorten(found.waypoints, checker, FINAL_RESOLUTION, found.seed)
+            how = "searched"
+            break
+    return time.process_time() - begin, how
+
+
+def _free_positions(cell: Cell, home: np.ndarray):
+    """The home and random positions that keep the padding."""
+    space = GroupSpace(cell.kinematics.robot, cell.description.arm_group, cell.with_arm(home))
+    checker = MotionChecker(cell.scene, space, home, OPTIONS.padding)
+    rng = np.random.default_rng(4)
+    yield home
+    found = 0
+    while found < GOALS:
+        positions = rng.uniform(np.maximum(space.lower, -np.pi), np.minimum(space.upper, np.pi))
+        if checker.state_free(positions):
+            found += 1
+            yield positions
+
+
+def _cell(seconds: list[float]) -> str:
+    return f"{len(seconds)}: {1000 * statistics.median(seconds):.2f}" if seconds else "-"
