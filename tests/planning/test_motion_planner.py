@@ -279,3 +279,17 @@ def test_padding_widens_what_must_be_gone_around():
     error = failure(cell.planner.plan, ARM, cell.state, goal, PlanningOptions(padding=0.08))
     assert error.code == "GOAL_IN_COLLISION"
     assert error.facts["touches"][0]["distance"] > 0
+
+
+def test_a_pose_goal_ends_in_the_cheapest_branch_when_the_straight_way_is_free():
+    cell = Cell(ur("ur5e"), with_tables=False)
+    nearest = np.array([-0.86, -1.5, 1.6, -1.7, -1.57, -1.6])
+    goal = PoseGoal(TCP, cell.kinematics.link_pose(cell.with_arm(nearest), TCP))
+    cell.state = cell.with_arm([nearest[0] + 0.8, *nearest[1:]])
+    branches = cell.kinematics.solve(ARM, goal, cell.state, 0)
+    assert len(branches) >= 4
+    space = GroupSpace(cell.kinematics.robot, ARM, cell.state)
+    costs = [space.effort(space.part(cell.state), positions) for positions in branches]
+    assert costs == sorted(costs)
+    plan = cell.planner.plan(ARM, cell.state, goal, PlanningOptions())
+    assert np.allclose(plan.trajectory.positions[-1], branches[0], atol=1e-9)
