@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -22,19 +24,37 @@ from harness.planning.verify import (
     find_departure,
     verified_resolution,
 )
-from harness.ports import MotionPlan
+from harness.ports import MotionPlan, PlanningOptions
 
 BLEND_DEVIATIONS = (0.05, 0.01)
 """How far the timed path may leave the checked one at its corners [rad]; then it stops there."""
 
-LONGEST_DETOUR = 2.0
-"""A straight way to a farther solution is taken only up to this many times the nearest's length."""
+CHEAPER = 0.95
+"""Length at most, as a share of the way that was found, of one to another solution worth a search.
+"""
+
+CHEAPER_CHECKS = 10_000
+"""State checks to search ways to cheaper solutions; as many as the first way took, if more."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Motion:
+    """A verified motion, its statistics, and how much of the arm it moves."""
+
+    trajectory: JointTrajectory
+    end: FloatArray
+    statistics: dict[str, Any]
+    effort: float
 
 
 def find_motion(
     task: PlanningTask, goals: Sequence[FloatArray], explanation: dict[str, Any]
 ) -> MotionPlan:
-    """A verified motion from the task's start to one of the goals.
+    """A verified motion from the task's start to the goal that is cheapest to reach.
+
+    Cheap is what moves little of the arm, along the whole way. The first straight way that is free
+    is taken for a start, else a way that is searched to any of the goals. Then those that are
+    nearer than that way is long are searched, as long as one of them is found with few checks.
 
     Args:
         task: What is asked.
@@ -44,48 +64,82 @@ def find_motion(
     Raises:
         PlanningFailed: PLANNING_FAILED (budget used up), INVALID_MOTION_PLAN (nothing found holds).
     """
-    straight = _straight(task, goals)
-    if straight is None:
-        return _searched(task, goals, explanation)
-    end, trajectory = straight
-    statistics = task.statistics("straight line", trajectory, [task.start, end])
-    return MotionPlan(trajectory, statistics, _chosen(explanation, end))
+    found = _straight(task, goals) or _searched(task, goals, explanation)
+    found = _cheapest(task, goals, found)
+    statistics = {**found.statistics, "state_checks": task.checker.checks}
+    return MotionPlan(found.trajectory, statistics, _chosen(explanation, found.end))
 
 
-def _straight(
-    task: PlanningTask, goals: Sequence[FloatArray]
-) -> tuple[FloatArray, JointTrajectory] | None:
+def _straight(task: PlanningTask, goals: Sequence[FloatArray]) -> _Motion | None:
     """A verified straight motion to the first goal that has one, or None."""
     space, checker = task.space, task.checker
-    nearest = space.effort(task.start, goals[0])
     for end in goals:
-        if space.effort(task.start, end) > LONGEST_DETOUR * nearest + 1e-9:
-            break
         if checker.edge_free(task.start, end, FINAL_RESOLUTION):
             trajectory = time_straight(space.joint_names, task.start, end, task.limits)
             if task.defect(trajectory, end) is None:
-                return end, trajectory
+                ends = [task.start, end]
+                statistics = task.statistics("straight line", trajectory, ends)
+                return _Motion(trajectory, end, statistics, space.effort(task.start, end))
     return None
 
 
 def _searched(
     task: PlanningTask, goals: Sequence[FloatArray], explanation: dict[str, Any]
-) -> MotionPlan:
+) -> _Motion:
     """Search, shorten, time and verify; finer when verification finds something."""
     effort = Effort()
-    defect: Defect | None = None
     try:
-        for found in verified_paths(task.checker, task.start, goals, task.options, effort):
-            for resolution in (FINAL_RESOLUTION, verified_resolution(task.checker.padding)):
-                short = shorten(found.waypoints, task.checker, resolution, found.seed)
-                timed = _timed(task, short)
-                if isinstance(timed, JointTrajectory):
-                    statistics = _statistics(task, found, effort, short, timed)
-                    return MotionPlan(timed, statistics, _chosen(explanation, short[-1]))
-                defect = timed
+        found = _first_that_holds(task, goals, task.options, effort)
     except ValueError as problem:
         raise PlanningFailed("PLANNING_FAILED", str(problem)) from problem
-    raise _not_found(task, goals, explanation, effort.checks, effort.gaps, defect)
+    if isinstance(found, _Motion):
+        return found
+    raise _not_found(task, goals, explanation, effort.checks, effort.gaps, found)
+
+
+def _cheapest(task: PlanningTask, goals: Sequence[FloatArray], found: _Motion) -> _Motion:
+    """The motion that was found, or one to a goal that is cheaper to reach."""
+    budget = max(CHEAPER_CHECKS, found.statistics.get("search_checks", 0))
+    untried = _others(goals, found)
+    while budget > 0:
+        most = CHEAPER * found.effort
+        untried = [goal for goal in untried if task.space.effort(task.start, goal) < most]
+        if not untried:
+            break
+        effort = Effort()
+        options = replace(task.options, max_state_checks=budget, attempts=1)
+        other = _first_that_holds(task, untried, options, effort)
+        if not isinstance(other, _Motion):
+            break
+        budget -= effort.checks
+        untried = _others(untried, other)
+        found = other if other.effort < most else found
+    return found
+
+
+def _others(goals: Sequence[FloatArray], found: _Motion) -> list[FloatArray]:
+    return [goal for goal in goals if not np.allclose(goal, found.end, atol=1e-9)]
+
+
+def _first_that_holds(
+    task: PlanningTask, goals: Sequence[FloatArray], options: PlanningOptions, effort: Effort
+) -> _Motion | Defect | None:
+    """The first path found that makes a verified motion; else what was wrong with the last.
+
+    Raises:
+        ValueError: A planner or a parameter is unknown.
+    """
+    defect: Defect | None = None
+    for found in verified_paths(task.checker, task.start, goals, options, effort):
+        for resolution in (FINAL_RESOLUTION, verified_resolution(task.checker.padding)):
+            short = shorten(found.waypoints, task.checker, resolution, found.seed)
+            timed = _timed(task, short)
+            if isinstance(timed, JointTrajectory):
+                statistics = _statistics(task, found, effort, short, timed)
+                moved = sum(task.space.effort(*edge) for edge in pairwise(short))
+                return _Motion(timed, short[-1], statistics, moved)
+            defect = timed
+    return defect
 
 
 def _statistics(

@@ -55,13 +55,17 @@ class StepFields(SpecModel):
 
 
 class MoveTo(GoalFields, StepFields):
-    """Plan a collision-free motion to a goal, then execute it."""
+    """Plan a collision-free motion to a goal, then execute it.
+
+    Where joint positions can be chosen (branches of a pose, several goals, a region), those are
+    taken that the arm reaches with the least motion.
+    """
 
     goal_keys: ClassVar[tuple[str, ...]] = (*GOAL_KEYS, "any_of")
 
     do: Literal["move_to"] = "move_to"
     any_of: Annotated[tuple[GoalFields, ...], Field(min_length=1, max_length=100)] | None = Field(
-        default=None, description="Several goals: the nearest that can be taken is."
+        default=None, description="Several goals: the one that is cheapest to reach is taken."
     )
     path_constraints: PathConstraints | None = Field(
         default=None, description="Held on every sample of the motion."

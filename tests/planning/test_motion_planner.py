@@ -1,10 +1,13 @@
 """Planned motions of the lesson: found, repeatable, free at a finer step, else explained."""
 
+from contextlib import suppress
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 from harness.core.errors import PlanningFailed
-from harness.core.geometry import Box, Cylinder, Shape
+from harness.core.geometry import Box, Cylinder, Shape, Sphere
 from harness.planning.checker import MotionChecker
 from harness.planning.robot_model import GroupSpace
 from harness.ports import JointGoal, PlanningOptions, PoseGoal, PositionGoal
@@ -281,15 +284,51 @@ def test_padding_widens_what_must_be_gone_around():
     assert error.facts["touches"][0]["distance"] > 0
 
 
-def test_a_pose_goal_ends_in_the_cheapest_branch_when_the_straight_way_is_free():
+BENT = np.array([-0.86, -1.5, 1.6, -1.7, -1.57, -1.6])
+
+
+def bent_beside(turn):
+    """A UR5e turned away from where it shall go, the goal, and the branches that reach it."""
     cell = Cell(ur("ur5e"), with_tables=False)
-    nearest = np.array([-0.86, -1.5, 1.6, -1.7, -1.57, -1.6])
-    goal = PoseGoal(TCP, cell.kinematics.link_pose(cell.with_arm(nearest), TCP))
-    cell.state = cell.with_arm([nearest[0] + 0.8, *nearest[1:]])
-    branches = cell.kinematics.solve(ARM, goal, cell.state, 0)
+    goal = PoseGoal(TCP, cell.kinematics.link_pose(cell.with_arm(BENT), TCP))
+    cell.state = cell.with_arm([BENT[0] + turn, *BENT[1:]])
+    return cell, goal, cell.kinematics.solve(ARM, goal, cell.state, 0)
+
+
+def test_a_pose_goal_ends_in_the_cheapest_branch_when_the_straight_way_is_free():
+    cell, goal, branches = bent_beside(0.8)
     assert len(branches) >= 4
     space = GroupSpace(cell.kinematics.robot, ARM, cell.state)
     costs = [space.effort(space.part(cell.state), positions) for positions in branches]
     assert costs == sorted(costs)
     plan = cell.planner.plan(ARM, cell.state, goal, PlanningOptions())
     assert np.allclose(plan.trajectory.positions[-1], branches[0], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("turn", "center", "radius"),
+    [
+        (0.78, (0.49, -0.12, 1.42), 0.08),  # no straight way is free
+        (0.85, (0.58, -0.05, 1.36), 0.08),  # one to a branch twice as far is
+        (1.17, (0.58, -0.05, 1.29), 0.08),
+    ],
+)
+def test_a_pose_goal_ends_in_the_cheapest_branch_around_a_ball_too(turn, center, radius):
+    cell, goal, branches = bent_beside(turn)
+    cell.add(thing("ball", at(*center), Shape(Sphere(radius))))
+    space = GroupSpace(cell.kinematics.robot, ARM, cell.state)
+
+    def plan_to(wanted):
+        plan = cell.planner.plan(ARM, cell.state, wanted, PlanningOptions())
+        positions = plan.trajectory.positions
+        return positions[-1], sum(space.effort(*edge) for edge in pairwise(positions))
+
+    end, taken = plan_to(goal)
+    alone = {}
+    for number, positions in enumerate(branches):
+        with suppress(PlanningFailed):
+            alone[number] = plan_to(JointGoal(positions))[1]
+    cheapest = min(alone, key=alone.__getitem__)
+    assert len(alone) >= 2
+    assert np.allclose(end, branches[cheapest], atol=1e-9)
+    assert taken < min(length for number, length in alone.items() if number != cheapest)
