@@ -79,18 +79,10 @@ def motion_arrays(
 ) -> MotionArrays:
     """Arrays of a scene for the motions of a group; pairs that move together are left out."""
     moving = MovingJoints(space)
-    layout = _Layout(model, moving)
-    checks: list[tuple[int, int, int]] = []
-    limits: list[tuple[float, float]] = []
-    rows: list[tuple[int, ...]] = []
-    for pair in model.pairs:
-        margin = margins[pair.first, pair.second]
-        for body, part, key, pair_rows in layout.checks_of(pair):
-            checks.append((body, part, key))
-            limits.append(
-                (max(margin, 0.0) + ROUNDING, margin - ROUNDING if margin >= 0 else -np.inf)
-            )
-            rows.append(pair_rows)
+    layout = _layout(model, moving)
+    margin = np.array([margins[pair.first, pair.second] for pair in model.pairs])[layout.pairs]
+    free = np.maximum(margin, 0.0) + ROUNDING
+    blocked = np.where(margin >= 0, margin - ROUNDING, -np.inf)
     return MotionArrays(
         columns=moving.columns,
         nodes=layout.nodes,
@@ -101,11 +93,11 @@ def motion_arrays(
         bodies=layout.body_rows,
         part_data=np.array(layout.part_data).reshape(-1, 15),
         parts=np.array(layout.parts, dtype=np.int64).reshape(-1, 3),
-        margins=np.array(limits).reshape(-1, 2),
-        checks=np.array(checks, dtype=np.int64).reshape(-1, 3),
+        margins=np.column_stack([free, blocked]),
+        checks=np.array(layout.checks, dtype=np.int64).reshape(-1, 3),
         keys=np.array(layout.keys, dtype=np.int64).reshape(-1, 6),
         joints=np.array(layout.joints or [0], dtype=np.int64),
-        rows=tuple(rows),
+        rows=tuple(layout.rows),
     )
 
 
@@ -181,7 +173,20 @@ class _Trees:
 
 
 class _Layout:
-    """Numbers covers, parts and keys as they are needed."""
+    """What is checked against what: numbers of covers, parts and keys.
+
+    Attributes:
+        nodes: Spheres of all bodies.
+        skip: Where their subtrees end.
+        body_rows: Of each body: the joint that carries it, and its range of spheres.
+        parts: Of the shapes that spheres are checked against: body, kind, first sphere.
+        part_data: Their poses and sizes.
+        keys: Which joints move two bodies against each other.
+        joints: Of the keys.
+        checks: Body with the spheres, part of the other, key.
+        pairs: Of each check, the place of its pair among the scene's.
+        rows: Of each check, Coal's collision pairs.
+    """
 
     def __init__(self, model: CollisionModel, moving: MovingJoints) -> None:
         self._bodies, self._moving = model.bodies, moving
@@ -207,8 +212,16 @@ class _Layout:
         self.joints: list[int] = []
         self._parts_of: dict[int, list[tuple[int, int]]] = {}
         self._key_of: dict[tuple[int, int], int] = {}
+        self.checks: list[tuple[int, int, int]] = []
+        self.pairs: list[int] = []
+        self.rows: list[tuple[int, ...]] = []
+        for number, pair in enumerate(model.pairs):
+            for body, part, key, pair_rows in self._checks_of(pair):
+                self.checks.append((body, part, key))
+                self.pairs.append(number)
+                self.rows.append(pair_rows)
 
-    def checks_of(self, pair: BodyPair) -> list[tuple[int, int, int, tuple[int, ...]]]:
+    def _checks_of(self, pair: BodyPair) -> list[tuple[int, int, int, tuple[int, ...]]]:
         """Body with the tree, part of the other, key and Coal's rows, for each part."""
         first, second = self._index[pair.first], self._index[pair.second]
         if self._carrier[first] == self._carrier[second]:
@@ -270,6 +283,18 @@ class _Layout:
 
 
 _cover_cache: WeakKeyDictionary[CollisionModel, _Trees] = WeakKeyDictionary()
+_layout_cache: WeakKeyDictionary[CollisionModel, dict[tuple[int, ...], _Layout]] = (
+    WeakKeyDictionary()
+)
+
+
+def _layout(model: CollisionModel, moving: MovingJoints) -> _Layout:
+    """The layout of a scene for one set of moving joints; made once for both."""
+    layouts = _layout_cache.setdefault(model, {})
+    key = (*moving.above, *moving.parent.tolist())
+    if key not in layouts:
+        layouts[key] = _Layout(model, moving)
+    return layouts[key]
 
 
 def _trees(model: CollisionModel) -> _Trees:
