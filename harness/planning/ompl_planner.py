@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import ompl.base as ob
@@ -14,35 +14,47 @@ import ompl.util as ou
 
 from harness.core.types import FloatArray
 from harness.planning.checker import MotionChecker
+from harness.planning.ompl_problem import OmplProblem, make_problem
 from harness.planning.planner_names import resolve_planner_id
-from harness.planning.robot_model import GroupSpace
+from harness.planning.planner_parameters import parameter_names, set_parameters
+from harness.planning.roadmap import find_in_roadmap
 
-DEFAULT_RANGE = 1.5
-"""Longest edge that a tree grows at once [rad]; OMPL takes a fifth of the space's extent."""
+DEFAULTS: Mapping[str, float] = {"range": 1.5, "find_approximate_solutions": 1}
+"""Of the planners that have them: a tree's longest edge [rad], of which OMPL makes a fifth of the
+space's extent; and that BITstar tells how near it came."""
 
-_BEYOND = np.pi  # [rad] how far a continuous joint may leave the range of start and goals
+IMPROVING_SHARE = 0.2
+"""Part of the budget in which planners that improve their path (RRTstar, PRMstar, BITstar ...) do
+so; the rest is for hard problems, and for a finer search should the path not hold. At the default
+budget BITstar improves for 0.6 s; 9 s would go into half of it."""
+
+STALLED = 100_000
+"""Turns of a planner without a state check after which it will make none any more."""
 
 
-class _EdgeValidator(ob.MotionValidator):
-    def __init__(
-        self, information: ob.SpaceInformation, checker: MotionChecker, resolution: float, end: int
-    ) -> None:
-        super().__init__(information)
+class _Ending:
+    """When a planner has to stop: the budget used, its path improved long enough, or stalled."""
+
+    def __init__(self, planner: ob.Planner, checker: MotionChecker, enough: int, end: int) -> None:
+        self._best_cost: Callable[[], ob.Cost] | None = getattr(planner, "bestCost", None)
         self._checker = checker
+        self._enough = enough
         self._end = end
-        self._resolution = resolution
-        self._dof = checker.space.dof
+        self._seen = self._idle = 0
 
-    def checkMotion(self, first: ob.State, second: ob.State) -> bool:  # noqa: N802 (OMPL's name)
-        """Whether the whole edge is free; none is when the budget has ended."""
-        if self._checker.checks >= self._end:
+    def __call__(self) -> bool:
+        checks = self._checker.checks
+        self._idle = self._idle + 1 if checks == self._seen else 0
+        self._seen = checks
+        if checks >= self._end or self._idle >= STALLED:
+            return True
+        if checks < self._enough or self._best_cost is None:
             return False
-        dof = self._dof
-        return self._checker.edge_free(
-            np.array([first[index] for index in range(dof)]),
-            np.array([second[index] for index in range(dof)]),
-            self._resolution,
-        )
+        return math.isfinite(self._best_cost().value())
+
+    def let_go(self) -> None:
+        """Forget the planner, which may keep this (AORRTC does): a cycle that nobody frees."""
+        self._best_cost = None
 
 
 def search_ompl(
@@ -75,26 +87,33 @@ def search_ompl(
         ValueError: A planner or a parameter is unknown; says which there are.
     """
     kind = resolve_planner_id(planner_id)
-    space = checker.space
+    if any(np.array_equal(start, goal) for goal in goals):
+        return np.array([start, start]), 0, 1, 0.0  # planners that sample an ellipsoid need two
     _seed_ompl(seed)
     before = checker.checks
-    end = before + max_state_checks
-    information, definition = _problem(space, checker, start, goals, resolution, end)
-    planner = getattr(og, kind)(information)
-    _set_parameters(planner, {"range": DEFAULT_RANGE}, strict=False)
-    _set_parameters(planner, parameters, strict=True)
-    planner.setProblemDefinition(definition)
+    enough, end = before + int(IMPROVING_SHARE * max_state_checks), before + max_state_checks
+    problem = make_problem(checker, start, goals, resolution, end)
+    planner = getattr(og, kind)(problem.information)
+    known = parameter_names(type(planner))
+    defaults = {name: value for name, value in DEFAULTS.items() if name in known}
+    set_parameters(planner, kind, {**defaults, **parameters})
+    planner.setProblemDefinition(problem.definition)
     planner.setup()
-    planner.solve(ob.PlannerTerminationCondition(lambda: checker.checks >= end))
+    if isinstance(planner, og.PRM):
+        improving = enough if kind == "PRMstar" else before
+        ends = [tuple(map(float, positions)) for positions in (start, *goals)]
+        way, gap = find_in_roadmap(planner, ends, lambda: checker.checks, improving, end)
+        return way, checker.checks - before, planner.milestoneCount(), gap
+    ending = _Ending(planner, checker, enough, end)
+    planner.solve(ob.PlannerTerminationCondition(ending))
+    ending.let_go()
     used = checker.checks - before
-    data = ob.PlannerData(information)
-    planner.getPlannerData(data)
-    vertices = int(data.numVertices())
-    if not definition.hasExactSolution():
-        return None, used, vertices, _gap(data, definition, space)
-    path = definition.getSolutionPath()
-    states = path.getStates()
-    waypoints = np.array([[state[index] for index in range(space.dof)] for state in states])
+    vertices, gap = _reached(planner, problem, checker.space.dof)
+    if not problem.definition.hasExactSolution():
+        nothing_reached = min(float(np.linalg.norm(goal - start)) for goal in goals)
+        return None, used, vertices, gap or nothing_reached
+    states = problem.definition.getSolutionPath().getStates()
+    waypoints = np.array([[state[index] for index in range(checker.space.dof)] for state in states])
     return waypoints, used, vertices, 0.0
 
 
@@ -104,89 +123,23 @@ def _seed_ompl(seed: int) -> None:
     ou.RNG.setSeed(seed % (2**31 - 1) + 1)
 
 
-def _problem(
-    space: GroupSpace,
-    checker: MotionChecker,
-    start: FloatArray,
-    goals: Sequence[FloatArray],
-    resolution: float,
-    end: int,
-) -> tuple[ob.SpaceInformation, ob.ProblemDefinition]:
-    """OMPL's view of the problem; planners that draw whole batches find nothing free at the end."""
-    ends = np.vstack([start, *goals])
-    states = ob.RealVectorStateSpace(space.dof)
-    bounds = ob.RealVectorBounds(space.dof)
-    for index in range(space.dof):
-        low, high = float(space.lower[index]), float(space.upper[index])
-        bounds.setLow(index, low if np.isfinite(low) else float(ends[:, index].min()) - _BEYOND)
-        bounds.setHigh(index, high if np.isfinite(high) else float(ends[:, index].max()) + _BEYOND)
-    states.setBounds(bounds)
-    information = ob.SpaceInformation(states)
-    dof = space.dof
-    information.setStateValidityChecker(
-        lambda state: (
-            checker.checks < end
-            and checker.state_free(np.array([state[index] for index in range(dof)]))
-        )
-    )
-    information.setMotionValidator(_EdgeValidator(information, checker, resolution, end))
-    information.setup()
-    definition = ob.ProblemDefinition(information)
-    definition.addStartState(_state(states, start))
-    goal = ob.GoalStates(information)
-    for positions in goals:
-        goal.addState(_state(states, positions))
-    definition.setGoal(goal)
-    return information, definition
+def _reached(planner: ob.Planner, problem: OmplProblem, dof: int) -> tuple[int, float]:
+    """Vertices, and how near they came to the goal, or the two trees to each other [rad].
 
-
-def _state(space: ob.RealVectorStateSpace, positions: FloatArray) -> ob.State:
-    state = space.allocState()
-    for index, value in enumerate(positions):
-        state[index] = float(value)
-    return state
-
-
-def _set_parameters(planner: ob.Planner, parameters: Mapping[str, float], *, strict: bool) -> None:
-    """Call the planner's setters (`goal_bias` is `setGoalBias`); the wheel has no ParamSet."""
-    for name, value in parameters.items():
-        setter = getattr(planner, "set" + "".join(word.title() for word in name.split("_")), None)
-        if setter is not None:
-            whole = float(value).is_integer()
-            for number in (float(value), int(value) if whole else value, bool(value)):
-                try:
-                    setter(number)
-                    break
-                except TypeError:
-                    continue
-            else:
-                raise ValueError(f"planner parameter '{name}' cannot be {value}")
-        elif strict:
-            names = ", ".join(parameter_names(type(planner)))
-            raise ValueError(
-                f"planner {planner.getName()} has no parameter '{name}' (it has: {names})"
-            )
-
-
-def parameter_names(planner: type) -> tuple[str, ...]:
-    """OMPL's names of a planner class's parameters, read from its setters."""
-    camel = [name[3:] for name in dir(planner) if name.startswith("set")]
-    not_parameters = {"Name", "ProblemDefinition", "ProjectionEvaluator", "up"}
-    return tuple(
-        re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
-        for name in camel
-        if name not in not_parameters
-    )
-
-
-def _gap(data: ob.PlannerData, definition: ob.ProblemDefinition, space: GroupSpace) -> float:
-    """How near the searched part came to the goal, or the two trees to each other [rad]."""
-    count = data.numVertices()
+    0 when OMPL does not tell. BITstar is not asked for its graph: OMPL 2.0 keeps every state of
+    one that was asked for until the process ends (5 MB a plan). Its vertices are its samples.
+    """
+    told = max(0.0, float(problem.definition.getSolutionDifference()))
+    if isinstance(planner, og.BITstar):
+        return problem.free_states.count, told
+    data = ob.PlannerData(problem.information)
+    planner.getPlannerData(data)
+    count = int(data.numVertices())
     points = np.array(
-        [[data.getVertex(v).getState()[i] for i in range(space.dof)] for v in range(count)]
-    ).reshape(count, space.dof)
+        [[data.getVertex(v).getState()[i] for i in range(dof)] for v in range(count)]
+    ).reshape(count, dof)
     tags = np.array([data.getVertex(v).getTag() for v in range(count)])
     if len(set(tags.tolist())) == 2:
         first, second = (points[tags == tag] for tag in sorted(set(tags.tolist())))
-        return float(np.sqrt(min(((first - q) ** 2).sum(axis=1).min() for q in second)))
-    return float(definition.getSolutionDifference())
+        told = float(np.sqrt(min(((first - q) ** 2).sum(axis=1).min() for q in second)))
+    return count, told

@@ -23,15 +23,15 @@ _CLASSES: Mapping[str, str] = {
     "FMT": "FMT",
     "BFMT": "BFMT",
     "AORRTC": "AORRTC",
+    "PRM": "PRM",
+    "PRMstar": "PRMstar",
+    "BITstar": "BITstar",
 }
 """Planner name -> class of the OMPL wheel; the first two are our own."""
 
 _REFUSED: Mapping[str, str] = {
-    "PRM": "it grows its roadmap on two threads, so equal runs differ",
-    "PRMstar": "it grows its roadmap on two threads, so equal runs differ",
     "LazyPRM": "the OMPL wheel does not have it",
     "LazyPRMstar": "the OMPL wheel does not have it",
-    "BITstar": "its binding in the OMPL wheel never frees a plan (5 MB each)",
     "EST": "the OMPL wheel does not have it",
     "BiEST": "the OMPL wheel does not have it",
     "ProjEST": "the OMPL wheel does not have it",

@@ -42,7 +42,8 @@ class Planning(SpecModel):
     max_state_checks: Annotated[Count, Field(ge=1, le=10_000_000)] | None = Field(
         default=None,
         description="Budget of a search: states checked for collision and path constraints; "
-        "default 200000.",
+        "default 200000. Planners that improve their path (`RRTstar`, `PRMstar`, `BITstar` ...) "
+        "do so for a fifth of it.",
     )
     planning_attempts: Annotated[Count, Field(ge=1, le=100)] | None = Field(
         default=None,
@@ -62,7 +63,9 @@ class Planning(SpecModel):
         description="Kept between every object and the robot with what it holds [m]; default 2 mm.",
     )
     parameters: dict[Name, Number] | None = Field(
-        default=None, description="Of the planner: `range` ..."
+        default=None,
+        description="Of the planner, by OMPL's names: `range`, `goal_bias`, "
+        "`max_nearest_neighbors`, `samples_per_batch` ...",
     )
 
 

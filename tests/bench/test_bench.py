@@ -110,7 +110,7 @@ def test_one_command_prints_plots_and_keeps_the_numbers(file, tmp_path, capsys):
     [
         (["--planners", "RRTConect"], "did you mean 'RRTConnect'?"),
         (["--planners", "CHOMP"], "planner 'CHOMP' is refused"),
-        (["--planners", "PRM"], "planner 'PRM' is refused"),
+        (["--planners", "SBL"], "planner 'SBL' is refused"),
     ],
 )
 def test_a_planner_that_is_not_there_is_told_before_anything_is_planned(
