@@ -73,13 +73,23 @@ def collect(
     """
     prepared = prepare(path, overrides)
     bench = _BenchPlanner(prepared, str(path), planners, seeds, tell)
+    simulator = DrySimulator(prepared.program)
+
+    def watch(
+        kind: Literal["step_started", "step_finished"],
+        step: ProgramStep,
+        record: StepRecord | None,
+    ) -> None:
+        simulator.watch(kind, step, record)
+        bench.on_step(kind, step)
+
     execute_program(
         prepared.program,
         prepared.scene,
         prepared.kinematics,
         bench,
-        DrySimulator(prepared.program),
-        bench.on_step,
+        simulator,
+        watch,
         keep_going=True,
     )
     return bench.motions
@@ -96,7 +106,7 @@ class _BenchPlanner(DryPlanner):
         seeds: Sequence[int],
         tell: Tell,
     ) -> None:
-        super().__init__(prepared.planner, prepared.kinematics, prepared.program.description)
+        super().__init__(prepared.planner, prepared.program.description)
         if not isinstance(prepared.scene, CoalScene):
             raise HarnessError("clearances are measured in Coal's planning scene alone")
         self.motions: list[Motion] = []
@@ -105,14 +115,8 @@ class _BenchPlanner(DryPlanner):
         self._file, self._planners, self._seeds, self._tell = file, planners, seeds, tell
         self._step: ProgramStep | None = None
 
-    def on_step(
-        self,
-        kind: Literal["step_started", "step_finished"],
-        step: ProgramStep,
-        record: StepRecord | None,
-    ) -> None:
+    def on_step(self, kind: str, step: ProgramStep) -> None:
         """Remember which step is planned for."""
-        del record
         if kind == "step_started":
             self._step = step
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from harness.engine.dry_run import DryPlanner, DrySimulator
 from harness.engine.execute import execute_program
-from harness.engine.program import Program, ProgramStep
+from harness.engine.program import Program
 from harness.ports import Kinematics, MotionPlanner, PlanningScene, Touch
 from harness.recording.run import StepRecord
 
@@ -15,13 +15,14 @@ def predict(
     program: Program, scene: PlanningScene, kinematics: Kinematics, planner: MotionPlanner
 ) -> tuple[StepRecord, ...]:
     """Step records of a run in which every command comes true; a failed step does not end it."""
+    simulator = DrySimulator(program)
     execution = execute_program(
         program,
         scene,
         kinematics,
-        DryPlanner(planner, kinematics, program.description),
-        DrySimulator(program),
-        _unwatched,
+        DryPlanner(planner, program.description),
+        simulator,
+        simulator.watch,
         keep_going=True,
     )
     return execution.steps
@@ -46,10 +47,6 @@ def touches_at_start(program: Program, scene: PlanningScene) -> tuple[Touch, ...
     names = {obj.name for obj in objects}
     found = [touch for touch in touches if {touch.first, touch.second} & names]
     return tuple(sorted(found, key=lambda touch: touch.distance))
-
-
-def _unwatched(kind: str, step: ProgramStep, record: StepRecord | None) -> None:
-    del kind, step, record
 
 
 def unexpected(records: Sequence[StepRecord]) -> tuple[StepRecord, ...]:

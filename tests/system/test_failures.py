@@ -163,6 +163,17 @@ def test_a_picture_shows_every_state_that_is_spoken_of(failed):
             assert picture.std() > 10
 
 
+SCENARIOS = sorted(data_folder("scenarios").rglob("*.scenario.yaml"))
+
+
+@pytest.mark.parametrize("file", SCENARIOS, ids=lambda file: file.name.split(".")[0])
+def test_a_check_foresees_of_every_bundled_scenario_what_its_run_shows(file):
+    """Lines and relative motions are followed; a grasp that is to fail is not taken to hold."""
+    found = check_file(file)
+    assert not found.problems
+    assert not found.predicted
+
+
 def test_every_code_of_a_file_name_is_what_the_file_expects():
     for file in FILES:
         code = file.name.split(".")[0].upper()
