@@ -34,6 +34,9 @@ MOST_SINGLE_PAIRS = 12
 
 _MEASURED = 1e-4  # [m] beyond a limit, what collision checks find is measured
 
+TOUCHING = 0.0001
+"""Gap at the start of a motion below which a pair touches, as an object does its table [m]."""
+
 MARGIN_SLACK = 0.0005
 """A pair that is too near at the start may come this much nearer during the motion [m]."""
 
@@ -44,7 +47,7 @@ class MotionChecker:
     Every pair keeps its margin: the padding between robot and objects, zero elsewhere. A pair
     that is nearer than that at the start (an object resting on its table, a finger beside what it
     will grasp) keeps its distance at the start less `MARGIN_SLACK` instead: it may leave, it may
-    slide along, it may not go deeper.
+    slide along, it may not go deeper. What does not touch at the start never does.
 
     Whole edges are checked in two stages where the compiled one is there: covers certify stretches
     of the motion as free, or a state as blocked; Coal's exact shapes decide what they leave open.
@@ -97,7 +100,10 @@ class MotionChecker:
                 {"touches": touch_facts(deep)},
             )
         for touch in near:
-            margins[touch.first, touch.second] = lowered = touch.distance - MARGIN_SLACK
+            lowered = touch.distance - MARGIN_SLACK
+            if touch.distance > TOUCHING:
+                lowered = max(lowered, 0.0)
+            margins[touch.first, touch.second] = lowered
             self.lowered.append(
                 {
                     "pair": [touch.first, touch.second],

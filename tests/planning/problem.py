@@ -9,7 +9,7 @@ import pinocchio as pin
 from harness.core.errors import PlanningFailed
 from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3
-from harness.planning.checker import MARGIN_SLACK
+from harness.planning.checker import MARGIN_SLACK, TOUCHING
 from harness.planning.verify import EFFORT_TOLERANCE, FINAL_RESOLUTION, LIMIT_TOLERANCE
 from harness.ports import MotionPlan, PlanningOptions, PoseGoal
 from tests.planning.lesson import Cell, at, open_manipulator, thing, ur
@@ -134,8 +134,9 @@ class Problem:
 
         A pair that touches at the start already may leave, and gets no deeper than `MARGIN_SLACK`.
         """
-        scene, start = self.cell.scene, self.cell.with_arm(positions[0])
-        at_start = {(touch.first, touch.second): touch.distance for touch in scene.touches(start)}
+        scene = self.cell.scene
+        near = scene.touches(self.cell.with_arm(positions[0]), TOUCHING)
+        at_start = {(touch.first, touch.second): touch.distance for touch in near}
         model = self.cell.scene.collision_model()
         robot, geometry = model.robot, model.geometry
         data, geometry_data = robot.model.createData(), geometry.createData()

@@ -107,21 +107,29 @@ def checker_of(cell, padding=0.0):
     return MotionChecker(cell.scene, space, space.part(cell.state), padding)
 
 
-def test_a_pair_too_near_at_the_start_may_come_no_nearer(cell):
-    """A box 1 mm under a held cylinder: up is free, half a millimetre down is the most."""
+@pytest.mark.parametrize(
+    ("gap", "margin", "drops"),
+    [
+        (0.001, 0.0005, {-0.05: True, 0.0003: True, 0.0015: False}),
+        (0.0003, 0.0, {-0.05: True, 0.0002: True, 0.0004: False}),  # free, so it stays free
+        (0.00005, -0.00045, {-0.05: True, 0.0004: True, 0.0006: False}),  # it stands on it
+    ],
+)
+def test_a_pair_too_near_at_the_start_may_come_no_nearer(cell, gap, margin, drops):
+    """A box just under a held cylinder: up is free, half a millimetre down is the most."""
     cell.state = cell.with_arm([-0.858, -1.323, 1.764, -2.011, -1.571, -1.643])
     tcp = cell.kinematics.link_pose(cell.state, TCP)
     below = tcp.translation[2]
     x, y = tcp.translation[:2]
     cell.add(thing("cylinder", at(x, y, below), Shape(Cylinder(0.03, 0.1))))
     cell.scene.attach_object("cylinder", TCP, cell.description.gripper.links, cell.state)
-    cell.add(thing("support", at(x, y, below - 0.05 - 0.001 - 0.01), Shape(Box((0.2, 0.2, 0.02)))))
+    cell.add(thing("support", at(x, y, below - 0.05 - gap - 0.01), Shape(Box((0.2, 0.2, 0.02)))))
     checker = checker_of(cell, padding=0.005)
     lowered = [entry for entry in checker.lowered if entry["pair"] == ["cylinder", "support"]]
-    assert lowered[0]["start_distance"] == pytest.approx(0.001, abs=1e-4)
-    assert lowered[0]["margin"] == pytest.approx(0.0005, abs=1e-4)
+    assert lowered[0]["start_distance"] == pytest.approx(gap, abs=1e-6)
+    assert lowered[0]["margin"] == pytest.approx(margin, abs=1e-6)
     assert checker.state_free(checker.space.part(cell.state))
-    for drop, is_free in ((-0.05, True), (0.0003, True), (0.0015, False)):
+    for drop, is_free in drops.items():
         lower = cell.kinematics.link_pose(cell.state, TCP)
         moved = at(0, 0, -drop) @ lower
         near = cell.kinematics.solve(ARM, PoseGoal(TCP, moved), cell.state, 0)[0]
