@@ -14,7 +14,7 @@ from harness.engine import executors as executors
 from harness.engine.cameras import all_cameras, check_cameras, check_videos
 from harness.engine.checks import check_expectation
 from harness.engine.objects import ObjectUnusableError, resolve_object, resolve_world
-from harness.engine.options import check_planning, merged_options
+from harness.engine.options import CheckPlanner, check_planning, merged_options
 from harness.engine.program import Loc, Program, ProgramExpectation, ProgramStep, step_seed
 from harness.engine.registry import execute
 from harness.engine.scope import Problems, Scope
@@ -48,7 +48,7 @@ class Sources:
         description: The robot it names.
         kinematics: Of that robot.
         judged: Expectation models that can be judged.
-        check_planner: Normalises a planner's name, or raises ValueError with what there is.
+        check_planner: Normalises a planner's name and knows its parameters.
         checks_per_second: What a second of `planning_time` buys, in state checks.
         check_mesh: Raises RobotError for a mesh file that cannot be used.
     """
@@ -61,7 +61,7 @@ class Sources:
     description: RobotDescription
     kinematics: Kinematics
     judged: frozenset[type]
-    check_planner: Callable[[str], str]
+    check_planner: CheckPlanner
     checks_per_second: int
     check_mesh: Callable[[Mesh], None]
 
@@ -276,14 +276,20 @@ class _Compiler:
     def _options(self, planning: Planning | None, loc: Loc, seed: int) -> PlanningOptions:
         sources = self.sources
         if planning is not None:
-            check_planning(planning, (*loc, "planning"), self.problems, sources.check_planner)
+            check_planning(
+                planning,
+                (*loc, "planning"),
+                self.problems,
+                sources.check_planner,
+                sources.scenario.planning,
+            )
         return merged_options(
             sources.scenario.planning, planning, seed, sources.checks_per_second, self._planner_name
         )
 
     def _planner_name(self, name: str) -> str:
         try:
-            return self.sources.check_planner(name)
+            return self.sources.check_planner(name, {})
         except ValueError:  # reported where it is said
             return name
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from harness.engine.program import Loc
 from harness.engine.scope import Problems
 from harness.ports import PlanningOptions
 from harness.spec.planning import Planning
+
+CheckPlanner = Callable[[str, Mapping[str, float]], str]
+"""Normalises a planner's name; ValueError, with what there is, for it or its parameters."""
 
 DEFAULT_SCALING = 0.3  # of the joint limits: the course's default plan request
 DEFAULT_PADDING = 0.002  # [m]
@@ -56,14 +59,39 @@ def merged_options(
 
 
 def check_planning(
-    planning: Planning, loc: Loc, problems: Problems, check_planner: Callable[[str], str]
+    planning: Planning,
+    loc: Loc,
+    problems: Problems,
+    check_planner: CheckPlanner,
+    scenario: Planning | None = None,
 ) -> None:
-    """Report a planner that there is not, and a pipeline that is a step of its own."""
-    if planning.planner_id is not None:
-        try:
-            check_planner(planning.planner_id)
-        except ValueError as error:
-            problems.add((*loc, "planner_id"), str(error))
+    """Report a planner that there is not, what it does not take, a pipeline that is steps here.
+
+    Args:
+        planning: The scenario's, or a step's.
+        loc: Where it is said.
+        problems: Added to.
+        check_planner: Of a planner's name and parameters.
+        scenario: What a step's goes before.
+    """
+    inherited = scenario or Planning()
+    planner = planning.planner_id or inherited.planner_id or DEFAULT_PLANNER
+    own, said = planning.parameters or {}, (*loc, "planner_id")
+    try:
+        check_planner(planner, {})
+    except ValueError as error:
+        if planning.planner_id is not None:
+            problems.add(said, str(error))
+    else:
+        checked = {name: ((*loc, "parameters", name), own[name]) for name in own}
+        if planning.parameters is None and planning.planner_id is not None:
+            theirs = inherited.parameters or {}
+            checked = {name: (said, theirs[name]) for name in theirs}
+        for name, (place, value) in checked.items():
+            try:
+                check_planner(planner, {name: value})
+            except ValueError as error:
+                problems.add(place, str(error))
     if planning.pipeline == "pilz_industrial_motion_planner":
         problems.add(
             (*loc, "pipeline"),

@@ -64,14 +64,7 @@ def search_connect(
             Balanced Bidirectional RRT Search", 2005. [3] A. Yershova et al., "Dynamic-Domain RRTs:
             Efficient Exploration by Controlling the Sampling Domain", ICRA 2005.
     """
-    for name in parameters:
-        if name not in PARAMETERS:
-            raise ValueError(
-                f"planner {planner_id} has no parameter '{name}' (it has: {', '.join(PARAMETERS)})"
-            )
-    step = float(parameters.get("range", RANGE))
-    if step <= 0:
-        raise ValueError(f"planner parameter 'range' cannot be {step:g}; it is a distance [rad]")
+    step = step_length(planner_id, parameters)
     space = checker.space
     metric = space.metric
     lower, upper = sampling_bounds(space, np.vstack([start, *goals]))
@@ -121,6 +114,23 @@ def search_connect(
             return outcome(_ending_exactly(path, goals))
         growing = 1 - growing
     return outcome(None)
+
+
+def step_length(planner_id: str, parameters: Mapping[str, float]) -> float:
+    """The longest edge [rad], all that may be said of this planner.
+
+    Raises:
+        ValueError: The parameter is unknown, or its value is no length.
+    """
+    for name in parameters:
+        if name not in PARAMETERS:
+            raise ValueError(
+                f"planner {planner_id} has no parameter '{name}' (it has: {', '.join(PARAMETERS)})"
+            )
+    step = float(parameters.get("range", RANGE))
+    if step <= 0:
+        raise ValueError(f"planner parameter 'range' cannot be {step:g}; it is a distance [rad]")
+    return step
 
 
 def sampling_bounds(space: GroupSpace, ends: FloatArray) -> tuple[FloatArray, FloatArray]:

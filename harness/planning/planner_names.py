@@ -83,6 +83,26 @@ def resolve_planner_id(name: str) -> str:
     return _CLASSES[known]
 
 
+def check_planner(name: str, parameters: Mapping[str, float]) -> str:
+    """The planner that a name means, after it was asked whether it takes parameters.
+
+    Raises:
+        ValueError: The planner is unknown or refused, or does not take one; says what there is.
+    """
+    kind = resolve_planner_id(name)
+    if parameters:
+        for each in (FAST_PLANNER, PATIENT_PLANNER) if kind == DEFAULT_PLANNER else (kind,):
+            if each == FAST_PLANNER:
+                from harness.planning.balanced_connect import step_length
+
+                step_length(kind, parameters)
+            else:
+                from harness.planning.planner_parameters import check_parameters
+
+                check_parameters(each, parameters)
+    return kind
+
+
 def _bare(name: str) -> str:
     bare = name.strip().removeprefix("geometric::").removesuffix("kConfigDefault")
     return bare.removesuffix("kConfig")

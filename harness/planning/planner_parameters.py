@@ -70,6 +70,18 @@ def set_parameters(planner: ob.Planner, kind: str, parameters: Mapping[str, floa
             raise ValueError(f"planner {kind} refuses '{name}': {refusal}") from refusal
 
 
+def check_parameters(kind: str, parameters: Mapping[str, float]) -> None:
+    """Give parameters to a planner that plans nothing.
+
+    Raises:
+        ValueError: As `set_parameters`.
+    """
+    import ompl.geometric as og
+
+    nowhere = ob.SpaceInformation(ob.RealVectorStateSpace(1))
+    set_parameters(getattr(og, kind)(nowhere), kind, parameters)
+
+
 def parameter_names(planner: type) -> tuple[str, ...]:
     """OMPL's names of a planner class's parameters."""
     return tuple(_setters(planner))

@@ -15,7 +15,7 @@ from harness.engine.program import Loc, Program
 from harness.importers.imported import ImportedWorld
 from harness.planning.backend import make_planning
 from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
-from harness.planning.planner_names import resolve_planner_id
+from harness.planning.planner_names import check_planner
 from harness.ports import Kinematics, MotionPlanner, PlanningScene
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
@@ -106,7 +106,7 @@ def _prepared(loaded: LoadedScenario) -> Prepared:
         description=description,
         kinematics=kinematics,
         judged=EXECUTED,
-        check_planner=resolve_planner_id,
+        check_planner=check_planner,
         checks_per_second=STATE_CHECKS_PER_SECOND,
         check_mesh=_check_mesh,
     )

@@ -148,3 +148,24 @@ def test_a_mesh_that_cannot_be_used_is_told_at_its_object(tmp_path, file, conten
     ((line, message),) = problems(tmp_path, "- wait: 1", rest=rest)
     assert line == 7
     assert message.startswith(f"object 'mug': {reason}")
+
+
+def test_a_planner_is_asked_for_what_it_takes_before_anything_is_planned(tmp_path):
+    """A step's planner gets the scenario's parameters, where it has none of its own."""
+    found = problems(
+        tmp_path,
+        """
+        - move_to: up
+          planning: {planner_id: PRM}
+        - move_to: up
+          planning: {planner_id: auto, parameters: {range: -1}}
+        - move_to: up
+          planning: {planner_id: PRM, parameters: {max_nearest_neighbors: 5}}
+        """,
+        rest="planning: {planner_id: RRTConnect, parameters: {range: 0.5, rnge: 1}}",
+    )
+    assert [(line, message.partition(" (")[0]) for line, message in found] == [
+        (6, "planner PRM has no parameter 'range'"),
+        (8, "planner parameter 'range' cannot be -1; it is a distance [rad]"),
+        (11, "planner RRTConnect has no parameter 'rnge'"),
+    ]
