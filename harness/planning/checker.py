@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -18,6 +18,7 @@ from harness.planning.certificates import MotionArrays, motion_arrays
 from harness.planning.compiled import compiled_stage, count_states
 from harness.planning.robot_model import GroupSpace
 from harness.planning.scene import CoalScene
+from harness.planning.stretches import Stretches, coarse_to_fine
 from harness.ports import Touch
 
 DEEPEST_START = 0.002
@@ -51,8 +52,9 @@ class MotionChecker:
 
     Whole edges are checked in two stages where the compiled one is there: covers certify stretches
     of the motion as free, or a state as blocked; Coal's exact shapes decide what they leave open.
-    An edge is free when all its states are, at the spacing asked for, and it counts as so many
-    states, whichever stage decided: verdicts, counts and plans are the same with and without.
+    Where it is not, states whose margins are wide speak for those around them (`Stretches`). An
+    edge is free when all its states are, at the spacing asked for, and it counts as so many states,
+    whichever stage decided: verdicts, counts and plans are the same with and without.
 
     Attributes:
         checks: States checked so far.
@@ -170,7 +172,7 @@ class MotionChecker:
         certify = compiled_stage()
         if certify is None:
             count_states(len(states))
-            return all(self._exact(states[step - 1]) for step in coarse_to_fine(len(states)))
+            return self._stretches.are_free(states, self._exact)
         arrays = self._arrays
         values = np.ascontiguousarray(self.space.whole(states)[:, arrays.columns])
         for room in (self._open[:FEW_OPEN], self._open):  # what is left open may be blocked
@@ -182,6 +184,10 @@ class MotionChecker:
             if not self._decide(states, room):
                 return False
         return all(self._exact(states[step - 1]) for step in coarse_to_fine(len(states)))
+
+    @cached_property
+    def _stretches(self) -> Stretches:
+        return Stretches(self._scene_model, self.space, self._margins)
 
     @cached_property
     def _arrays(self) -> MotionArrays:
@@ -237,18 +243,6 @@ class MotionChecker:
         states = first + (second - first) * (np.arange(1, count + 1) / count)[:, None]
         index = self.first_blocked(states)
         return None if index is None else ((index + 1) / count, self.touches(states[index]))
-
-
-def coarse_to_fine(count: int) -> Iterator[int]:
-    """The numbers 1 to `count`, the end first, then halves, quarters ...: collisions show early."""
-    step = 1
-    while step < count:
-        step *= 2
-    yield count
-    while step > 1:
-        half = step // 2
-        yield from range(half, count, step)
-        step = half
 
 
 def describe_touches(touches: list[Touch], most: int = 3) -> str:

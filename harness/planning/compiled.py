@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any, Literal
 
 PAYS_AFTER = 20_000
-"""States checked one by one before the compiled stage is loaded; half a second's worth of them.
+"""States checked without it before the compiled stage is loaded; half a second's worth at most.
 
 Loading it takes half a second once it has been compiled, and several seconds the first time. Its
 answers are the same, so that nothing but time depends on when it is loaded.
