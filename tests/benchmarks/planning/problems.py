@@ -52,6 +52,10 @@ class Problem:
         """A checker of motions from the start."""
         return MotionChecker(self.scene, self.space, self.start, 0.0)
 
+    def forget(self) -> None:
+        """Let the scene be taken up anew, as after a change."""
+        self.scene.set_allowed((), allowed=True)
+
 
 class EveryPair:
     """Collision checking as it is usually written in Python: every pair, state by state."""

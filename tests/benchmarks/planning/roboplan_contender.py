@@ -20,10 +20,7 @@ MOST_NODES = 100_000
 
 
 def roboplan(problem: Problem, seed: int = 1) -> Outcome:
-    """As it comes: plan and cut corners at `SPACING`, nothing verified.
-
-    Reading the robot and taking the scene up are not timed, here and below.
-    """
+    """As it comes: plan and cut corners at `SPACING`, nothing verified."""
     return _planned(problem, seed, ((SPACING, SPACING),), None)
 
 
@@ -44,7 +41,9 @@ LEVELS = (
 def _planned(
     problem: Problem, seed: int, levels: tuple[tuple[float, float], ...], verify: float | None
 ) -> Outcome:
-    scene = _scene(problem)
+    scene = _robot(problem)
+    before = time.process_time()
+    _take_up(scene, problem)
     begin, planned = time.process_time(), None
     for spacing, fine in levels:
         path = _plan(scene, problem, spacing, seed)
@@ -57,8 +56,9 @@ def _planned(
             core.hasCollisionsAlongPath(scene, first, second, verify)
             for first, second in pairwise(short)
         ):
-            return Outcome(planned - begin, time.process_time() - begin, 0, short)
-    return Outcome(PATIENCE, PATIENCE, 0, None)
+            done = time.process_time()
+            return Outcome(begin - before, planned - begin, done - begin, 0, short)
+    return Outcome(begin - before, PATIENCE, PATIENCE, 0, None)
 
 
 def _plan(scene: core.Scene, problem: Problem, spacing: float, seed: int) -> core.JointPath | None:
@@ -82,14 +82,20 @@ def _plan(scene: core.Scene, problem: Problem, spacing: float, seed: int) -> cor
         return None
 
 
-def _scene(problem: Problem) -> core.Scene:
-    """Arm, things and ground; the same pairs of links are checked."""
+def _robot(problem: Problem) -> core.Scene:
+    """A scene with the arm alone."""
     description = arm(problem.model)
     urdf = write_urdf(problem.model, description.links, description.joints)
     scene = core.Scene(
         problem.model, core.loadUrdfSceneDescriptionFromXml(urdf, [str(folder().parent)])
     )
     scene.addGroup(GROUP, list(problem.space.joint_names))
+    return scene
+
+
+def _take_up(scene: core.Scene, problem: Problem) -> None:
+    """Add things and ground; the same pairs are checked as by the others."""
+    description = arm(problem.model)
     solid = {link.name for link in description.links if link.collisions}
     allowed = [pair for pair in description.allowed_collisions if solid.issuperset(pair)]
     for number, shape in enumerate(problem.obstacles):
@@ -99,7 +105,6 @@ def _scene(problem: Problem) -> core.Scene:
     scene.addBoxGeometry("ground", "universe", GROUND, np.asfortranarray(ground), COLOUR)
     things = ["ground", *(f"thing{number}" for number in range(len(problem.obstacles)))]
     scene.setCollisions([*allowed, *combinations(things, 2)], False)
-    return scene
 
 
 def _add(scene: core.Scene, name: str, geometry: Box | Cylinder, pose: np.ndarray) -> None:
