@@ -34,7 +34,8 @@ CHEAPER = 0.95
 """
 
 CHEAPER_CHECKS = 10_000
-"""State checks to search ways to cheaper solutions; as many as the first way took, if more."""
+"""State checks to search ways to cheaper solutions; as many as the first way took, if more, and
+never more than the budget of a search."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,8 +65,11 @@ def find_motion(
     Raises:
         PlanningFailed: PLANNING_FAILED (budget used up), INVALID_MOTION_PLAN (nothing found holds).
     """
-    found = _straight(task, goals) or _searched(task, goals, explanation)
-    found = _cheapest(task, goals, found)
+    try:
+        found = _straight(task, goals) or _searched(task, goals, explanation)
+        found = _cheapest(task, goals, found)
+    except ValueError as problem:  # a planner or a parameter is unknown
+        raise PlanningFailed("PLANNING_FAILED", str(problem)) from problem
     statistics = {**found.statistics, "state_checks": task.checker.checks}
     return MotionPlan(found.trajectory, statistics, _chosen(explanation, found.end))
 
@@ -88,10 +92,7 @@ def _searched(
 ) -> _Motion:
     """Search, shorten, time and verify; finer when verification finds something."""
     effort = Effort()
-    try:
-        found = _first_that_holds(task, goals, task.options, effort)
-    except ValueError as problem:
-        raise PlanningFailed("PLANNING_FAILED", str(problem)) from problem
+    found = _first_that_holds(task, goals, task.options, effort)
     if isinstance(found, _Motion):
         return found
     raise _not_found(task, goals, explanation, effort.checks, effort.gaps, found)
@@ -99,7 +100,8 @@ def _searched(
 
 def _cheapest(task: PlanningTask, goals: Sequence[FloatArray], found: _Motion) -> _Motion:
     """The motion that was found, or one to a goal that is cheaper to reach."""
-    budget = max(CHEAPER_CHECKS, found.statistics.get("search_checks", 0))
+    wanted = max(CHEAPER_CHECKS, found.statistics.get("search_checks", 0))
+    budget = min(wanted, task.options.max_state_checks)
     untried = _others(goals, found)
     while budget > 0:
         most = CHEAPER * found.effort
@@ -108,7 +110,10 @@ def _cheapest(task: PlanningTask, goals: Sequence[FloatArray], found: _Motion) -
             break
         effort = Effort()
         options = replace(task.options, max_state_checks=budget, attempts=1)
-        other = _first_that_holds(task, untried, options, effort)
+        try:
+            other = _first_that_holds(task, untried, options, effort)
+        except TimingError:  # of that way; the one that was found has its times
+            break
         if not isinstance(other, _Motion):
             break
         budget -= effort.checks

@@ -332,3 +332,23 @@ def test_a_pose_goal_ends_in_the_cheapest_branch_around_a_ball_too(turn, center,
     assert len(alone) >= 2
     assert np.allclose(end, branches[cheapest], atol=1e-9)
     assert taken < min(length for number, length in alone.items() if number != cheapest)
+
+
+def test_cheaper_branches_are_searched_within_the_budget_that_is_given():
+    cell, goal, branches = bent_beside(0.85)
+    cell.add(thing("ball", at(0.58, -0.05, 1.36), Shape(Sphere(0.08))))
+    ample, scarce = (
+        cell.planner.plan(ARM, cell.state, goal, PlanningOptions(max_state_checks=checks))
+        for checks in (200_000, 1)
+    )
+    assert np.allclose(ample.trajectory.positions[-1], branches[0], atol=1e-9)
+    assert scarce.statistics["planner_id"] == "straight line"
+    assert scarce.statistics["state_checks"] < ample.statistics["state_checks"]
+
+
+def test_a_planner_that_is_not_there_is_told_where_a_straight_way_is_free_too():
+    cell, goal, _ = bent_beside(0.85)
+    cell.add(thing("ball", at(0.58, -0.05, 1.36), Shape(Sphere(0.08))))
+    error = failure(cell.planner.plan, ARM, cell.state, goal, PlanningOptions(planner_id="RTT"))
+    assert error.code == "PLANNING_FAILED"
+    assert "unknown planner 'RTT'" in error.message
