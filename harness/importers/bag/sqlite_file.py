@@ -42,7 +42,7 @@ def sqlite_messages(file: Path, named: Path) -> Iterator[RawMessage]:
             for number, time, data in rows:
                 if number in topics and isinstance(data, bytes) and isinstance(time, int):
                     yield RawMessage(*topics[number], time, data)
-    except (sqlite3.Error, MemoryError, OverflowError) as error:
+    except (sqlite3.Error, MemoryError, OverflowError, UnicodeDecodeError) as error:
         hint = "`sqlite3 FILE .recover | sqlite3 WHOLE.db3` saves what is whole"
         said = str(error) or type(error).__name__
         raise bag_error(named, f"cannot be read as a database: {said}", hint) from error
