@@ -7,7 +7,7 @@ import numpy as np
 from harness.assertions.poses import frame_poses, link_poses
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
 from harness.assertions.text import amount
-from harness.assertions.window import NotObservable, Window
+from harness.assertions.window import NotObservable, NotReached, Window
 from harness.core.pose_arrays import compose
 from harness.core.types import FloatArray
 from harness.recording.run import Measure
@@ -25,6 +25,7 @@ def tcp_path(check: TcpPath, window: Window) -> MarginSignal:
     The share is of the whole window, so a TCP that stands on the line has not followed it, and
     neither has one that goes from its end to its start.
     """
+    limit = check.max_deviation
     tcp = window.cut(link_poses(window.run, window.run.robot.tcp_link))[:, :3]
     if check.line is not None:
         curve = "line"
@@ -37,9 +38,12 @@ def tcp_path(check: TcpPath, window: Window) -> MarginSignal:
     else:
         raise NotObservable("neither a line nor an arc is given")
     share = forward_share(places)
+    if window.cut_short and share < check.min_fraction and not (deviation > limit).any():
+        raise NotReached(window.cut_short)
+    shares = np.full(len(tcp), share)
     parts = [
-        Part(f"deviation from the {curve}", deviation, check.max_deviation, "<=", "m"),
-        Part("share travelled forwards", np.full(len(tcp), share), check.min_fraction, ">=", "1"),
+        Part(f"deviation from the {curve}", deviation, limit, "<=", "m"),
+        Part("share travelled forwards", shares, check.min_fraction, ">=", "1", ceiling=1.0),
     ]
 
     def text(_: int, measure: Measure) -> str:
@@ -47,7 +51,7 @@ def tcp_path(check: TcpPath, window: Window) -> MarginSignal:
             asked = f"{100 * check.min_fraction:.1f} %"
             travelled = f"{100 * share:.1f} % of the {curve} forwards"
             return f"the TCP travelled {travelled}, {asked} asked for"
-        asked = amount(check.max_deviation, "m")
+        asked = amount(limit, "m")
         return f"the TCP is {amount(measure.value, 'm')} from the {curve}, {asked} allowed"
 
     return all_of(window, parts, text)

@@ -224,6 +224,8 @@ class Measure:
         detail: Which joint, link or pair it was.
         expected: Where in the world something was to be (xyz), where the value is a distance.
         actual: Where it was (xyz).
+        ceiling: The largest value that can be measured, in `unit`, as 1 is of a share; inf where
+            there is none.
     """
 
     name: str
@@ -235,6 +237,7 @@ class Measure:
     detail: str = ""
     expected: Floats = ()
     actual: Floats = ()
+    ceiling: float = float("inf")
 
     def __str__(self) -> str:
         where = f" ({self.detail})" if self.detail else ""

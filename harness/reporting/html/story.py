@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from harness.recording.plain import to_plain
-from harness.recording.run import JointRecord, Measure, Run, StepRecord, Verdict
+from harness.recording.run import JointRecord, Run, StepRecord, Verdict
 from harness.recording.store import StoredRun
+from harness.reporting.margins import allowance_used
 
 PLOTS = (
     ("joint position", "position"), ("tracking", "tracking"), ("clearance", "clearance"),
@@ -109,18 +110,6 @@ def _points(verdict: Verdict) -> dict[str, list[float]] | None:
             points = {"expected": list(measure.expected), "actual": list(measure.actual)}
             return points if np.isfinite([*measure.expected, *measure.actual]).all() else None
     return None
-
-
-def allowance_used(measure: Measure) -> float | None:
-    """Share of what was allowed that was used, 1 at the limit; None where that has no meaning."""
-    value, limit = measure.value, measure.limit
-    if not (math.isfinite(value) and math.isfinite(limit)) or measure.comparison == "==":
-        return None
-    if measure.comparison == "<=":
-        return max(0.0, value) / limit if limit > 0 else None
-    if limit <= 0:
-        return None
-    return limit / value if value > limit / 100 else 100.0
 
 
 def findings_facts(run: Run) -> list[dict[str, Any]]:
