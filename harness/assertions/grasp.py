@@ -33,7 +33,7 @@ from harness.core.pose_arrays import (
 )
 from harness.core.symmetry import ANY, equal_turns
 from harness.core.types import BoolArray, FloatArray
-from harness.recording.run import AttachmentRecord, Measure, Run
+from harness.recording.run import AttachmentRecord, Measure, Run, is_nested
 from harness.spec.checks import Grasped, Released, Slip
 
 
@@ -163,8 +163,11 @@ def released_at(run: Run, record: AttachmentRecord) -> float:
     `release` opens the gripper and then detaches the object; `gripper` and `detach_object` one
     after the other do the same. In between the object leaves the hand as it should.
     """
-    nested = {step.path.rpartition(".")[0] for step in run.steps}
-    leaves = [step for step in run.steps if step.path not in nested]
+    leaves = [
+        step
+        for step in run.steps
+        if not any(is_nested(other.path, step.path) for other in run.steps)
+    ]
     ends = [
         place
         for place, step in enumerate(leaves)

@@ -59,8 +59,8 @@ def _could_hold(
     within: float | None,
 ) -> bool:
     """Whether it holds if a window that was cut short goes on in the best way."""
-    margins = (temporal.with_future(values, np.inf) for values in (first, second))
-    decision, _ = temporal.until(*margins, temporal.later(times), hold, within)
+    best = [temporal.with_future(margins, np.inf) for margins in (first, second)]
+    decision, _ = temporal.until(best[0], best[1], temporal.later(times), hold, within)
     return decision.holds
 
 

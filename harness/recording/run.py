@@ -210,6 +210,11 @@ class StepRecord:
     result: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
 
+def is_nested(inner: str, outer: str) -> bool:
+    """Whether the step at one path is nested in the step at another."""
+    return inner.startswith((f"{outer}.", f"{outer}["))
+
+
 @dataclass(frozen=True)
 class Measure:
     """A measured quantity against its limit.
