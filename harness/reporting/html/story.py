@@ -56,8 +56,13 @@ def _decided_here(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> bo
 
 def step_facts(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> dict[str, Any]:
     """A step as plain data; one whose own expectations do not hold looks failed."""
-    broken = [each for each in verdicts if each.step == step.id and each.status != "passed"]
     tone = TONES[step.status]
+    broken = [
+        each
+        for each in verdicts
+        if each.step == step.id
+        and (each.status != "passed" if tone == "good" else each.status == "failed")
+    ]
     return {
         "tone": "bad" if broken and tone == "good" else tone,
         "band": "bad" if tone == "good" and _decided_here(run, step, verdicts) else tone,
