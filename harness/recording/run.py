@@ -348,15 +348,13 @@ class VideoRecord:
 
     Attributes:
         camera: Name of one of `Run.cameras`.
-        file: VP8 WebM in `Run.files`; frame i is shown at i / `rate` of the video's own clock.
+        file: VP8 WebM in `Run.files`, of the camera's size; frame i is shown at i / `rate` of the
+            video's own clock.
         times: Simulation time of every frame [s], rising evenly by 1 / `rate`.
         rate: Frames a second of simulated time.
-        width: In pixels.
-        height: In pixels.
+        width: In pixels: the camera's, made even.
+        height: In pixels: the camera's, made even.
         backend: Who drew it: `egl`, `osmesa` or `rays`.
-        frames: In `Run.files`: the same frames as JPEG of the camera's quality and size, one behind
-            the other (a Motion JPEG stream); empty when not kept.
-        frame_offsets: Where each JPEG begins in `frames`, and where the last ends.
     """
 
     camera: str
@@ -366,8 +364,6 @@ class VideoRecord:
     width: int
     height: int
     backend: str
-    frames: str = ""
-    frame_offsets: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

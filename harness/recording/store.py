@@ -151,8 +151,7 @@ def _document(
 
 def _files(folder: Path, run: Run) -> FolderFiles:
     names = [checked(name) for capture in run.captures for name in capture.files.values()]
-    for video in run.videos:
-        names += [checked(name) for name in (video.file, video.frames) if name]
+    names += [checked(video.file) for video in run.videos]
     return FolderFiles(folder, names)
 
 
