@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
+from harness.assertions.wording import describe
 from harness.recording.run import Verdict
 from harness.recording.store import read_run
 from harness.spec.load import LoadedScenario, load_scenario
@@ -14,7 +16,7 @@ from harness.spec.nesting import Block, blocks
 
 
 def judge_run(run_dir: Path, with_file: Path | None = None) -> tuple[Verdict, ...]:
-    """Verdicts of a saved run; needs neither planner nor physics.
+    """Verdicts of a saved run at the lines of its scenario; needs neither planner nor physics.
 
     Args:
         run_dir: A report folder.
@@ -24,9 +26,28 @@ def judge_run(run_dir: Path, with_file: Path | None = None) -> tuple[Verdict, ..
         HarnessError: The folder holds no run.
         SpecError: The scenario cannot be read.
     """
-    run = read_run(run_dir).run
-    loaded = load_scenario(with_file or run_dir / "scenario.resolved.yaml")
-    return judge(run, expectations_of(loaded))
+    stored = read_run(run_dir)
+    placed = expectations_of(load_scenario(with_file or run_dir / "scenario.resolved.yaml"))
+    if with_file is None:
+        placed = _at_lines_of(stored.verdicts, placed)
+    return judge(stored.run, placed)
+
+
+def _at_lines_of(
+    verdicts: Sequence[Verdict], placed: Sequence[PlacedExpectation]
+) -> list[PlacedExpectation]:
+    """Expectations of the resolved file, which is written out, at the lines of the file that ran.
+
+    An expectation that has no verdict has no line there.
+    """
+    lines: dict[tuple[str, str], list[int]] = {}
+    for verdict in verdicts:
+        lines.setdefault((verdict.expectation, verdict.step), []).append(verdict.line)
+    return [
+        replace(each, line=found.pop(0) if found else 0)
+        for each in placed
+        for found in [lines.get((describe(each.spec), each.step), [])]
+    ]
 
 
 def expectations_of(loaded: LoadedScenario) -> list[PlacedExpectation]:

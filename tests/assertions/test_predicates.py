@@ -7,6 +7,7 @@ import pytest
 
 from harness.core.geometry import Box, Cylinder, Plane, Shape
 from harness.core.spatial import SE3
+from harness.recording.run import LinkPlacement
 from harness.reporting.margins import allowance_used, margin_share
 from harness.session.agreement import held_finding as finding_of_hold
 from harness.spec.checks import (
@@ -1111,3 +1112,52 @@ def test_an_object_that_falls_before_the_arm_moves_on_was_lost():
         ),
     )  # fmt: skip
     assert "the physics lost it at 1.00 s" in held_finding(run).message
+
+
+# the path of a step from its start to its goal
+
+
+def sliding(z, planned, verb="lin"):
+    """A robot whose TCP slides along z by its joint `shoulder`; planned positions of a step."""
+    along = (0.0, 0.0, 1.0)
+    places = (
+        LinkPlacement("base_link", "world", (0.1, 0.2, 0.3, 1.0, 0.0, 0.0, 0.0)),
+        LinkPlacement("palm", "base_link", (0, 0, 0, 1, 0, 0, 0), "shoulder", True, along),
+    )
+    tcp = at(200, (0.1, 0.2, 0.3))
+    tcp[:, 2] += z
+    trajectory = {
+        "joint_names": ["shoulder"],
+        "times": np.linspace(0, 1.99, len(planned)),
+        "positions": np.asarray(planned, dtype=float)[:, None],
+    }
+    moving = step("go", 0, 200, verb, trajectory=trajectory)
+    return make_run(tcp_pose=tcp, robot=replace(ROBOT, placements=places), steps=(moving,))
+
+
+def test_a_step_s_own_path_is_the_line_from_its_start_to_its_goal():
+    whole = np.linspace(0.0, 0.2, 200)
+    answer = verdict(sliding(whole, [0.0, 0.05, 0.2]), TcpPath(), "go")
+    assert (answer.status, answer.unit) == ("passed", "m")
+    assert answer.margin == pytest.approx(0.001)
+    half = verdict(sliding(whole / 2, [0.0, 0.2]), TcpPath(), "go")
+    assert (half.status, half.margin) == ("failed", pytest.approx(0.5 - 0.95))
+    aside = sliding(whole, [0.0, 0.2])
+    aside.signals.tcp_pose[100, 0] += 0.002
+    assert verdict(aside, TcpPath(), "go").margin == pytest.approx(-0.001)
+    beyond = verdict(sliding(1.02 * whole, [0.0, 0.2]), TcpPath(during="go"))
+    assert beyond.margin == pytest.approx(0.001 - 0.004)
+
+
+def test_a_step_without_a_path_of_its_own_is_not_observable():
+    run = sliding(np.linspace(0.0, 0.2, 200), [0.0, 0.2])
+    assert verdict(run, TcpPath()).status == "not observable"
+    waiting = make_run(steps=(step("wait", 0, 200, "wait"),))
+    assert verdict(waiting, TcpPath(), "wait").status == "not observable"
+    still = sliding(np.zeros(200), [0.1, 0.1])
+    assert verdict(still, TcpPath(), "go").status == "not observable", "it has no length"
+    failed = make_run(
+        steps=(step("go", 0, 200, "lin", status="failed", error_code="PLANNING_FAILED"),),
+        ended_early="PLANNING_FAILED: no line",
+    )
+    assert verdict(failed, TcpPath(), "go").status == "not reached"
