@@ -256,8 +256,8 @@ def _judged(verdict: Verdict | None) -> str:
 
 
 def _number(what: str, name: str, before: float, after: float, unit: str) -> Change:
-    words = (_with_unit(f"{value:.6g}", unit) for value in (before, after))
-    return Change(what, name, *words, after - before, unit)
+    words = [_with_unit(f"{value:.6g}", unit) for value in (before, after)]
+    return Change(what, name, words[0], words[1], after - before, unit)
 
 
 def _with_unit(number: str, unit: str) -> str:
