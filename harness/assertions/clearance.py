@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -101,10 +102,13 @@ def _least(check: Clearance, window: Window, distance: _Worst) -> Callable[[int]
     def evidence(index: int) -> Evidence:
         key, value = distance.keys[int(distance.which[index])], float(distance.values[index])
         who = _nearest_link(window, key, index) or key[0]
-        about = "at least " if value >= window.run.signals.clearance_cutoff else ""
+        is_capped = value >= window.run.signals.clearance_cutoff
+        about = "at least " if is_capped else ""
         pair = f"{who} and {_itself(key)}"
         text = f"{about}{amount(value, 'm')} between {pair}, {amount(limit, 'm')} asked for"
-        measure = Measure("clearance", value, limit, ">=", "m", window.time(index), pair)
+        ceiling = value if is_capped else math.inf
+        time = window.time(index)
+        measure = Measure("clearance", value, limit, ">=", "m", time, pair, ceiling=ceiling)
         return Evidence(text, (measure,))
 
     return evidence

@@ -34,7 +34,7 @@ def fraction(check: FractionCheck, window: Window) -> MarginSignal:
         last = max(step.end_index - 1, step.start_index)
         least[last:] = np.minimum(least[last:], _share(step.result["fraction"]))
     reported = window.cut(least)
-    part = Part("fraction", reported, check.at_least, ">=", "1")
+    part = Part("fraction", reported, check.at_least, ">=", "1", ceiling=1.0)
 
     def text(_: int, measure: Measure) -> str:
         worst = min(reporters, key=lambda step: _share(step.result["fraction"]))

@@ -10,7 +10,7 @@ import numpy as np
 from harness.assertions import temporal
 from harness.assertions.orientation import against
 from harness.assertions.registry import MarginSignal
-from harness.assertions.temporal import Decision, TooShort, longest_hold
+from harness.assertions.temporal import Decision, TooShort, later, longest_hold, with_future
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, NotReached, Window
 from harness.core.types import FloatArray
@@ -79,10 +79,16 @@ def decide(terms: Terms, window: Window, margins: MarginSignal) -> Verdict:
     chosen = np.arange(len(values))
     if terms.word == "always":
         chosen = np.flatnonzero(applies)
+    arguments = values[chosen], times[chosen], applies[chosen], margins.progress
+    is_open = bool(window.cut_short) and _could_hold(terms, *arguments)
     try:
-        decision = _reduce(terms, values[chosen], times[chosen], applies[chosen], margins.progress)
+        decision = _reduce(terms, *arguments)
     except TooShort:
+        if is_open:
+            raise NotReached(window.cut_short) from None
         return _too_short(terms, times[chosen])
+    if is_open and (terms.word == "at_end" or not decision.holds):
+        raise NotReached(window.cut_short)
     index = int(chosen[decision.index])
     time = window.time(index)
     status: VerdictStatus = "passed" if decision.holds else "failed"
@@ -127,6 +133,21 @@ def _reduce(
             return temporal.eventually(low, times, hold, within, progress)
         case _:
             return temporal.at_end(low, times, hold, within, progress)
+
+
+def _could_hold(
+    terms: Terms,
+    values: FloatArray,
+    times: FloatArray,
+    applies: np.ndarray,
+    progress: FloatArray | None,
+) -> bool:
+    """Whether the expectation holds if a window that was cut short goes on in the best way."""
+    best = -np.inf if terms.word == "never" else np.inf
+    more = None if progress is None else with_future(progress, 0.0)
+    return _reduce(
+        terms, with_future(values, best), later(times), np.append(applies, [True, True]), more
+    ).holds
 
 
 def _nearest(values: FloatArray, times: FloatArray, progress: FloatArray | None) -> int:

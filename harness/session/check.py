@@ -9,7 +9,7 @@ from pathlib import Path
 from harness.assertions.wording import describe
 from harness.core.errors import Problem, SpecError
 from harness.engine.explain import explain
-from harness.engine.predict import predict, touches_at_start, unexpected
+from harness.engine.predict import predict, predict_with_poses, touches_at_start, unexpected
 from harness.engine.program import Loc, Program
 from harness.ports import Touch
 from harness.reporting.explanation import explanation_lines
@@ -84,5 +84,7 @@ def explain_file(
     """
     prepared = prepare(path, overrides, seed)
     program = prepared.program
-    records = predict(program, prepared.scene, prepared.kinematics, prepared.planner)
-    return explain(program, records, describe)
+    records, poses = predict_with_poses(
+        program, prepared.scene, prepared.kinematics, prepared.planner
+    )
+    return explain(program, records, poses, describe)

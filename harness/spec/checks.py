@@ -254,12 +254,16 @@ class Arc(SpecModel):
 
 
 class TcpPath(CheckFields):
-    """The TCP follows a line or an arc: it stays near it and travels it from start to end."""
+    """The TCP follows a line or an arc: it stays near it and travels it from start to end.
+
+    Without `line` and `arc` it is the line from where the step starts to its goal; of a `circ` step
+    the arc.
+    """
 
     judged = "always"
     check: Literal["tcp_path"] = "tcp_path"
-    line: Line | None = Field(default=None, description="Either this")
-    arc: Arc | None = Field(default=None, description="or this.")
+    line: Line | None = Field(default=None, description="Another line.")
+    arc: Arc | None = Field(default=None, description="Another arc.")
     max_deviation: PositiveLength = Field(default=0.001, description="Largest distance to it [m].")
     min_fraction: Fraction = Field(
         default=0.95, description="Share of it that must be travelled forwards within the window."
@@ -277,8 +281,8 @@ class TcpPath(CheckFields):
 
     @model_validator(mode="after")
     def _one(self) -> TcpPath:
-        if (self.line is None) == (self.arc is None):
-            raise ValueError("exactly one of line, arc")
+        if self.line is not None and self.arc is not None:
+            raise ValueError("`line`, or `arc`, or neither for the step's own path: not both")
         return self
 
 

@@ -7,6 +7,9 @@ import pytest
 
 from harness.core.geometry import Box, Cylinder, Plane, Shape
 from harness.core.spatial import SE3
+from harness.recording.run import LinkPlacement
+from harness.reporting.margins import allowance_used, margin_share
+from harness.session.agreement import held_finding as finding_of_hold
 from harness.spec.checks import (
     Always,
     Clearance,
@@ -57,6 +60,14 @@ from tests.assertions.synthetic_run import (
 )
 
 ABSENT = np.full((200, 7), np.nan)
+
+
+def held_finding(run):
+    """What became of the run's one attachment."""
+    (record,) = run.attachments
+    found = finding_of_hold(run, record)
+    assert found is not None
+    return found
 
 
 def absent_box(n=200):
@@ -670,7 +681,11 @@ def around(radius, first=0.0, last=np.pi):
 def test_a_line_is_followed_near_enough_and_from_end_to_end():
     spec = TcpPath(line=LINE, max_deviation=0.002)
     answer = verdict(along_z(0.0015), spec)
-    assert (answer.status, answer.unit) == ("passed", "1"), "the share is the tighter of the two"
+    assert (answer.status, answer.unit) == ("passed", "m"), "all of the line was travelled"
+    assert answer.margin == pytest.approx(5e-4)
+    short = verdict(along_z(0.0015, end=0.492), spec)
+    assert (short.status, short.unit) == ("passed", "1"), "the share is the tighter of the two"
+    assert short.margin == pytest.approx(0.01, abs=1e-6)
     strayed = verdict(along_z(0.0021), spec)
     assert (strayed.status, strayed.unit) == ("failed", "m")
     assert strayed.margin == pytest.approx(-1e-4)
@@ -727,7 +742,7 @@ def test_an_arc_through_points_on_a_line_cannot_be_judged():
     assert verdict(make_run(), TcpPath(arc=flat)).status == "not observable"
     point = {"start": LINE["start"], "end": LINE["start"]}
     assert verdict(make_run(), TcpPath(line=point)).status == "not observable"
-    with pytest.raises(ValueError, match="exactly one of line, arc"):
+    with pytest.raises(ValueError, match="`line`, or `arc`, or neither"):
         TcpPath(line=LINE, arc=ARC)
 
 
@@ -1019,3 +1034,130 @@ def test_a_robot_without_a_gripper_grasps_nothing():
     for spec in (Grasped(object="box"), Lifted(object="box"), GripperState(position=0.0)):
         assert verdict(run, spec).status == "not observable"
     assert verdict(run, Grasped(object="nothing")).status == "not observable"
+
+
+# quantities that saturate
+
+
+def test_a_share_that_is_complete_uses_none_of_its_allowance():
+    spec = TcpPath(line=LINE, max_deviation=0.002)
+    answer = verdict(along_z(), spec)
+    used = {measure.name: allowance_used(measure) for measure in answer.measures}
+    assert used["share travelled forwards"] == pytest.approx(0.0, abs=1e-9)
+    assert margin_share(answer) == pytest.approx(1.0)
+    half = verdict(along_z(end=0.495), TcpPath(line=LINE, max_deviation=1.0))
+    assert allowance_used(half.measures[0]) == pytest.approx(0.5, abs=1e-6)
+    assert margin_share(half) == pytest.approx(0.5, abs=1e-6)
+
+
+@pytest.mark.parametrize("at_least", [0.95, 1.0])
+def test_a_path_that_was_followed_to_its_end_has_the_largest_margin(at_least):
+    path = step("path", 0, 200, "cartesian_path", result={"fraction": 1.0})
+    answer = verdict(make_run(steps=(path,)), FractionCheck(at_least=at_least))
+    assert (answer.status, margin_share(answer)) == ("passed", 1.0)
+    assert allowance_used(answer.measures[0]) == 0.0
+
+
+@pytest.mark.parametrize("at_least", [0.14, 0.05])
+def test_a_distance_that_was_recorded_as_at_least_that_far_has_the_largest_margin(at_least):
+    far = make_run(clearances={("robot", "box"): np.full(200, 0.15)})
+    answer = verdict(far, Clearance(between=("robot", "box"), at_least=at_least))
+    assert (answer.status, margin_share(answer)) == ("passed", 1.0)
+    near = make_run(clearances={("robot", "box"): np.full(200, 0.10)})
+    answer = verdict(near, Clearance(between=("robot", "box"), at_least=0.05))
+    assert margin_share(answer) == pytest.approx(0.5)
+
+
+# what is released
+
+
+RELEASES = {
+    "release": (step("release", 149, 180, "release"),),
+    "gripper and detach_object": (
+        step("open", 149, 170, "gripper"),
+        step("detach", 169, 180, "detach_object"),
+    ),
+    "place": (
+        step("put", 100, 200, "place", path="put"),
+        step("put.release", 149, 180, "release", path="put.release"),
+    ),
+}
+
+
+@pytest.mark.parametrize("steps", RELEASES.values(), ids=RELEASES)
+def test_an_object_that_drops_as_the_gripper_releases_it_was_not_lost(steps):
+    z = np.where(np.arange(200) < 155, 0.3, 0.29)
+    grips = {(f"{side}_finger", "box"): force(200, (50, 155)) for side in ("left", "right")}
+    run = make_run(
+        object_poses={"box": heights(z)}, contact_forces=grips, tcp_pose=heights(np.full(200, 0.3)),
+        attachments=(attachment("box", 60, 178),), steps=steps,
+    )  # fmt: skip
+    assert verdict(run, Slip(object="box")).margin == pytest.approx(0.003)
+    assert "lost" not in held_finding(run).message
+    carried = replace(run, steps=(step("go", 0, 200),))
+    assert verdict(carried, Slip(object="box")).status == "failed"
+    assert "the physics lost it at 1.55 s" in held_finding(carried).message
+
+
+def test_an_object_that_falls_before_the_arm_moves_on_was_lost():
+    z = np.where(np.arange(200) < 100, 0.3, 0.29)
+    grips = {(f"{side}_finger", "box"): force(200, (50, 100)) for side in ("left", "right")}
+    run = make_run(
+        object_poses={"box": heights(z)}, contact_forces=grips, tcp_pose=heights(np.full(200, 0.3)),
+        attachments=(attachment("box", 60, 178),),
+        steps=(
+            step("open", 90, 110, "gripper"),
+            step("go", 109, 150),
+            step("release", 149, 180, "release"),
+        ),
+    )  # fmt: skip
+    assert "the physics lost it at 1.00 s" in held_finding(run).message
+
+
+# the path of a step from its start to its goal
+
+
+def sliding(z, planned, verb="lin"):
+    """A robot whose TCP slides along z by its joint `shoulder`; planned positions of a step."""
+    along = (0.0, 0.0, 1.0)
+    places = (
+        LinkPlacement("base_link", "world", (0.1, 0.2, 0.3, 1.0, 0.0, 0.0, 0.0)),
+        LinkPlacement("palm", "base_link", (0, 0, 0, 1, 0, 0, 0), "shoulder", True, along),
+    )
+    tcp = at(200, (0.1, 0.2, 0.3))
+    tcp[:, 2] += z
+    trajectory = {
+        "joint_names": ["shoulder"],
+        "times": np.linspace(0, 1.99, len(planned)),
+        "positions": np.asarray(planned, dtype=float)[:, None],
+    }
+    moving = step("go", 0, 200, verb, trajectory=trajectory)
+    return make_run(tcp_pose=tcp, robot=replace(ROBOT, placements=places), steps=(moving,))
+
+
+def test_a_step_s_own_path_is_the_line_from_its_start_to_its_goal():
+    whole = np.linspace(0.0, 0.2, 200)
+    answer = verdict(sliding(whole, [0.0, 0.05, 0.2]), TcpPath(), "go")
+    assert (answer.status, answer.unit) == ("passed", "m")
+    assert answer.margin == pytest.approx(0.001)
+    half = verdict(sliding(whole / 2, [0.0, 0.2]), TcpPath(), "go")
+    assert (half.status, half.margin) == ("failed", pytest.approx(0.5 - 0.95))
+    aside = sliding(whole, [0.0, 0.2])
+    aside.signals.tcp_pose[100, 0] += 0.002
+    assert verdict(aside, TcpPath(), "go").margin == pytest.approx(-0.001)
+    beyond = verdict(sliding(1.02 * whole, [0.0, 0.2]), TcpPath(during="go"))
+    assert beyond.margin == pytest.approx(0.001 - 0.004)
+
+
+def test_a_step_without_a_path_of_its_own_is_not_observable():
+    run = sliding(np.linspace(0.0, 0.2, 200), [0.0, 0.2])
+    assert verdict(run, TcpPath()).status == "not observable"
+    waiting = make_run(steps=(step("wait", 0, 200, "wait"),))
+    assert verdict(waiting, TcpPath(), "wait").status == "not observable"
+    still = sliding(np.zeros(200), [0.1, 0.1])
+    assert verdict(still, TcpPath(), "go").status == "not observable", "it has no length"
+    failed = make_run(
+        steps=(step("go", 0, 200, "lin", status="failed", error_code="PLANNING_FAILED"),),
+        ended_early="PLANNING_FAILED: no line",
+    )
+    assert verdict(failed, TcpPath(), "go").status == "not reached"
