@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.assertions.contacts import attached, in_hand
 from harness.assertions.registry import Evidence, MarginSignal, signal
-from harness.assertions.text import amount
+from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, NotReached, Window, object_record
 from harness.core.types import FloatArray, IntArray
 from harness.recording.run import Measure, Run
@@ -89,9 +89,9 @@ def _largest_loss(window: Window, check: Clearance) -> _Worst:
 def _refuse_beyond_cutoff(run: Run, at_least: float, distance: _Worst) -> None:
     cutoff = run.signals.clearance_cutoff
     if at_least > cutoff and float(distance.values.min()) >= cutoff:
+        recorded, required = amounts(cutoff, at_least, "m")
         raise NotObservable(
-            f"distances were recorded up to {amount(cutoff, 'm')} only;"
-            f" {amount(at_least, 'm')} are asked for"
+            f"distances were recorded up to {recorded} only; {required} are required"
         )
 
 
@@ -103,7 +103,8 @@ def _least(check: Clearance, window: Window, distance: _Worst) -> Callable[[int]
         who = _nearest_link(window, key, index) or key[0]
         about = "at least " if value >= window.run.signals.clearance_cutoff else ""
         pair = f"{who} and {_itself(key)}"
-        text = f"{about}{amount(value, 'm')} between {pair}, {amount(limit, 'm')} asked for"
+        actual, required = amounts(value, limit, "m")
+        text = f"{about}{actual} between {pair}, {required} required"
         measure = Measure("clearance", value, limit, ">=", "m", window.time(index), pair)
         return Evidence(text, (measure,))
 
@@ -119,9 +120,10 @@ def _below(check: Clearance, window: Window, loss: _Worst) -> Callable[[int], Ev
         actual = float(window.run.signals.clearances[key][sample])
         planned = float(window.run.signals.planned_clearances[key][sample])
         pair = f"{key[0]} and {_itself(key)}"
+        lost, allowed = amounts(value, limit, "m")
         text = (
-            f"{amount(actual, 'm')} between {pair}, planned {amount(planned, 'm')};"
-            f" {amount(limit, 'm')} less allowed"
+            f"{amount(actual, 'm')} between {pair}, planned {amount(planned, 'm')}:"
+            f" {lost} less, {allowed} allowed"
         )
         measure = Measure("clearance below plan", value, limit, "<=", "m", window.time(index), pair)
         return Evidence(text, (measure,))
