@@ -30,7 +30,7 @@ import numpy as np
 
 from harness.assertions.formula_signals import values_of
 from harness.assertions.temporal import TIME_RESOLUTION, range_min
-from harness.assertions.text import amount
+from harness.assertions.text import amounts
 from harness.assertions.window import NotObservable, NotReached, Window
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.recording.run import Measure, Verdict, VerdictStatus
@@ -82,7 +82,7 @@ def formula_verdict(text: str, window: Window) -> Verdict:
     unit = left.unit or right.unit or "1"
     said, limit = float(left.values[index]), float(right.values[index])
     way = "holds" if holds == (sign > 0) else "does not hold"
-    reason = f"{comparison.text} {way}: {amount(said, unit)} against {amount(limit, unit)}"
+    reason = f"{comparison.text} {way}: {' against '.join(amounts(said, limit, unit))}"
     above = comparison.operator.startswith(">") == (sign > 0)
     measure = Measure(
         str(comparison.left) if isinstance(comparison.left, Signal) else comparison.text,

@@ -6,7 +6,7 @@ import numpy as np
 
 from harness.assertions.poses import frame_poses, link_poses
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
-from harness.assertions.text import amount
+from harness.assertions.text import amounts, percentages
 from harness.assertions.window import NotObservable, NotReached, Window
 from harness.core.pose_arrays import compose
 from harness.core.types import FloatArray
@@ -42,11 +42,10 @@ def tcp_path(check: TcpPath, window: Window) -> MarginSignal:
 
     def text(_: int, measure: Measure) -> str:
         if measure.unit == "1":
-            asked = f"{100 * check.min_fraction:.1f} %"
-            travelled = f"{100 * share:.1f} % of the {curve} forwards"
-            return f"the TCP travelled {travelled}, {asked} asked for"
-        asked = amount(limit, "m")
-        return f"the TCP is {amount(measure.value, 'm')} from the {curve}, {asked} allowed"
+            travelled, required = percentages(share, check.min_fraction)
+            return f"the TCP travelled {travelled} of the {curve} forwards, {required} required"
+        away, allowed = amounts(measure.value, limit, "m")
+        return f"the TCP is {away} from the {curve}, {allowed} allowed"
 
     return all_of(window, parts, text)
 

@@ -11,7 +11,7 @@ from harness.assertions import temporal
 from harness.assertions.orientation import against
 from harness.assertions.registry import MarginSignal
 from harness.assertions.temporal import Decision, TooShort, later, longest_hold, with_future
-from harness.assertions.text import amount
+from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, NotReached, Window
 from harness.core.types import FloatArray
 from harness.recording.run import Verdict, VerdictStatus
@@ -172,5 +172,6 @@ def _held(terms: Terms, values: FloatArray, times: FloatArray, decision: Decisio
         return ""
     longest = longest_hold(np.nan_to_num(values, nan=-1.0), times)
     if longest >= terms.hold:
-        return f"; it held for {amount(terms.hold, 's')}, but not when it was asked to"
-    return f"; held for {amount(longest, 's')} at most, {amount(terms.hold, 's')} asked for"
+        return f"; it held for {amount(terms.hold, 's')}, but not in the required time"
+    held, required = amounts(longest, terms.hold, "s")
+    return f"; held for {held} at most, {required} required"

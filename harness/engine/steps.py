@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from harness.core.registry import Registry
 from harness.engine.blends import check_blends
+from harness.engine.goals import arm_has_six_joints
 from harness.engine.program import Loc
 from harness.engine.scope import Scope
 from harness.spec.goals import GoalFields
@@ -322,6 +323,14 @@ def _pick(step: Pick, at: At) -> None:
     _check_graspable(step.object, at)
     if step.grasp_pose is not None:
         _check_pose(step.grasp_pose, at, "grasp_pose")
+    group = at.scope.check_group(step.group, at.key("group"))
+    known = group in at.scope.description.groups
+    if step.pitch is not None and known and arm_has_six_joints(at.scope.description, group):
+        at.scope.problems.add(
+            at.key("pitch"),
+            "`pitch` is for arms of fewer than six joints, and this one reaches any rotation",
+            "give a `grasp_pose` with a rotation: `rpy`, `quat_xyzw` or `quat_wxyz`",
+        )
     _check_travel(step.approach, at, "approach")
     _check_travel(step.lift, at, "lift")
     at.scope.attached[step.object] = None

@@ -11,6 +11,7 @@ import numpy as np
 
 from harness.core.camera import Camera
 from harness.core.geometry import Rgba, Shape
+from harness.core.quantity import distinct
 from harness.core.types import FloatArray, IntArray
 
 StepStatus = Literal["passed", "failed", "expected_error", "not_reached"]
@@ -220,6 +221,10 @@ def is_nested(inner: str, outer: str) -> bool:
     return inner.startswith((f"{outer}.", f"{outer}["))
 
 
+def _six_digits(number: float, more: int) -> str:
+    return f"{number:.{6 + more}g}"
+
+
 @dataclass(frozen=True)
 class Measure:
     """A measured quantity against its limit.
@@ -253,7 +258,10 @@ class Measure:
         where = f" ({self.detail})" if self.detail else ""
         sign = self.comparison
         unit = "" if self.unit == "1" else f" {self.unit}"
-        said = f"{self.name}: {self.value:.6g}{unit} (must be {sign} {self.limit:.6g})"
+        value, limit = distinct(
+            self.value, self.limit, lambda number, more: f"{number:.{6 + more}g}"
+        )
+        said = f"{self.name}: {value}{unit} (must be {sign} {limit})"
         return f"{said} at t={self.time:.3f} s{where}"
 
 

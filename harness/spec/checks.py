@@ -340,11 +340,17 @@ class GripperState(CheckFields):
 
 
 class WithinLimits(CheckFields):
-    """Joints stay within their limits."""
+    """Joints stay within their limits.
+
+    A controller that holds a joint at its limit deviates a little to either side: a measured
+    position may exceed the limit by 0.001 rad or 0.1 mm, a measured velocity by 0.1 %. Commands and
+    efforts have no tolerance. The gripper's joints and idle ones may sink into their stops by 2 %
+    of their range.
+    """
 
     judged = "always"
     check: Literal["within_limits"] = "within_limits"
-    position: Flag = Field(default=True, description="Measured positions.")
+    position: Flag = Field(default=True, description="Measured and commanded positions.")
     velocity: Flag = Field(default=True, description="Measured velocities.")
     acceleration: Flag = Field(default=False, description="Of the commanded trajectory.")
     effort: Flag = Field(default=True, description="Efforts of the motors.")

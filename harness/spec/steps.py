@@ -404,8 +404,15 @@ class Pick(StepFields):
 
     Without a `grasp_pose` the object's shape gives the grasps from above that are as good as each
     other: half a turn of the gripper, a box's other side if it fits, eight turns about what is
-    round. The first that the arm can approach is taken; the step reports which `grasp` of how many
-    `grasps`.
+    round. With a `grasp_pose` that has no rotation the same rotations are tried at its point. The
+    first grasp that the arm can approach, and lift from, is taken; the step reports which `grasp`
+    of how many `grasps`.
+
+    An arm of fewer than six joints turns to the object by itself: it grasps the middle of the
+    object, or its upper part, with the first pitch of the gripper that works, from level (0) to
+    straight down (90 deg); `pitch` states one.
+
+    The planner's `padding` does not apply between the gripper and the object to grasp.
     """
 
     short = "object"
@@ -413,18 +420,33 @@ class Pick(StepFields):
     do: Literal["pick"] = "pick"
     object: Name = Field(description="Its name.")
     grasp_pose: Pose | None = Field(
-        default=None, description="Of the TCP; default: from the object's shape."
+        default=None,
+        description="Pose of the TCP, or its position alone; default: from the object's shape.",
     )
     pitch: Angle | None = Field(
-        default=None, description="Of the gripper, for arms with fewer joints."
+        default=None,
+        description="Angle of the gripper below the horizontal, for arms of fewer than six joints;"
+        " default: the first of 0 to 90 deg that works.",
     )
-    approach: Travel | None = Field(default=None, description="Default: 10 cm along the gripper.")
+    approach: Travel | None = Field(
+        default=None,
+        description="Default: along the gripper, 10 cm or as much as the arm can follow, at least"
+        " 3 cm.",
+    )
     lift: Travel | None = Field(default=None, description="Default: 10 cm up.")
     mode: GripperAction = Field(default="friction", description="How it is held: see `grasp`.")
     max_effort: Annotated[JointEffort, Field(gt=0)] | None = Field(
         default=None,
         description="Effort limit of the gripper's joint while it holds; default from the robot.",
     )
+
+    @model_validator(mode="after")
+    def _one_rotation(self) -> Pick:
+        if self.pitch is not None and self.grasp_pose is not None and self.grasp_pose.has_rotation:
+            raise ValueError(
+                "`pitch` goes with a `grasp_pose` without rotation; this one has its own rotation"
+            )
+        return self
 
 
 class Place(StepFields):
@@ -440,7 +462,11 @@ class Place(StepFields):
     do: Literal["place"] = "place"
     object: Name | None = Field(default=None, description="Default: what was picked last.")
     pose: Pose = Field(description="Where the object shall stand.")
-    approach: Travel | None = Field(default=None, description="Default: 10 cm straight down.")
+    approach: Travel | None = Field(
+        default=None,
+        description="Default: straight down, 10 cm or as much as the arm can follow, at least 3"
+        " cm.",
+    )
     retreat: Travel | None = Field(
         default=None, description="Default: 3 to 10 cm back along the gripper."
     )

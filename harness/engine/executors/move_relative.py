@@ -4,16 +4,29 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.core.types import FloatArray
 from harness.engine.cell import Cell
 from harness.engine.goals import group_of
 from harness.engine.registry import execute
+from harness.ports import MotionPlan, PlanningOptions
 from harness.spec.steps import MoveRelative
 
 
 @execute.handles(MoveRelative)
 def move_relative(step: MoveRelative, cell: Cell) -> None:
-    """Move the link along a direction, or turn it about an axis, as far as asked."""
+    """Move the link along a direction, or turn it about an axis, as far as stated."""
     cell.sync_scene()
+    cell.carry_out(plan_relative(step, cell.planning_start(), cell.current.options, cell))
+
+
+def plan_relative(
+    step: MoveRelative, start: FloatArray, options: PlanningOptions, cell: Cell
+) -> MotionPlan:
+    """Plan the motion of a step from joint positions in description order.
+
+    Raises:
+        PlanningFailed: The arm cannot make it.
+    """
     twist = np.zeros(6)
     if step.direction is not None:
         twist[:3] = cell.world_direction(step.direction)
@@ -24,12 +37,11 @@ def move_relative(step: MoveRelative, cell: Cell) -> None:
         least = most = step.angle
     else:
         raise ValueError("the model has a direction or a rotation")
-    plan = cell.planner.plan_relative(
+    return cell.planner.plan_relative(
         group_of(cell, step.group),
-        cell.planning_start(),
+        start,
         step.link or cell.description.tcp_link,
         twist,
         (least, most),
-        cell.current.options,
+        options,
     )
-    cell.carry_out(plan)
