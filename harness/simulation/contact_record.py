@@ -60,7 +60,7 @@ class ContactRecord:
             self._geoms[begin:end] = contact.geom
             self._normals[begin:end] = contact.frame[:, :3]
             self._points[begin:end] = contact.pos
-            data.efc_force.take(contact.efc_address, 0, self._forces[begin:end], "clip")
+            _normal_forces(data, self._forces[begin:end])
 
     def forces(self, first: int, last: int) -> dict[BodyPair, FloatArray]:
         """Normal force [N] of pairs that touch in samples first to last - 1, (samples,) each."""
@@ -153,3 +153,17 @@ class ContactRecord:
             )
         a, b = sorted((names[first], names[second]))
         return a, b
+
+
+def _normal_forces(data: mujoco.MjData, forces: FloatArray) -> None:
+    """Write the normal force [N] of every contact; one that only touches has no force.
+
+    Such a contact has no row among the constraints, which MuJoCo says with an address of -1; where
+    nothing else is constrained, as with an arm without a gripper, there are no rows at all.
+    """
+    if not data.nefc:
+        forces[:] = 0.0
+        return
+    address = data.contact.efc_address
+    data.efc_force.take(address, 0, forces, "clip")
+    forces[address < 0] = 0.0
