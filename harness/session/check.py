@@ -1,4 +1,4 @@
-"""What can be said of a scenario without physics: its problems, and what will fail."""
+"""What can be said of a scenario without stepping the physics: its problems, what will fail."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from harness.engine.predict import predict, touches_at_start, unexpected
 from harness.engine.program import Loc, Program
 from harness.ports import Touch
 from harness.reporting.explanation import explanation_lines
+from harness.session.physics import start_physics
 from harness.session.prepare import prepare
 
 
@@ -43,6 +44,7 @@ def check_file(
     """Read, compile, and look for goals that are out of reach or in collision."""
     try:
         prepared = prepare(path, overrides, seed)
+        start_physics(prepared)
     except SpecError as error:
         return CheckResult(path.name, problems=tuple(error.problems))
     program = prepared.program

@@ -25,6 +25,7 @@ from harness.session.beliefs import believed_poses
 from harness.session.camera_pictures import with_camera_pictures
 from harness.session.contacts import contact_records
 from harness.session.failure_pictures import draw_pictures, with_pictures
+from harness.session.physics import start_physics
 from harness.session.prepare import Prepared, prepare
 from harness.session.record import run_record
 from harness.session.timing import Clock
@@ -69,6 +70,7 @@ def run_case(
     try:
         with clock.part("compile"):
             prepared = prepare(path, overrides, seed, text)
+            simulator = start_physics(prepared, clock, _observed_links(prepared.program))
     except SpecError as error:
         return CaseResult(
             str(path), case, path.name, "invalid", problems=tuple(error.problems),
@@ -77,7 +79,7 @@ def run_case(
     program = prepared.program
     on_progress(ProgressEvent("compiled", 0, len(program.steps), program.title, "", 0.0, ""))
     try:
-        run = _execute(prepared, str(path), clock, on_progress, report_dir)
+        run = _execute(prepared, simulator, str(path), clock, on_progress, report_dir)
         run = replace(run, case=case)
         placed = _placed(program)
         bare, is_kept = run, report_dir is not None and not only_failed
@@ -152,24 +154,23 @@ def step_line(step: StepRecord) -> StepLine:
     )
 
 
-def _execute(
-    prepared: Prepared, file: str, clock: Clock, on_progress: Notify, report_dir: Path | None
-) -> Run:
-    from harness.session.timed_simulator import TimedSimulator  # physics: no use to a check
-
-    program = prepared.program
+def _observed_links(program: Program) -> list[str]:
+    """Links whose poses the expectations need."""
     needed = observations(expectation.spec for expectation in program.expectations)
     links = set(program.description.link_names)
-    with clock.part("compile"):
-        simulator = TimedSimulator(
-            clock,
-            program.description,
-            [obj for obj in program.all_objects() if obj.in_simulation],
-            [obj.name for obj in program.world.objects if obj.in_simulation],
-            gravity=program.world.gravity,
-            timestep=program.world.timestep,
-            frames=[name for name in needed.frames if name in links],
-        )
+    return [name for name in needed.frames if name in links]
+
+
+def _execute(
+    prepared: Prepared,
+    simulator: TimedSimulator,
+    file: str,
+    clock: Clock,
+    on_progress: Notify,
+    report_dir: Path | None,
+) -> Run:
+    program = prepared.program
+    needed = observations(expectation.spec for expectation in program.expectations)
     with clock.part("execute"):
         execution = execute_program(
             program,
