@@ -78,3 +78,64 @@ def test_a_contact_that_only_touches_does_not_take_the_force_of_another_constrai
     assert {pair: float(force[0]) for pair, force in forces.items()} == pytest.approx(expected)
     assert expected["a floor", "pressed"] > 1.0
     assert expected["a floor", "box"] == 0.0
+
+
+def test_sums_of_the_contacts_are_those_of_a_plain_loop_over_them(gripper_over_table):
+    """Of a grid of boxes, with one that lies on two others and one under the gripper."""
+    grid = [
+        a_box(f"box {row} {column}", (0.1, 0.1, 0.05), (row, column, 0.0245), mass=0.3)
+        for row in range(1, 5)
+        for column in range(-2, 3)
+    ]
+    world = [
+        FLOOR,
+        *grid,
+        a_box("left", (0.1, 0.1, 0.1), (-1, 0, 0.0499), mass=1.0),
+        a_box("right", (0.1, 0.1, 0.1), (-1, 0.2, 0.0499), mass=1.0),
+        a_box("bridge", (0.1, 0.4, 0.02), (-1, 0.1, 0.1097), mass=0.5),
+        a_box("gripped", (0.1, 0.1, 0.2), (0.0, 0.0, 0.0999), mass=0.5),
+    ]
+    physics = build_model(
+        gripper_over_table,
+        world,
+        [each.name for each in world],
+        gravity=(0.0, 0.0, -9.8),
+        timestep=0.001,
+    )
+    data, samples = mujoco.MjData(physics.model), 20
+    record, wrench = ContactRecord(physics), np.zeros(6)
+    total, carried, pushed = {}, {}, {}
+    for row in range(samples):
+        mujoco.mj_step(physics.model, data)
+        record.keep(data, row)
+        for index in range(data.ncon):
+            mujoco.mj_contactForce(physics.model, data, index, wrench)
+            bodies = physics.model.geom_bodyid[data.contact.geom[index]].tolist()
+            names = [physics.body_names[body] for body in bodies]
+            links = [body in physics.robot_bodies for body in bodies]
+            force = wrench[0] * data.contact.frame[index, :3]  # of the first on the second
+            if links == [False, True] or (links[0] == links[1] and names[0] > names[1]):
+                names, force = names[::-1], -force
+            pair = (names[0], names[1])
+            total.setdefault(pair, np.zeros(samples))[row] += wrench[0]
+            if not any(links):
+                carried.setdefault(pair, np.zeros(samples))[row] += force[2]
+            if links[0] != links[1]:
+                pushed.setdefault(pair, np.zeros((samples, 3)))[row] += force
+    assert ("bridge", "left") in carried
+    assert pushed
+    for found, expected in (
+        (record.forces(0, samples), total),
+        (record.support_forces(samples), carried),
+        ({pair: press[:, 3:] for pair, press in record.presses(samples).items()}, pushed),
+    ):
+        assert list(found) == sorted(expected)
+        for pair, values in found.items():
+            assert np.nan_to_num(values) == pytest.approx(expected[pair], rel=1e-5, abs=1e-6)
+    late = record.forces(samples - 5, samples)
+    assert all(late[pair] == pytest.approx(total[pair][-5:]) for pair in late)
+
+
+def test_a_world_without_contacts_has_no_forces(gripper_over_table):
+    signals = MujocoSimulator(gripper_over_table, [], ()).finish()
+    assert (signals.contact_forces, signals.support_forces, signals.presses) == ({}, {}, {})
