@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from harness.core.errors import ModelRefused, Problem, SpecError
+from harness.ports import Touch
+from harness.session.findings import overlap_text
 from harness.session.prepare import Prepared
 from harness.session.timing import Clock
 
@@ -46,6 +48,15 @@ def start_physics(
             )
     except ModelRefused as refused:
         raise SpecError([_problem(prepared, refused)]) from refused
+
+
+def overlap_note(prepared: Prepared, touch: Touch) -> str:
+    """An overlap at the start, with the place of the object in the file."""
+    locs = prepared.program.object_locs
+    known = [locs[name] for name in (touch.second, touch.first) if name in locs]
+    loc = min(known, key=lambda each: each == ("world",))  # the world's objects come last
+    problem = prepared.loaded.lines.problem(loc, overlap_text(touch))
+    return f"{problem.path}:{problem.line}:{problem.column}: {problem.message}"
 
 
 def _problem(prepared: Prepared, refused: ModelRefused) -> Problem:

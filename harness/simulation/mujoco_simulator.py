@@ -22,6 +22,7 @@ from harness.simulation.faults import Faults
 from harness.simulation.gripper_drive import GripperDrive
 from harness.simulation.model import build_model
 from harness.simulation.objects import Objects
+from harness.simulation.overlaps import overlaps
 from harness.simulation.recording import Recording, refresh
 from harness.simulation.robot_mjcf import coupling
 from harness.simulation.servo import FeedForward
@@ -41,7 +42,11 @@ ABORT_HOLD = 0.2
 
 
 class MujocoSimulator:
-    """Physics of one run; equal calls give equal bits, in whatever pieces time is advanced."""
+    """Physics of one run; equal calls give equal bits, in whatever pieces time is advanced.
+
+    Attributes:
+        overlaps_at_start: Objects that are inside something at the start, the deepest pair first.
+    """
 
     def __init__(
         self,
@@ -85,6 +90,7 @@ class MujocoSimulator:
         self._recording = Recording(self.physics, self._data)
         refresh(self._model, self._data)
         self._refuse_unusable_start()
+        self.overlaps_at_start = overlaps(self.physics, self._data)
         self._recording.start(self._command)
         self._objects = Objects(self.physics, self._data, self._recording, frozenset(present))
         self._gripper = None if description.gripper is None else GripperDrive(self, self._recording)
