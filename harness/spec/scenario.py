@@ -192,8 +192,8 @@ class Scenario(SpecModel):
     samples: Annotated[Count, Field(ge=1, le=MOST_SAMPLES)] | None = Field(
         default=None, description="How many random cases; default 20 where something is random."
     )
-    redraw_overlaps: Flag = Field(
-        default=False,
+    redraw_overlaps: Flag | None = Field(
+        default=None,
         description="Draws a sample again, up to 100 times, while objects overlap at the start.",
     )
     expect_rate: Expected | None = Field(
