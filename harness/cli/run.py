@@ -206,9 +206,9 @@ def _tell_rates(suite: SuiteRun, style: Style) -> None:
         name = f"{group.file} [{group.group}]" if group.group else group.file
         say(rate_line(name, group.rate, style))
     cases = [
-        (suite.plan[index].values, result.outcome == "passed")
+        (values, result.outcome == "passed")
         for index, result in suite.results.items()
-        if suite.plan[index].values
+        if (values := suite.values(index))
     ]
     for line in table_lines(cases, style):
         say(line)

@@ -3,6 +3,7 @@
 HarnessError
 ├── SpecError          a file says things that cannot be meant (exit code 2)
 ├── RobotError         a robot's or world's files cannot be used (exit code 2)
+├── ModelRefused       the physics cannot be built from a robot and a world (exit code 2)
 ├── StepFailed         a step cannot be carried out; ends the run, named by a MoveIt error code
 │   └── PlanningFailed with the planner's explanation
 └── SimulationDiverged the physics left the finite numbers (exit code 3)
@@ -126,6 +127,19 @@ class SpecError(HarnessError):
 
 class RobotError(HarnessError):
     """A robot's description, or a file it names, cannot be used."""
+
+
+class ModelRefused(HarnessError):
+    """The physics cannot be built.
+
+    Attributes:
+        body: Name of the link or the object that prevents it; empty where none is known.
+        reason: What is wrong with it.
+    """
+
+    def __init__(self, body: str, reason: str) -> None:
+        self.body, self.reason = body, reason
+        super().__init__(f"{body}: {reason}" if body else reason)
 
 
 class StepFailed(HarnessError):

@@ -83,6 +83,7 @@ class _Compiler:
         self.later: dict[str, WorldObject] = {}
         self.later_specs: dict[str, ObjectSpec] = {}  # without poses
         self.step_locs: dict[str, Loc] = {}
+        self.object_locs: dict[str, Loc] = {}
         self.expectations: list[ProgramExpectation] = []
         self.pending: list[tuple[AnyExpectation, Loc]] = []
 
@@ -118,6 +119,7 @@ class _Compiler:
             expectations=tuple(self.expectations),
             seed=scenario.seed,
             step_locs=self.step_locs,
+            object_locs=self.object_locs,
             cameras=self.scope.cameras,
             videos=videos,
         )
@@ -151,10 +153,11 @@ class _Compiler:
         return tuple(resolved.values())
 
     def _world_objects(self) -> dict[str, WorldObject]:
-        """The world's own objects; what is wrong with one is told at the scenario's `world`."""
+        """The world's own objects; what is wrong with one is reported at the scenario's `world`."""
         resolved: dict[str, WorldObject] = {}
         world, problems = self.sources.world, list[str]()
         for spec in world.objects:
+            self.object_locs[spec.name] = ("world",)
             if spec.name in resolved:
                 problems.append(f"two objects are called '{spec.name}'")
             if spec.pose.frame != "world":
@@ -184,10 +187,16 @@ class _Compiler:
         return spec.pose.se3()
 
     def _resolve(self, spec: ObjectSpec, loc: Loc, pose: SE3) -> WorldObject | None:
-        if spec.name == "world" or spec.name in self.sources.description.link_names:
-            self.problems.add(
-                (*loc, "name"), f"'{spec.name}' is a robot link's name", "choose another"
-            )
+        self.object_locs[spec.name] = loc
+        description = self.sources.description
+        for kind, names in (
+            ("link", ("world", *description.link_names)),
+            ("joint", description.joint_names),
+        ):
+            if spec.name in names:
+                self.problems.add(
+                    (*loc, "name"), f"'{spec.name}' is a robot {kind}'s name", "choose another"
+                )
         try:
             return self._object(spec, pose, self.sources.base_dir)
         except ObjectUnusableError as unusable:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 from harness.core.errors import Problem
 from harness.recording.run import Outcome, StepStatus, Verdict
@@ -71,6 +71,9 @@ class CaseResult:
         problems: Of the file, when it is invalid; else what was predicted without physics.
         message: Why, when the harness or a native library broke.
         notes: Fallbacks worth a line: no renderer, no meshes.
+        overlap: Depth of the deepest pair of bodies that overlap at the start [m]; 0: none do.
+        redraws: How often the sample was drawn again because objects overlapped.
+        values: What varies as it was drawn at last, path -> value; empty when drawn once.
         wall_times: Seconds of each part; never judged.
     """
 
@@ -88,4 +91,7 @@ class CaseResult:
     problems: tuple[Problem, ...] = ()
     message: str = ""
     notes: tuple[str, ...] = ()
+    overlap: float = 0.0
+    redraws: int = 0
+    values: Mapping[str, Any] = field(default_factory=dict[str, Any])
     wall_times: Mapping[str, float] = field(default_factory=dict[str, float])

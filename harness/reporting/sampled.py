@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from harness.core.quantity import split_quantity
 from harness.recording.run import Outcome
+from harness.reporting.result import CaseResult
 from harness.reporting.terminal import PLAIN, Style
 
 RateVerdict = Literal["shown", "refuted", "open"]
@@ -32,6 +33,9 @@ class Rate:
         verdict: `shown` when the rate is at least what was asked, `refuted` when it is not, `open`
             when these samples cannot tell.
         stopped_early: Whether the sequential test ended the sampling.
+        overlapping: Samples that were run although objects overlap at their start.
+        redrawn: Samples that were drawn again because objects overlapped.
+        redraws: How often, of all of them together.
     """
 
     passed: int
@@ -42,6 +46,9 @@ class Rate:
     at_least: float | None
     verdict: RateVerdict
     stopped_early: bool = False
+    overlapping: int = 0
+    redrawn: int = 0
+    redraws: int = 0
 
 
 @dataclass(frozen=True)
@@ -59,6 +66,16 @@ class SampledRate:
     group: str
     rate: Rate
     outcome: Outcome
+
+
+def with_starts(rate: Rate, results: Sequence[CaseResult]) -> Rate:
+    """A rate with how many of its samples have overlapping objects at the start."""
+    return replace(
+        rate,
+        overlapping=sum(result.overlap > 0 for result in results),
+        redrawn=sum(result.redraws > 0 for result in results),
+        redraws=sum(result.redraws for result in results),
+    )
 
 
 def missed(rates: Sequence[SampledRate]) -> str:
@@ -92,6 +109,12 @@ def rate_text(name: str, rate: Rate) -> str:
         }[rate.verdict]
     if rate.stopped_early:
         line += "; the sequential test needed no more"
+    if rate.overlapping:
+        line += f"; objects overlap at the start of {rate.overlapping} of them"
+        line += " (`redraw_overlaps: true` draws such samples again)"
+    if rate.redrawn:
+        line += f"; {rate.redrawn} were drawn again, {rate.redraws} times in all,"
+        line += " because objects overlapped at the start"
     return line
 
 

@@ -1,8 +1,8 @@
-"""What can be said of a scenario without physics: its problems, and what will fail."""
+"""What can be said of a scenario without stepping the physics: its problems, what will fail."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,6 +13,7 @@ from harness.engine.predict import predict, predict_with_poses, touches_at_start
 from harness.engine.program import Loc, Program
 from harness.ports import Touch
 from harness.reporting.explanation import explanation_lines
+from harness.session.physics import overlap_note, start_physics
 from harness.session.prepare import prepare
 
 
@@ -43,6 +44,7 @@ def check_file(
     """Read, compile, and look for goals that are out of reach or in collision."""
     try:
         prepared = prepare(path, overrides, seed)
+        overlaps = start_physics(prepared).overlaps_at_start
     except SpecError as error:
         return CheckResult(path.name, problems=tuple(error.problems))
     program = prepared.program
@@ -58,8 +60,17 @@ def check_file(
         predicted=tuple(predicted),
         explanations=tuple(predicted.values()),
         steps=len(program.steps),
-        notes=(*prepared.notes, *map(_told, touches)),
+        notes=(
+            *prepared.notes,
+            *(overlap_note(prepared, touch) for touch in overlaps),
+            *(_told(touch) for touch in touches if not _is_among(touch, overlaps)),
+        ),
     )
+
+
+def _is_among(touch: Touch, others: Sequence[Touch]) -> bool:
+    """Whether others have the same two bodies."""
+    return any({touch.first, touch.second} == {each.first, each.second} for each in others)
 
 
 def _told(touch: Touch) -> str:

@@ -5,12 +5,34 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from harness.ports import Touch
 from harness.recording.run import Finding, StepRecord
 
 
 def told(notes: Sequence[str]) -> tuple[Finding, ...]:
     """What of the robot's and the world's files was left out or assumed."""
     return tuple(Finding(kind="note", message=note) for note in notes)
+
+
+def overlap_text(touch: Touch) -> str:
+    """Which two bodies overlap at the start, and how deep."""
+    return (
+        f"at the start {touch.first} and {touch.second} overlap by {-1e3 * touch.distance:.3g} mm;"
+        " the physics pushes them apart"
+    )
+
+
+def overlap_findings(touches: Sequence[Touch]) -> tuple[Finding, ...]:
+    """Objects that are inside something when the run begins."""
+    return tuple(
+        Finding(
+            kind="overlap",
+            message=overlap_text(touch),
+            time=0.0,
+            values={"pair": [touch.first, touch.second], "depth": -touch.distance},
+        )
+        for touch in touches
+    )
 
 
 def findings_of(steps: Sequence[StepRecord]) -> tuple[Finding, ...]:

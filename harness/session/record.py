@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.metadata import version
 
 from harness.engine.execute import Execution
 from harness.engine.program import Program
-from harness.ports import Kinematics
+from harness.ports import Kinematics, Touch
 from harness.recording.run import (
     GripperRecord,
     JointRecord,
@@ -18,7 +18,7 @@ from harness.recording.run import (
     Signals,
 )
 from harness.robot.description import RobotDescription
-from harness.session.findings import findings_of, told
+from harness.session.findings import findings_of, overlap_findings, told
 from harness.session.receipts import with_receipts
 
 LIBRARIES = ("armharness", "mujoco", "pin", "coal", "ompl", "toppra", "numpy")
@@ -108,6 +108,7 @@ def run_record(
     source: str,
     resolved: str,
     notes: tuple[str, ...] = (),
+    overlaps: Sequence[Touch] = (),
 ) -> Run:
     """Everything that happened, in one noun."""
     robot = robot_record(program.description, kinematics)
@@ -125,7 +126,7 @@ def run_record(
         gravity=program.world.gravity,
         timestep=program.world.timestep,
         allowed_contacts=tuple(sorted(program.description.allowed_collisions)),
-        findings=(*told(notes), *findings_of(steps), *findings),
+        findings=(*told(notes), *overlap_findings(overlaps), *findings_of(steps), *findings),
         source=source,
         resolved=resolved,
         versions=library_versions(),

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Literal
 from harness.assertions.judge import judge
 from harness.assertions.observations import observations
 from harness.assertions.placed import PlacedExpectation
-from harness.core.errors import HarnessError, Problem, RobotError, SpecError
+from harness.core.errors import HarnessError, Problem, SpecError
 from harness.core.types import FloatArray
 from harness.engine.execute import Execution, execute_program
 from harness.engine.program import Program, ProgramStep
+from harness.ports import Touch
 from harness.recording.digest import digest
 from harness.recording.run import Outcome, Run, Signals, StepRecord, Verdict
 from harness.recording.store import PAGE, StoredRun, write_run
@@ -25,6 +26,7 @@ from harness.session.beliefs import believed_poses
 from harness.session.camera_pictures import with_camera_pictures
 from harness.session.contacts import contact_records
 from harness.session.failure_pictures import draw_pictures, with_pictures
+from harness.session.physics import overlap_note, start_physics
 from harness.session.prepare import Prepared, prepare
 from harness.session.record import run_record
 from harness.session.timing import Clock
@@ -33,7 +35,11 @@ from harness.spec.resolve import resolved_text
 if TYPE_CHECKING:
     from harness.session.timed_simulator import TimedSimulator
 
+MOST_DRAWS = 100
+"""Draws of a sample, the first included, until no objects overlap."""
+
 Notify = Callable[[ProgressEvent], None]
+Redraw = Callable[[int], Mapping[str, str]]
 
 
 def run_case(
@@ -48,6 +54,7 @@ def run_case(
     case: str = "",
     only_failed: bool = False,
     text: str | None = None,
+    redraw: Redraw | None = None,
     on_progress: Notify = lambda _: None,
 ) -> CaseResult:
     """Compile, execute, judge and report one scenario.
@@ -63,12 +70,15 @@ def run_case(
         case: Name of the case; empty when the file has one.
         only_failed: Whether to write a report only where the case does not pass.
         text: What would stand in the file; None: what does.
+        redraw: Other overrides by the number of the draw, from 1, as long as objects overlap at the
+            start; None draws no others.
         on_progress: Told of every step.
     """
     clock = Clock()
     try:
         with clock.part("compile"):
-            prepared = prepare(path, overrides, seed, text)
+            prepared, simulator, redraws = _started(path, overrides, seed, text, clock, redraw)
+            overlaps = simulator.overlaps_at_start
     except SpecError as error:
         return CaseResult(
             str(path), case, path.name, "invalid", problems=tuple(error.problems),
@@ -77,7 +87,7 @@ def run_case(
     program = prepared.program
     on_progress(ProgressEvent("compiled", 0, len(program.steps), program.title, "", 0.0, ""))
     try:
-        run = _execute(prepared, str(path), clock, on_progress, report_dir)
+        run = _execute(prepared, simulator, str(path), clock, on_progress, report_dir)
         run = replace(run, case=case)
         placed = _placed(program)
         bare, is_kept = run, report_dir is not None and not only_failed
@@ -110,11 +120,6 @@ def run_case(
                     bag,
                 )
             on_progress(ProgressEvent("written", 0, 0, "", outcome, run_time(run), str(report_dir)))
-    except RobotError as error:
-        return CaseResult(
-            str(path), case, program.title, "invalid", seed=program.seed, message=str(error),
-            problems=(Problem(str(path), 0, 0, str(error)),), wall_times=clock.seconds,
-        )  # fmt: skip
     except HarnessError as error:
         return CaseResult(
             str(path), case, program.title, "error", seed=program.seed, message=str(error),
@@ -132,7 +137,9 @@ def run_case(
         page=str(report_dir / PAGE) if report_dir is not None and page else "",
         steps=tuple(step_line(step) for step in run.steps),
         verdicts=verdicts,
-        notes=notes,
+        notes=(*(overlap_note(prepared, touch) for touch in overlaps), *notes),
+        overlap=-overlaps[0].distance if overlaps else 0.0,
+        redraws=redraws,
         wall_times=clock.seconds,
     )
 
@@ -158,24 +165,56 @@ def step_line(step: StepRecord) -> StepLine:
     )
 
 
-def _execute(
-    prepared: Prepared, file: str, clock: Clock, on_progress: Notify, report_dir: Path | None
-) -> Run:
-    from harness.session.timed_simulator import TimedSimulator  # physics: no use to a check
+def _started(
+    path: Path,
+    overrides: Mapping[str, str] | None,
+    seed: int | None,
+    text: str | None,
+    clock: Clock,
+    redraw: Redraw | None,
+) -> tuple[Prepared, TimedSimulator, int]:
+    """The scenario at its start, and how often it was drawn again until no objects overlapped.
 
-    program = prepared.program
+    Raises:
+        SpecError: With every problem of the file; or objects overlap in every draw.
+    """
+    last: list[Problem] = []
+    for draw in range(MOST_DRAWS):
+        drawn = overrides if redraw is None or not draw else redraw(draw)
+        prepared = prepare(path, drawn, seed, text)
+        simulator = start_physics(prepared, clock, _observed_links(prepared.program))
+        if redraw is None or not simulator.overlaps_at_start:
+            return prepared, simulator, draw
+        last = [_no_free_draw(prepared, simulator.overlaps_at_start[0])]
+    raise SpecError(last)
+
+
+def _no_free_draw(prepared: Prepared, touch: Touch) -> Problem:
+    return prepared.loaded.lines.problem(
+        ("redraw_overlaps",),
+        f"objects overlap in each of {MOST_DRAWS} draws; in the last one {touch.first} and"
+        f" {touch.second} by {-1e3 * touch.distance:.3g} mm",
+        "widen the distributions of `randomize`, or move what does not vary",
+    )
+
+
+def _observed_links(program: Program) -> list[str]:
+    """Links whose poses the expectations need."""
     needed = observations(expectation.spec for expectation in program.expectations)
     links = set(program.description.link_names)
-    with clock.part("compile"):
-        simulator = TimedSimulator(
-            clock,
-            program.description,
-            [obj for obj in program.all_objects() if obj.in_simulation],
-            [obj.name for obj in program.world.objects if obj.in_simulation],
-            gravity=program.world.gravity,
-            timestep=program.world.timestep,
-            frames=[name for name in needed.frames if name in links],
-        )
+    return [name for name in needed.frames if name in links]
+
+
+def _execute(
+    prepared: Prepared,
+    simulator: TimedSimulator,
+    file: str,
+    clock: Clock,
+    on_progress: Notify,
+    report_dir: Path | None,
+) -> Run:
+    program = prepared.program
+    needed = observations(expectation.spec for expectation in program.expectations)
     with clock.part("execute"):
         execution = execute_program(
             program,
@@ -203,6 +242,7 @@ def _execute(
         source=prepared.loaded.text,
         resolved=resolved_text(prepared.loaded, seeds, folder=report_dir),
         notes=prepared.notes,
+        overlaps=simulator.overlaps_at_start,
     )
     with clock.part("judge"):
         return _compared_with_plan(prepared, run, is_recorded=needed.planned_clearances)

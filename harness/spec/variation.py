@@ -11,7 +11,7 @@ from harness.core.quantity import split_quantity
 from harness.core.variation import MOST_CASES, count_of
 from harness.spec.base import Fraction, Number, SpecModel
 
-VARIATION_KEYS = ("parametrize", "randomize", "samples", "expect_rate")
+VARIATION_KEYS = ("parametrize", "randomize", "samples", "redraw_overlaps", "expect_rate")
 """Keys that say which cases there are; a case itself has none of them."""
 
 

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from harness.recording.run import Outcome
 from harness.reporting.result import CaseResult
-from harness.reporting.sampled import SampledRate
+from harness.reporting.sampled import SampledRate, with_starts
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.suite.cases import Watcher, nobody_watches, run_here, run_isolated
 from harness.suite.outcome import EXIT_CODES, INTERRUPTED_EXIT_CODE, exit_code
@@ -151,7 +152,20 @@ class SuiteRun:
     @property
     def rates(self) -> list[SampledRate]:
         """Success rates of the parametrised cases that are sampled."""
-        return self._sampling.groups() if self._is_sampled else []
+        if not self._is_sampled:
+            return []
+        starts: dict[tuple[str, str] | None, list[CaseResult]] = {}
+        for index, result in self.results.items():
+            starts.setdefault(self.plan[index].rate_key, []).append(result)
+        return [
+            replace(group, rate=with_starts(group.rate, starts.get((group.file, group.group), [])))
+            for group in self._sampling.groups()
+        ]
+
+    def values(self, index: int) -> Mapping[str, Any]:
+        """What varies in a run, as it was drawn at last."""
+        drawn = self.results[index].values if index in self.results else {}
+        return {**self.plan[index // self._how.repeat].values, **drawn}
 
     @property
     def record(self) -> SuiteRecord:
@@ -159,7 +173,9 @@ class SuiteRun:
         cases: list[SuiteCase] = []
         for index, result in self.results.items():
             case = self.plan[index // self._how.repeat]
-            cases.append(SuiteCase(result, case.values, case.header.tags, case.header.verifies))
+            cases.append(
+                SuiteCase(result, self.values(index), case.header.tags, case.header.verifies)
+            )
         return SuiteRecord(self.outcome, cases, self.rates, self.is_interrupted)
 
     def repetitions(self) -> list[list[CaseResult]]:
