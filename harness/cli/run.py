@@ -208,7 +208,7 @@ def _tell_rates(suite: SuiteRun, style: Style) -> None:
     cases = [
         (suite.plan[index].values, result.outcome == "passed")
         for index, result in suite.results.items()
-        if suite.plan[index].values
+        if suite.plan[index].values and result.outcome != "invalid"
     ]
     for line in table_lines(cases, style):
         say(line)

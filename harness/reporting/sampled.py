@@ -32,6 +32,7 @@ class Rate:
         verdict: `shown` when the rate is at least what was asked, `refuted` when it is not, `open`
             when these samples cannot tell.
         stopped_early: Whether the sequential test ended the sampling.
+        invalid: Samples that could not be run; they are not in `total`.
     """
 
     passed: int
@@ -42,6 +43,7 @@ class Rate:
     at_least: float | None
     verdict: RateVerdict
     stopped_early: bool = False
+    invalid: int = 0
 
 
 @dataclass(frozen=True)
@@ -69,9 +71,14 @@ def missed(rates: Sequence[SampledRate]) -> str:
 
 def rate_line(name: str, rate: Rate, style: Style = PLAIN) -> str:
     """`pick: 187 of 200 samples passed, 93.5% (89.2% to 96.2% at 95%): at least 90% is shown`."""
-    share = f"{rate.passed / rate.total:.1%}" if rate.total else "no rate"
-    line = f"{name}: {rate.passed} of {rate.total} samples passed, {share}"
+    count = f"{rate.invalid} sample{'s' if rate.invalid != 1 else ''}"
+    if not rate.total:
+        why = f"{count} invalid" if rate.invalid else "no sample ended"
+        return f"{style.mark(is_good=False)} {name}: no rate, {why}"
+    line = f"{name}: {rate.passed} of {rate.total} samples passed, {rate.passed / rate.total:.1%}"
     line += f" ({rate.low:.1%} to {rate.high:.1%} at {rate.confidence:.0%} confidence)"
+    if rate.invalid:
+        line += f", {count} invalid and not counted"
     if rate.at_least is None:
         is_shown = rate.verdict == "shown"
         line += "" if is_shown else "; every one must pass, as no `expect_rate` is asked"

@@ -14,6 +14,11 @@ from harness.engine.program import Loc, Program
 from harness.ports import Touch
 from harness.reporting.explanation import explanation_lines
 from harness.session.prepare import prepare
+from harness.spec.load import LoadedScenario
+from harness.spec.varied_paths import as_json, choices
+
+MOST_CHOICES = 20
+"""Words that `randomize` chooses among which are tried in turn; each takes half a second."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +50,7 @@ def check_file(
         prepared = prepare(path, overrides, seed)
     except SpecError as error:
         return CheckResult(path.name, problems=tuple(error.problems))
+    problems = _problems_of_choices(prepared.loaded, path, overrides, seed)
     program = prepared.program
     touches = touches_at_start(program, prepared.scene)
     records = predict(program, prepared.scene, prepared.kinematics, prepared.planner)
@@ -55,11 +61,26 @@ def check_file(
         predicted.setdefault(problem, explanation_lines(record.explanation, record.message))
     return CheckResult(
         program.title,
+        problems=problems,
         predicted=tuple(predicted),
         explanations=tuple(predicted.values()),
         steps=len(program.steps),
         notes=(*prepared.notes, *map(_told, touches)),
     )
+
+
+def _problems_of_choices(
+    loaded: LoadedScenario, path: Path, overrides: Mapping[str, str] | None, seed: int | None
+) -> tuple[Problem, ...]:
+    """Mistakes of the words that `randomize` chooses among: names that nothing has."""
+    found: dict[Problem, None] = {}
+    for values in choices(loaded.written)[:MOST_CHOICES]:
+        chosen = {each.path: as_json(each.value.plain()) for each in values}
+        try:
+            prepare(path, {**chosen, **(overrides or {})}, seed)
+        except SpecError as error:
+            found.update(dict.fromkeys(error.problems))
+    return tuple(found)
 
 
 def _told(touch: Touch) -> str:

@@ -12,16 +12,16 @@ from pydantic_core import ErrorDetails
 
 from harness.core.errors import Problem, SpecError
 from harness.core.resources import data_folder
-from harness.spec.annotations import keys_of
 from harness.spec.base import SpecModel
 from harness.spec.includes import with_includes
 from harness.spec.mending import mended
 from harness.spec.mistakes import did_you_mean
-from harness.spec.params import override, substitute
+from harness.spec.overrides import from_options, override
+from harness.spec.params import substitute
 from harness.spec.scenario import Scenario
 from harness.spec.short_forms import models_shape
-from harness.spec.source import Located, Source, SourceMap
-from harness.spec.varied_paths import check_paths, values_of_case
+from harness.spec.source import Loc, Located, Source, SourceMap
+from harness.spec.varied_paths import check_variation, values_of_case
 from harness.spec.wording import problems_of
 from harness.spec.world import WorldSpec
 from harness.spec.yaml_file import parse_yaml, read_text
@@ -106,17 +106,19 @@ def read_scenario(
         text: What would stand in the file; None: what does.
 
     Raises:
-        SpecError: The file is no YAML, or an override names nothing in it.
+        SpecError: The file is not YAML.
     """
     given = dict(overrides or {})
     if seed is not None:
         given["seed"] = str(seed)
     text = read_text(path) if text is None else text
     problems: list[Problem] = []
-    written = parse_yaml(text, Source.of_text(str(path), text))
-    written = override(written, given, keys_of(Scenario), values_of_case(written, given))
-    check_paths(written, tuple(keys_of(Scenario)), problems)
-    written = substitute(with_includes(written, path, problems), problems)
+    root = parse_yaml(text, Source.of_text(str(path), text), problems)
+    of_file = values_of_case(root, given)
+    options = {key: value for key, value in given.items() if key not in of_file}
+    root = override(root, [*of_file.values(), *from_options(options, problems)], problems)
+    check_variation(root, given, lambda varied: _problems_of(varied, path), problems)
+    written = substitute(with_includes(root, path, problems), problems)
     try:
         model, lines = _model(written, Scenario, problems)
     except _BrokenError as error:
@@ -125,6 +127,17 @@ def read_scenario(
         loaded = LoadedScenario(error.remains, path, text, error.lines, written)
         return Reading(loaded, tuple(error.problems), error.doubtful)
     return Reading(LoadedScenario(model, path, text, lines, written))
+
+
+def _problems_of(root: Located, path: Path) -> list[Problem]:
+    """The mistakes of a scenario's values."""
+    problems: list[Problem] = []
+    written = substitute(with_includes(root, path, problems), problems)
+    try:
+        _model(written, Scenario, problems)
+    except SpecError as error:
+        return error.problems
+    return []
 
 
 def load_scenario(
@@ -140,24 +153,20 @@ def load_scenario(
     Raises:
         SpecError: With every problem of the file and of the overrides.
     """
-    given = dict(overrides or {})
-    if seed is not None:
-        given["seed"] = str(seed)
-    return parse_scenario(read_text(path), path, given)
+    return _whole(read_scenario(path, overrides, seed))
 
 
 def parse_scenario(
     text: str, path: Path, overrides: Mapping[str, str] | None = None
 ) -> LoadedScenario:
     """As `load_scenario`, of a text that would stand in the file."""
-    problems: list[Problem] = []
-    written = parse_yaml(text, Source.of_text(str(path), text))
-    given = dict(overrides or {})
-    written = override(written, given, keys_of(Scenario), values_of_case(written, given))
-    check_paths(written, tuple(keys_of(Scenario)), problems)
-    written = substitute(with_includes(written, path, problems), problems)
-    model, lines = _model(written, Scenario, problems)
-    return LoadedScenario(model, path, text, lines, written)
+    return _whole(read_scenario(path, overrides, text=text))
+
+
+def _whole(reading: Reading) -> LoadedScenario:
+    if reading.problems or reading.loaded is None:
+        raise SpecError(reading.problems)
+    return reading.loaded
 
 
 def load_world(name_or_path: str, base_dir: Path) -> LoadedWorld:
@@ -255,15 +264,29 @@ def _model(written: Located, model: type[M], problems: list[Problem]) -> tuple[M
     try:
         loaded = model.model_validate(data)
     except ValidationError as error:
-        places = {(problem.line, problem.column) for problem in problems}
+        known = {(problem.path, problem.line, problem.column) for problem in problems}
         errors = error.errors(include_url=False)
-        for problem in problems_of(errors, lines):
-            if (problem.line, problem.column) not in places:  # else it follows from the first
-                problems.append(problem)
+        independent = [each for each in errors if not _contains(lines, each["loc"], known)]
+        problems += (
+            problem
+            for problem in problems_of(independent, lines)
+            if (problem.path, problem.line, problem.column) not in known
+        )
         raise _BrokenError(problems, lines, *_remains(data, model, errors)) from None
     if problems:
         raise _BrokenError(problems, lines, loaded)
     return loaded, lines
+
+
+def _contains(lines: SourceMap, loc: Loc, known: set[tuple[str, int, int]]) -> bool:
+    """Whether a value, or what it is directly made of, has a mistake that is known already."""
+    found = lines.find(loc, tagged=True)
+    nearby = [found.item]
+    for _ in range(2 if found.is_whole else 0):
+        nearby += [entry.value for item in nearby for entry in item.mapping().values()]
+        nearby += [child for item in nearby for child in item.items()]
+    places = [item.place for item in nearby]
+    return any((place.source.path, place.line, place.column) in known for place in places)
 
 
 def _remains(

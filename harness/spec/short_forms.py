@@ -69,7 +69,7 @@ class _Shaper:
 
     def model(self, item: Located, model: type[SpecModel], **names: str) -> Located:
         """A mapping with the model's keys; `names` says how to speak of it."""
-        item = _expanded(item, model)
+        item = expanded(item, model)
         if not isinstance(item.value, dict):
             return item
         keys = keys_of(model)
@@ -178,7 +178,7 @@ class _Shaper:
             entries[key] = entry
 
 
-def _expanded(item: Located, model: type[SpecModel]) -> Located:
+def expanded(item: Located, model: type[SpecModel]) -> Located:
     """A bare value as the field it is short for; a mapping as it is."""
     if issubclass(model, RobotSpec):
         return course_words(item)

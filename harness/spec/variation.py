@@ -84,6 +84,8 @@ class Expected(SpecModel):
 
 
 def _grid_or_cases(value: object) -> object:
+    if not value:
+        raise ValueError("there is no case; `parametrize` is a grid, or a list of named cases")
     if isinstance(value, dict):
         grid = cast("dict[str, Any]", value)
         for path, values in grid.items():

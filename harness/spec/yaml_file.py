@@ -64,12 +64,17 @@ def read_text(
         raise SpecError([source.end_of(before).problem("not UTF-8 text", hint)]) from error
 
 
-def parse_yaml(text: str, source: Source) -> Located:
+def parse_yaml(text: str, source: Source, problems: list[Problem] | None = None) -> Located:
     """The one document of a text; a mapping.
 
+    Args:
+        text: Of the file.
+        source: The file.
+        problems: Gets every duplicate key, tag and number that is not finite, so that the rest of
+            the file can be read as well; None: they are raised.
+
     Raises:
-        SpecError: With every duplicate key, tag and number that cannot be; with a syntax error
-            alone, as nothing behind it can be trusted.
+        SpecError: A syntax error, after which nothing can be trusted, or no mapping.
     """
     composer = _Composer(source)
     try:
@@ -79,13 +84,16 @@ def parse_yaml(text: str, source: Source) -> Located:
     except yaml.reader.ReaderError as error:
         place = source.end_of(text[: error.position])
         raise SpecError([place.problem("a control character cannot be in YAML text")]) from error
-    if composer.problems:
+    is_mapping = root is not None and isinstance(root.value, dict)
+    if composer.problems and (problems is None or not is_mapping):
         raise SpecError(composer.problems)
     if root is None:
         raise SpecError([Problem(source.path, 0, 0, "the file is empty")])
-    if not isinstance(root.value, dict):
+    if not is_mapping:
         message = "a file is a mapping: lines of `key: value`"
         raise SpecError([root.place.problem(message)])
+    if problems is not None:
+        problems += composer.problems
     return root
 
 
