@@ -58,7 +58,7 @@ def _run(arguments: argparse.Namespace) -> int:
         for line in contact_lines(contacts, style):
             say(line)
     held = sum(verdict.status == "passed" for verdict in verdicts)
-    say(f"{held} of {len(verdicts)} expectations hold")
+    say(f"{held} of {len(verdicts)} expectations hold" if verdicts else "nothing is expected")
     if ended_early:
         say(f"the run ended early with {ended_early}: it has failed, whatever holds until then")
     return code

@@ -68,7 +68,7 @@ class CaseResult:
         page: The page in it; empty when none was written.
         problems: Of the file, when it is invalid; else what was predicted without physics.
         message: Why, when the harness or a native library broke.
-        notes: Fallbacks worth a line: no renderer, no meshes.
+        notes: Worth a line: no renderer, no meshes, nothing expected, an angle like 90 rad.
         wall_times: Seconds of each part; never judged.
     """
 

@@ -65,7 +65,11 @@ def check_file(
         predicted=tuple(predicted),
         explanations=tuple(predicted.values()),
         steps=len(program.steps),
-        notes=(*prepared.notes, *map(_told, touches)),
+        notes=(
+            *(finding.message for finding in prepared.about_file),
+            *prepared.notes,
+            *map(_told, touches),
+        ),
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from harness.assertions.judge import EXECUTED
@@ -17,8 +17,10 @@ from harness.planning.backend import make_planning
 from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
 from harness.planning.planner_names import check_planner
 from harness.ports import Kinematics, MotionPlanner, PlanningScene
+from harness.recording.run import Finding
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
+from harness.session.findings import about_file
 from harness.spec.load import (
     SDF_SUFFIXES,
     LoadedScenario,
@@ -36,6 +38,7 @@ class Prepared:
 
     Attributes:
         notes: What of the robot's and the world's files was left out or assumed.
+        about_file: What the scenario file allows and probably does not intend.
     """
 
     loaded: LoadedScenario
@@ -44,6 +47,7 @@ class Prepared:
     kinematics: Kinematics
     planner: MotionPlanner
     notes: tuple[str, ...] = ()
+    about_file: tuple[Finding, ...] = ()
 
 
 def prepare(
@@ -63,10 +67,22 @@ def prepare(
     try:
         prepared = _prepared(reading.loaded)
     except SpecError as error:
-        raise SpecError(_together(reading, error.problems)) from error
+        problems = _together(reading, error.problems)
+        raise SpecError(_with_notes(problems, reading.loaded.notes)) from error
     if reading.problems:
         raise SpecError(reading.problems)
     return prepared
+
+
+def _with_notes(problems: Sequence[Problem], notes: Sequence[Problem]) -> list[Problem]:
+    """The problems, those in a place of which there is a note with the note's hint."""
+    hints = {(note.path, note.line, note.column): note.hint for note in notes}
+    return [
+        replace(problem, hint="; ".join(filter(None, (hint, problem.hint))))
+        if (hint := hints.get((problem.path, problem.line, problem.column)))
+        else problem
+        for problem in problems
+    ]
 
 
 def _together(reading: Reading, more: Sequence[Problem]) -> list[Problem]:
@@ -111,7 +127,9 @@ def _prepared(loaded: LoadedScenario) -> Prepared:
         check_mesh=_check_mesh,
     )
     notes = (*description.notes, *map(str, world.notes))
-    return Prepared(loaded, compile_scenario(sources), scene, kinematics, planner, notes)
+    program = compile_scenario(sources)
+    about = about_file(program, loaded.notes)
+    return Prepared(loaded, program, scene, kinematics, planner, notes, about)
 
 
 def _robot(loaded: LoadedScenario) -> RobotDescription:

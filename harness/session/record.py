@@ -10,6 +10,7 @@ from harness.engine.execute import Execution
 from harness.engine.program import Program
 from harness.ports import Kinematics
 from harness.recording.run import (
+    Finding,
     GripperRecord,
     JointRecord,
     LinkPlacement,
@@ -108,6 +109,7 @@ def run_record(
     source: str,
     resolved: str,
     notes: tuple[str, ...] = (),
+    about_file: tuple[Finding, ...] = (),
 ) -> Run:
     """Everything that happened, in one noun."""
     robot = robot_record(program.description, kinematics)
@@ -125,7 +127,7 @@ def run_record(
         gravity=program.world.gravity,
         timestep=program.world.timestep,
         allowed_contacts=tuple(sorted(program.description.allowed_collisions)),
-        findings=(*told(notes), *findings_of(steps), *findings),
+        findings=(*about_file, *told(notes), *findings_of(steps), *findings),
         source=source,
         resolved=resolved,
         versions=library_versions(),

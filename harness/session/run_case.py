@@ -127,7 +127,7 @@ def run_case(
         page=str(report_dir / PAGE) if report_dir is not None and page else "",
         steps=tuple(step_line(step) for step in run.steps),
         verdicts=verdicts,
-        notes=notes,
+        notes=(*(finding.message for finding in prepared.about_file), *notes),
         wall_times=clock.seconds,
     )
 
@@ -197,6 +197,7 @@ def _execute(
         source=prepared.loaded.text,
         resolved=resolved_text(prepared.loaded, seeds, folder=report_dir),
         notes=prepared.notes,
+        about_file=prepared.about_file,
     )
     with clock.part("judge"):
         return _compared_with_plan(prepared, run, is_recorded=needed.planned_clearances)

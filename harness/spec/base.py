@@ -6,6 +6,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, Strict, model_validator
 
+from harness.spec.colors import color_of_name
 from harness.spec.units import quantity
 
 
@@ -39,6 +40,7 @@ Number = Annotated[float, Strict()]
 Count = Annotated[int, Strict()]
 Flag = Annotated[bool, Strict()]
 
+Share = Annotated[float, BeforeValidator(quantity("1"))]
 Rate = Annotated[float, BeforeValidator(quantity("Hz"))]
 Length = Annotated[float, BeforeValidator(quantity("m"))]
 Angle = Annotated[float, BeforeValidator(quantity("rad"))]
@@ -58,17 +60,13 @@ PositiveLength = Annotated[Length, Field(gt=0)]
 NonNegativeLength = Annotated[Length, Field(ge=0)]
 NonNegativeAngle = Annotated[Angle, Field(ge=0)]
 PositiveDuration = Annotated[Duration, Field(gt=0)]
-Fraction = Annotated[Number, Field(gt=0, le=1)]
+Fraction = Annotated[Share, Field(gt=0, le=1)]
 
 Xyz = tuple[Length, Length, Length]
 Rpy = tuple[Angle, Angle, Angle]
 Quaternion = tuple[Number, Number, Number, Number]
-Color = tuple[
-    Annotated[Number, Field(ge=0, le=1)],
-    Annotated[Number, Field(ge=0, le=1)],
-    Annotated[Number, Field(ge=0, le=1)],
-    Annotated[Number, Field(ge=0, le=1)],
-]
+ColorPart = Annotated[Number, Field(ge=0, le=1)]
+Color = Annotated[tuple[ColorPart, ColorPart, ColorPart, ColorPart], BeforeValidator(color_of_name)]
 
 
 def kind_of(value: Any) -> str:

@@ -43,6 +43,7 @@ class Loaded(Generic[M]):
         text: As read.
         lines: From a field of the model to its line and column.
         written: The file's values in its own short forms, parameters and overrides applied.
+        notes: What the file may say and probably does not intend.
     """
 
     model: M
@@ -50,6 +51,7 @@ class Loaded(Generic[M]):
     text: str
     lines: SourceMap
     written: Located
+    notes: tuple[Problem, ...] = ()
 
 
 class LoadedScenario(Loaded[Scenario]):
@@ -113,6 +115,7 @@ def read_scenario(
         given["seed"] = str(seed)
     text = read_text(path) if text is None else text
     problems: list[Problem] = []
+    notes: list[Problem] = []
     root = parse_yaml(text, Source.of_text(str(path), text), problems)
     of_file = values_of_case(root, given)
     options = {key: value for key, value in given.items() if key not in of_file}
@@ -120,13 +123,13 @@ def read_scenario(
     check_variation(root, given, lambda varied: _problems_of(varied, path), problems)
     written = substitute(with_includes(root, path, problems), problems)
     try:
-        model, lines = _model(written, Scenario, problems)
+        model, lines = _model(written, Scenario, problems, notes)
     except _BrokenError as error:
         if error.remains is None:
             return Reading(None, tuple(error.problems))
-        loaded = LoadedScenario(error.remains, path, text, error.lines, written)
+        loaded = LoadedScenario(error.remains, path, text, error.lines, written, tuple(notes))
         return Reading(loaded, tuple(error.problems), error.doubtful)
-    return Reading(LoadedScenario(model, path, text, lines, written))
+    return Reading(LoadedScenario(model, path, text, lines, written, tuple(notes)))
 
 
 def _problems_of(root: Located, path: Path) -> list[Problem]:
@@ -253,13 +256,15 @@ class _BrokenError(SpecError):
         self.lines, self.remains, self.doubtful = lines, remains, doubtful
 
 
-def _model(written: Located, model: type[M], problems: list[Problem]) -> tuple[M, SourceMap]:
+def _model(
+    written: Located, model: type[M], problems: list[Problem], notes: list[Problem] | None = None
+) -> tuple[M, SourceMap]:
     """The model of a file's values.
 
     Raises:
         SpecError: With the problems found before and all that are found here.
     """
-    lines = SourceMap(models_shape(written, model, problems))
+    lines = SourceMap(models_shape(written, model, problems, notes))
     data = lines.root.plain()
     try:
         loaded = model.model_validate(data)

@@ -48,7 +48,7 @@ def _problem(error: ErrorDetails, lines: SourceMap) -> Problem:
     raised = error.get("ctx", {}).get("error")
     if isinstance(raised, MistakeError) and raised.span is not None:
         place = place.part(str(found.item.plain()), *raised.span)
-    if error["type"] != "value_error":
+    if error["type"] != "value_error" or message.startswith("is "):
         message = f"a name {message}" if is_key else f"`{_subject(found)}` {message}"
     return place.problem(message, hint)
 
