@@ -12,6 +12,7 @@ from harness.core.errors import Problem, RobotError, SpecError
 from harness.core.geometry import Mesh
 from harness.engine.compile import Sources, compile_scenario
 from harness.engine.program import Loc, Program
+from harness.engine.scope import Part
 from harness.importers.imported import ImportedWorld
 from harness.planning.backend import make_planning
 from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
@@ -30,6 +31,11 @@ from harness.spec.load import (
     read_scenario,
     world_path,
 )
+from harness.spec.mending import STAND_IN_ROBOT
+from harness.spec.scenario import RobotSpec
+
+ROBOT: frozenset[Part] = frozenset({"robot"})
+WORLD: frozenset[Part] = frozenset({"world"})
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +71,7 @@ def prepare(
     if reading.loaded is None:
         raise SpecError(reading.problems)
     try:
-        prepared = _prepared(reading.loaded)
+        prepared = _prepared(reading.loaded, reading.missing)
     except SpecError as error:
         problems = _together(reading, error.problems)
         raise SpecError(_with_notes(problems, reading.loaded.notes)) from error
@@ -87,31 +93,33 @@ def _with_notes(problems: Sequence[Problem], notes: Sequence[Problem]) -> list[P
 
 def _together(reading: Reading, more: Sequence[Problem]) -> list[Problem]:
     """All problems, but those that may follow from another."""
-    lines = {problem.line for problem in reading.problems}
+    places = {(problem.path, problem.line, problem.column) for problem in reading.problems}
     return [
         *reading.problems,
         *(
             problem
             for problem in more
-            if problem.line not in lines
+            if (problem.path, problem.line, problem.column) not in places
             and not any(f"'{word}'" in problem.message for word in reading.doubtful)
         ),
     ]
 
 
-def _prepared(loaded: LoadedScenario) -> Prepared:
+def _prepared(loaded: LoadedScenario, missing: frozenset[Part]) -> Prepared:
     problems: list[Problem] = []
-    description = world = None
     try:
         description = _robot(loaded)
     except SpecError as error:
         problems += error.problems
+        missing |= ROBOT
+        description = load_robot(RobotSpec(model=STAND_IN_ROBOT), loaded.path.parent)
     try:
         world = _world(loaded)
     except SpecError as error:
         problems += error.problems
-    if description is None or world is None:
-        raise SpecError(problems)
+        missing |= WORLD
+        empty = load_world("empty", loaded.path.parent)
+        world = ImportedWorld(empty.model, empty.path)
     scene, kinematics, planner = make_planning(description)
     sources = Sources(
         scenario=loaded.scenario,
@@ -125,9 +133,15 @@ def _prepared(loaded: LoadedScenario) -> Prepared:
         check_planner=check_planner,
         checks_per_second=STATE_CHECKS_PER_SECOND,
         check_mesh=_check_mesh,
+        missing=missing,
     )
     notes = (*description.notes, *map(str, world.notes))
-    program = compile_scenario(sources)
+    try:
+        program = compile_scenario(sources)
+    except SpecError as error:
+        raise SpecError([*problems, *error.problems]) from error
+    if problems:
+        raise SpecError(problems)
     about = about_file(program, loaded.notes)
     return Prepared(loaded, program, scene, kinematics, planner, notes, about)
 

@@ -95,7 +95,8 @@ class _Expander:
             self.problems.append(file.place.problem(message))
             return nothing
         try:
-            root = parse_yaml(text := read_text(path), Source.of_text(str(path), text))
+            text = read_text(path)
+            root = parse_yaml(text, Source.of_text(str(path), text), self.problems)
         except SpecError as error:
             self.problems += [
                 problem

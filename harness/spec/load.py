@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Generic, TypeVar, cast
+from typing import Any, Generic, Literal, TypeVar, cast
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
@@ -14,7 +14,7 @@ from harness.core.errors import Problem, SpecError
 from harness.core.resources import data_folder
 from harness.spec.base import SpecModel
 from harness.spec.includes import with_includes
-from harness.spec.mending import mended
+from harness.spec.mending import Mended, mended
 from harness.spec.mistakes import did_you_mean
 from harness.spec.overrides import from_options, override
 from harness.spec.params import substitute
@@ -30,6 +30,7 @@ M = TypeVar("M", bound=SpecModel)
 
 WORLD_SUFFIXES = (".yaml", ".yml")
 SDF_SUFFIXES = (".sdf", ".world")
+MOST_REPAIRS = 3  # what is left out may leave something else incomplete
 SCENE_SUFFIX = ".scene"
 
 
@@ -86,11 +87,13 @@ class Reading:
         loaded: The scenario; with problems, what remains of it; None when that is too little.
         problems: Mistakes found so far.
         doubtful: Words of what was left out; a mistake that speaks of one may follow from another.
+        missing: `robot` or `world`, where something else stands in for what cannot be read.
     """
 
     loaded: LoadedScenario | None
     problems: tuple[Problem, ...] = ()
     doubtful: frozenset[str] = frozenset()
+    missing: frozenset[Literal["robot", "world"]] = frozenset()
 
 
 def read_scenario(
@@ -128,7 +131,8 @@ def read_scenario(
         if error.remains is None:
             return Reading(None, tuple(error.problems))
         loaded = LoadedScenario(error.remains, path, text, error.lines, written, tuple(notes))
-        return Reading(loaded, tuple(error.problems), error.doubtful)
+        missing = frozenset(error.mended.missing)
+        return Reading(loaded, tuple(error.problems), frozenset(error.mended.words), missing)
     return Reading(LoadedScenario(model, path, text, lines, written, tuple(notes)))
 
 
@@ -186,7 +190,7 @@ def load_world(name_or_path: str, base_dir: Path) -> LoadedWorld:
     problems: list[Problem] = []
     try:
         text = read_text(path)
-        written = parse_yaml(text, Source.of_text(str(path), text))
+        written = parse_yaml(text, Source.of_text(str(path), text), problems)
     except SpecError as error:
         raise SpecError(_of_world(problem, name_or_path) for problem in error.problems) from error
     model, lines = _model(written, WorldSpec, problems)
@@ -242,7 +246,7 @@ class _BrokenError(SpecError):
     Attributes:
         lines: From a field of the model to its line and column.
         remains: A model of what could be read; None when too little could.
-        doubtful: Words of what could not.
+        mended: What was done to get it.
     """
 
     def __init__(
@@ -250,10 +254,10 @@ class _BrokenError(SpecError):
         problems: list[Problem],
         lines: SourceMap,
         remains: Any = None,
-        doubtful: frozenset[str] = frozenset(),
+        mended: Mended | None = None,
     ) -> None:
         super().__init__(problems)
-        self.lines, self.remains, self.doubtful = lines, remains, doubtful
+        self.lines, self.remains, self.mended = lines, remains, mended or Mended({})
 
 
 def _model(
@@ -296,17 +300,18 @@ def _contains(lines: SourceMap, loc: Loc, known: set[tuple[str, int, int]]) -> b
 
 def _remains(
     data: object, model: type[M], errors: Sequence[ErrorDetails]
-) -> tuple[M | None, frozenset[str]]:
-    """A model of what is not broken, and the words of what is."""
-    if not isinstance(data, dict):
-        return None, frozenset()
-    found = mended(cast("dict[str, Any]", data), [error["loc"] for error in errors])
-    if found is None:
-        return None, frozenset()
-    try:
-        return model.model_validate(found[0]), found[1]
-    except ValidationError:
-        return None, frozenset()
+) -> tuple[M | None, Mended | None]:
+    """A model of what is not broken, and what was taken out of it."""
+    if model is not Scenario or not isinstance(data, dict):
+        return None, None
+    places = [error["loc"] for error in errors]
+    for _ in range(MOST_REPAIRS):
+        found = mended(cast("dict[str, Any]", data), places)
+        try:
+            return model.model_validate(found.data), found
+        except ValidationError as error:
+            places += [each["loc"] for each in error.errors(include_url=False)]
+    return None, None
 
 
 def _of_world(problem: Problem, name: str) -> Problem:
