@@ -24,7 +24,7 @@ from harness.spec.source import Loc, Located, Source, SourceMap
 from harness.spec.varied_paths import check_variation, values_of_case
 from harness.spec.wording import problems_of
 from harness.spec.world import WorldSpec
-from harness.spec.yaml_file import parse_yaml, read_text
+from harness.spec.yaml_file import parse_yaml, read_text, require_key
 
 M = TypeVar("M", bound=SpecModel)
 
@@ -190,6 +190,7 @@ def load_world(name_or_path: str, base_dir: Path) -> LoadedWorld:
     problems: list[Problem] = []
     try:
         text = read_text(path)
+        require_key(text, ("world",), str(path), "world file")
         written = parse_yaml(text, Source.of_text(str(path), text), problems)
     except SpecError as error:
         raise SpecError(_of_world(problem, name_or_path) for problem in error.problems) from error

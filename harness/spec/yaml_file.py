@@ -7,8 +7,9 @@ level and ends the process on a file of brackets, resolves scalars by YAML 1.1 (
 
 from __future__ import annotations
 
+import re
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -62,6 +63,20 @@ def read_text(
         source = Source.of_text(name, data.decode("utf-8-sig", errors="replace"))
         hint = "save the file as UTF-8"
         raise SpecError([source.end_of(before).problem("not UTF-8 text", hint)]) from error
+
+
+def require_key(text: str, keys: Sequence[str], name: str, kind: str) -> None:
+    """See that a text has a key of its kind of file, before any of it is quoted in a message.
+
+    A scenario can name any file of the machine, and its messages may be read by somebody else.
+
+    Raises:
+        SpecError: It has none of the keys; the message has nothing of the text.
+    """
+    words = "|".join(map(re.escape, keys))
+    if re.search(rf"""(?:^|[{{,\s])["']?(?:{words})["']?\s*:""", text, re.MULTILINE) is None:
+        found = " or ".join(f"`{key}`" for key in keys)
+        raise SpecError([Problem(name, 0, 0, f"this is no {kind}: it has no key {found}")])
 
 
 def parse_yaml(text: str, source: Source, problems: list[Problem] | None = None) -> Located:
