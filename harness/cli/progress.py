@@ -41,6 +41,7 @@ class ProgressLines:
         self._is_brief = is_brief or not stream.isatty()
         self._rewrites = stream.isatty() and style.has_color and not is_side_by_side
         self._headline = -1
+        self._noted: set[str] = set()  # every sample of a file has the same
         self._begun: dict[int, list[Moment]] = defaultdict(list)  # steps nest
 
     def step(self, index: int, event: ProgressEvent) -> None:
@@ -61,14 +62,16 @@ class ProgressLines:
 
     def result(self, index: int, result: CaseResult) -> None:
         """Tell a case's outcome."""
+        line = case_line(result, self._style)
         if self._is_brief:
-            line = case_line(result, self._style)
             self._line(index, f"  {line}" if self._is_side_by_side else self._named(index, line))
-            return
-        self._begin(index)
-        self._line(index, f"  {case_line(result, self._style)}")
+        else:
+            self._begin(index)
+            self._line(index, f"  {line}")
         for note in result.notes:
-            self._line(index, f"  {self._style.quiet(note)}")
+            if note not in self._noted:
+                self._noted.add(note)
+                self._line(index, f"  {self._style.quiet(f'note: {note}')}")
 
     def _speed(self, index: int, event: ProgressEvent) -> float | None:
         """Simulated over wall seconds of a step, its planning included."""

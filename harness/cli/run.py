@@ -208,7 +208,7 @@ def _tell_rates(suite: SuiteRun, style: Style) -> None:
     cases = [
         (values, result.outcome == "passed")
         for index, result in suite.results.items()
-        if (values := suite.values(index))
+        if (values := suite.values(index)) and result.outcome != "invalid"
     ]
     for line in table_lines(cases, style):
         say(line)

@@ -27,6 +27,7 @@ def check_blends(step: Sequence, group: str, loc: Loc, scope: Scope) -> None:
             (*loc, "items", last, "blend_radius"),
             "the last motion of a sequence has nothing to blend into",
             "leave its `blend_radius` out",
+            needs=(),
         )
     places = [_place(motion_of(item), group, scope) for item in step.items]
     for index, (first, second) in enumerate(pairwise(step.items)):

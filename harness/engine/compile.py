@@ -17,7 +17,7 @@ from harness.engine.objects import ObjectUnusableError, resolve_object, resolve_
 from harness.engine.options import CheckPlanner, check_planning, merged_options
 from harness.engine.program import Loc, Program, ProgramExpectation, ProgramStep, step_seed
 from harness.engine.registry import execute
-from harness.engine.scope import Problems, Scope
+from harness.engine.scope import Part, Problems, Scope
 from harness.engine.steps import check_step
 from harness.engine.summary import summarize, words
 from harness.ports import Kinematics, PlanningOptions
@@ -51,6 +51,8 @@ class Sources:
         check_planner: Normalises a planner's name and knows its parameters.
         checks_per_second: What a second of `planning_time` buys, in state checks.
         check_mesh: Raises RobotError for a mesh file that cannot be used.
+        missing: What could not be loaded; something stands in for it, and problems that it decides
+            are not reported.
     """
 
     scenario: Scenario
@@ -64,6 +66,7 @@ class Sources:
     check_planner: CheckPlanner
     checks_per_second: int
     check_mesh: Callable[[Mesh], None]
+    missing: frozenset[Part] = frozenset()
 
 
 def compile_scenario(sources: Sources) -> Program:
@@ -78,7 +81,7 @@ def compile_scenario(sources: Sources) -> Program:
 class _Compiler:
     def __init__(self, sources: Sources) -> None:
         self.sources = sources
-        self.problems = Problems(sources.lines)
+        self.problems = Problems(sources.lines, sources.missing)
         self.scope = Scope(sources.description, self.problems, sources.kinematics.link_pose)
         self.later: dict[str, WorldObject] = {}
         self.later_specs: dict[str, ObjectSpec] = {}  # without poses
@@ -137,15 +140,19 @@ class _Compiler:
                     (*loc, "name"),
                     f"another object is called '{spec.name}'",
                     "every object has a name of its own",
+                    needs=(),
                 )
             elif spec.name in resolved and not spec.replace:
                 self.problems.add(
                     (*loc, "name"),
                     f"the world '{world.world}' has an object '{spec.name}' already",
                     "say `replace: true` to put this one in its place",
+                    needs=("world",),
                 )
             elif spec.name not in resolved and spec.replace:
-                self.problems.unknown((*loc, "name"), "object of the world", spec.name, resolved)
+                self.problems.unknown(
+                    (*loc, "name"), "object of the world", spec.name, resolved, needs=("world",)
+                )
             here.add(spec.name)
             obj = self._resolve(spec, loc, self._start_pose(spec, loc))
             if obj is not None:
@@ -169,7 +176,9 @@ class _Compiler:
             except ObjectUnusableError as unusable:
                 problems.append(f"object '{spec.name}': {unusable}")
         if problems:
-            self.problems.add(("world",), f"world '{world.world}': " + "; ".join(problems))
+            self.problems.add(
+                ("world",), f"world '{world.world}': " + "; ".join(problems), needs=("world",)
+            )
         return resolved
 
     def _start_pose(self, spec: ObjectSpec, loc: Loc) -> SE3:
@@ -195,12 +204,15 @@ class _Compiler:
         ):
             if spec.name in names:
                 self.problems.add(
-                    (*loc, "name"), f"'{spec.name}' is a robot {kind}'s name", "choose another"
+                    (*loc, "name"),
+                    f"'{spec.name}' is a robot {kind}'s name",
+                    "choose another",
+                    needs=("robot",),
                 )
         try:
             return self._object(spec, pose, self.sources.base_dir)
         except ObjectUnusableError as unusable:
-            self.problems.add(loc, f"object '{spec.name}': {unusable}")
+            self.problems.add(loc, f"object '{spec.name}': {unusable}", needs=())
             return None
 
     def _object(self, spec: ObjectSpec, pose: SE3, folder: Path) -> WorldObject:
@@ -217,7 +229,7 @@ class _Compiler:
     def _later_object(self, spec: ObjectSpec, loc: Loc) -> None:
         """Prepare an object that a step adds; the same object may come and go, another may not."""
         if spec.replace:
-            self.problems.add(loc, "`replace` is for the scenario's `objects`")
+            self.problems.add(loc, "`replace` is for the scenario's `objects`", needs=())
         obj = self._resolve(spec, loc, spec.pose.se3())
         if obj is None:
             return
@@ -230,6 +242,7 @@ class _Compiler:
                 (*loc, "name"),
                 f"another object is called '{spec.name}'",
                 "every object has a name of its own",
+                needs=("world",),
             )
         self.later_specs.setdefault(spec.name, _without_pose(spec))
 
@@ -250,7 +263,7 @@ class _Compiler:
             self.problems.add(loc, f"the step `{spec.do}` is {NOT_YET}", _available_steps())
         step_id = f"{spec.id}{suffix}" if spec.id else path
         if not self.scope.claim_step_id(step_id):
-            self.problems.add((*loc, "id"), f"another step has the id '{step_id}'")
+            self.problems.add((*loc, "id"), f"another step has the id '{step_id}'", needs=())
         if isinstance(spec, AddObject):
             for index, obj in enumerate(spec.objects):
                 self._later_object(obj, (*loc, "objects", index))
@@ -276,7 +289,9 @@ class _Compiler:
         for block in blocks(spec, loc, path):
             if len(self.step_locs) > MOST_STEPS:
                 self.problems.add(
-                    loc, f"the file comes to more than {MOST_STEPS} steps, repeated ones counted"
+                    loc,
+                    f"the file comes to more than {MOST_STEPS} steps, repeated ones counted",
+                    needs=(),
                 )
                 break
             children += self._steps(block.steps, block.loc, block.path, suffix + block.suffix)

@@ -70,7 +70,7 @@ class CaseResult:
         page: The page in it; empty when none was written.
         problems: Of the file, when it is invalid; else what was predicted without physics.
         message: Why, when the harness or a native library broke.
-        notes: Fallbacks worth a line: no renderer, no meshes.
+        notes: Worth a line: no renderer, no meshes, nothing expected, an angle like 90 rad.
         overlap: Depth of the deepest pair of bodies that overlap at the start [m]; 0: none do.
         redraws: How often the sample was drawn again because objects overlapped.
         values: What varies as it was drawn at last, path -> value; empty when drawn once.

@@ -36,6 +36,7 @@ class Rate:
         overlapping: Samples that were run although objects overlap at their start.
         redrawn: Samples that were drawn again because objects overlapped.
         redraws: How often, of all of them together.
+        invalid: Samples that could not be run; they are not in `total`.
     """
 
     passed: int
@@ -49,6 +50,7 @@ class Rate:
     overlapping: int = 0
     redrawn: int = 0
     redraws: int = 0
+    invalid: int = 0
 
 
 @dataclass(frozen=True)
@@ -94,9 +96,14 @@ def rate_line(name: str, rate: Rate, style: Style = PLAIN) -> str:
 
 def rate_text(name: str, rate: Rate) -> str:
     """`pick: 187 of 200 samples passed, 93.5% (...): at least 90% is confirmed`."""
-    share = f"{rate.passed / rate.total:.1%}" if rate.total else "no rate"
-    line = f"{name}: {rate.passed} of {rate.total} samples passed, {share}"
+    count = f"{rate.invalid} sample{'s' if rate.invalid != 1 else ''}"
+    if not rate.total:
+        why = f"{count} invalid" if rate.invalid else "no sample ended"
+        return f"{name}: no rate, {why}"
+    line = f"{name}: {rate.passed} of {rate.total} samples passed, {rate.passed / rate.total:.1%}"
     line += f" ({rate.low:.1%} to {rate.high:.1%} at {rate.confidence:.0%} confidence)"
+    if rate.invalid:
+        line += f", {count} invalid and not counted"
     if rate.at_least is None:
         is_shown = rate.verdict == "shown"
         line += "" if is_shown else "; every one must pass, as the file has no `expect_rate`"

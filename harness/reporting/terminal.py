@@ -117,7 +117,8 @@ def case_line(result: CaseResult, style: Style = PLAIN) -> str:
         if wall := sum(result.wall_times.values()):
             simulated += f" at {speed_text(result.sim_time / wall)}"
         parts.append(f"{_plural(len(result.steps), 'step')}, {simulated}")
-        parts.append(f"{held} of {_plural(len(result.verdicts), 'expectation')} hold")
+        held_of = f"{held} of {_plural(len(result.verdicts), 'expectation')} hold"
+        parts.append(held_of if result.verdicts else "expects nothing")
         parts.append(style.quiet(f"digest {result.digest[:12]}"))
     return "  ".join(parts)
 

@@ -5,8 +5,34 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from harness.core.errors import Problem
+from harness.engine.program import Program
 from harness.ports import Touch
 from harness.recording.run import Finding, StepRecord
+
+NOTHING_EXPECTED = (
+    "the scenario expects nothing, so it passes whatever happens, as long as no step fails;"
+    " write what must hold below `expect:`"
+)
+
+
+def about_file(program: Program, notes: Sequence[Problem]) -> tuple[Finding, ...]:
+    """What the scenario file allows and probably does not intend.
+
+    Args:
+        program: The compiled scenario.
+        notes: Places in the file, as the language found them.
+    """
+    found = [Finding("note", noted(problem)) for problem in notes]
+    expects_errors = any(step.spec.expect_error for step in program.all_steps())
+    if not program.expectations and not expects_errors:
+        found.append(Finding("nothing_expected", NOTHING_EXPECTED))
+    return tuple(found)
+
+
+def noted(problem: Problem) -> str:
+    """A remark about a place in a file, on one line."""
+    return f"{problem.path}:{problem.line}:{problem.column}: {problem.message}; {problem.hint}"
 
 
 def told(notes: Sequence[str]) -> tuple[Finding, ...]:

@@ -10,6 +10,7 @@ from harness.engine.execute import Execution
 from harness.engine.program import Program
 from harness.ports import Kinematics, Touch
 from harness.recording.run import (
+    Finding,
     GripperRecord,
     JointRecord,
     LinkPlacement,
@@ -109,6 +110,7 @@ def run_record(
     resolved: str,
     notes: tuple[str, ...] = (),
     overlaps: Sequence[Touch] = (),
+    about_file: tuple[Finding, ...] = (),
 ) -> Run:
     """Everything that happened, in one noun."""
     robot = robot_record(program.description, kinematics)
@@ -126,7 +128,13 @@ def run_record(
         gravity=program.world.gravity,
         timestep=program.world.timestep,
         allowed_contacts=tuple(sorted(program.description.allowed_collisions)),
-        findings=(*told(notes), *overlap_findings(overlaps), *findings_of(steps), *findings),
+        findings=(
+            *about_file,
+            *told(notes),
+            *overlap_findings(overlaps),
+            *findings_of(steps),
+            *findings,
+        ),
         source=source,
         resolved=resolved,
         versions=library_versions(),

@@ -137,7 +137,11 @@ def run_case(
         page=str(report_dir / PAGE) if report_dir is not None and page else "",
         steps=tuple(step_line(step) for step in run.steps),
         verdicts=verdicts,
-        notes=(*(overlap_note(prepared, touch) for touch in overlaps), *notes),
+        notes=(
+            *(finding.message for finding in prepared.about_file),
+            *(overlap_note(prepared, touch) for touch in overlaps),
+            *notes,
+        ),
         overlap=-overlaps[0].distance if overlaps else 0.0,
         redraws=redraws,
         wall_times=clock.seconds,
@@ -243,6 +247,7 @@ def _execute(
         resolved=resolved_text(prepared.loaded, seeds, folder=report_dir),
         notes=prepared.notes,
         overlaps=simulator.overlaps_at_start,
+        about_file=prepared.about_file,
     )
     with clock.part("judge"):
         return _compared_with_plan(prepared, run, is_recorded=needed.planned_clearances)

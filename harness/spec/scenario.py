@@ -187,7 +187,9 @@ class Scenario(SpecModel):
         description="Cases: a grid `{robot.model: [ur3e, ur5e]}`, or a list of named ones.",
     )
     randomize: dict[str, Distribution] | None = Field(
-        default=None, description="Dotted path -> distribution of that value."
+        default=None,
+        description="Dotted path -> distribution of that value. Items of lists go by index or by"
+        " name: `objects.cube.pose.xyz.0`.",
     )
     samples: Annotated[Count, Field(ge=1, le=MOST_SAMPLES)] | None = Field(
         default=None, description="How many random cases; default 20 where something is random."

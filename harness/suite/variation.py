@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from statistics import NormalDist
 from typing import Any, cast
 
-from harness.core.quantity import split_quantity
+from harness.core.quantity import share_of, split_quantity
 from harness.core.variation import MOST_CASES, MOST_SAMPLES, Cases, count_of
 
 DEFAULT_SAMPLES = 20
@@ -83,14 +83,16 @@ class Variation:
         randomize = dict(values.get("randomize") or {})
         for distribution in randomize.values():
             _drawn(distribution, random.Random(0))
-        rate = cast("dict[str, Any]", values.get("expect_rate") or {})
+        said = values.get("expect_rate")
+        rate = cast("dict[str, Any]", said) if isinstance(said, dict) else {"at_least": said}
+        at_least = rate.get("at_least")
         default = DEFAULT_SAMPLES if randomize else 0
         variation = cls(
             parametrize=values.get("parametrize"),
             randomize=randomize,
             samples=int(values.get("samples") or default),
-            at_least=float(rate["at_least"]) if "at_least" in rate else None,
-            confidence=float(rate.get("confidence", 0.95)),
+            at_least=None if at_least is None else share_of(at_least),
+            confidence=share_of(rate.get("confidence", 0.95)),
             stop_early=bool(rate.get("stop_early", True)),
             seed=int(values.get("seed") or 0),
             redraw_overlaps=values.get("redraw_overlaps") is True,

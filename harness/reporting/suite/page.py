@@ -113,7 +113,11 @@ def _rate(sampled: SampledRate) -> str:
 
 def _varied(cases: Sequence[SuiteCase]) -> str:
     """A block for each quantity that varies; they flow side by side."""
-    told = [(each.values, each.result.outcome == "passed") for each in cases if each.values]
+    told = [
+        (each.values, each.result.outcome == "passed")
+        for each in cases
+        if each.values and each.result.outcome != "invalid"
+    ]
     blocks: list[str] = []
     for line in table_lines(told, SIGNS):
         if line.startswith(" "):
