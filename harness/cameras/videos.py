@@ -15,6 +15,7 @@ from harness.cameras.encoding import jpeg
 from harness.cameras.quiet import quiet_stderr
 from harness.cameras.renderer import Renderer, make_renderer
 from harness.cameras.sensor import as_delivered
+from harness.core.activity import Activity, unobserved
 from harness.core.camera import Camera
 from harness.core.world import WorldObject
 from harness.recording.run import Finding, Run, VideoRecord
@@ -37,6 +38,7 @@ def record_videos(
     rates: Mapping[str, float],
     *,
     backend: str = "auto",
+    activity: Activity = unobserved,
 ) -> tuple[tuple[VideoRecord, ...], dict[str, bytes], tuple[Finding, ...]]:
     """A video of each camera, its files by path, and what a person should know of them.
 
@@ -46,6 +48,7 @@ def record_videos(
         run: What happened, its cameras included.
         rates: Frames a second of simulated time by camera.
         backend: `auto`, `egl`, `osmesa` or `rays`.
+        activity: Called for each frame.
     """
     if not rates:
         return (), {}, ()
@@ -66,7 +69,7 @@ def record_videos(
             notes.append(Finding("video_rate", message))
         renderer = make_renderer(scene.picture, camera.width, camera.height, backend)
         try:
-            video, content = _record(scene, camera, run, rate, renderer, folders[name])
+            video, content = _record(scene, camera, run, rate, renderer, folders[name], activity)
         finally:
             renderer.close()
         if video is not None:
@@ -82,6 +85,7 @@ def _record(
     rate: float,
     renderer: Renderer,
     folder: str,
+    activity: Activity,
 ) -> tuple[VideoRecord | None, dict[str, bytes]]:
     scale = min(1.0, WIDEST / camera.width)
     size = 2 * round(scale * camera.width / 2), 2 * round(scale * camera.height / 2)
@@ -91,7 +95,7 @@ def _record(
         film = Path(place) / "film.webm"
         with quiet_stderr():
             writer = cv2.VideoWriter(str(film), cv2.VideoWriter.fourcc(*"VP80"), rate, size)
-        for time, frame in _frames(scene, camera, run, rate, renderer):
+        for time, frame in _frames(scene, camera, run, rate, renderer, activity):
             times.append(time)
             stream += jpeg(frame, camera)
             offsets.append(len(stream))
@@ -128,13 +132,19 @@ def _reproducible(webm: bytes) -> bytes:
 
 
 def _frames(
-    scene: CameraScene, camera: Camera, run: Run, rate: float, renderer: Renderer
+    scene: CameraScene,
+    camera: Camera,
+    run: Run,
+    rate: float,
+    renderer: Renderer,
+    activity: Activity,
 ) -> Iterator[tuple[float, np.ndarray]]:
     """Simulated time and picture of every frame; the last one stands while there is none."""
     times = run.signals.times
     previous: np.ndarray | None = None
     count = int(np.floor(float(times[-1]) * rate + 1e-6)) + 1
     for number in range(count):
+        activity(f"recording the video of camera {camera.name}", number, count)
         sample = min(int(np.searchsorted(times, number / rate - 1e-9)), len(times) - 1)
         view = scene.view(camera, scene.pose(sample))
         if view is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from harness.core.printable import printable
 from harness.core.world import World
 from harness.engine.program import Program
 from harness.ports import PlanningOptions
@@ -28,7 +29,7 @@ def explain(program: Program, predicted: Sequence[StepRecord], describe: Describ
     if whole:
         lines.append("expected of the whole run")
         lines += [f"  {item.line:>4}  {describe(item.spec)}" for item in whole]
-    return "\n".join(lines) + "\n"
+    return "\n".join(map(printable, lines)) + "\n"
 
 
 def _robot(robot: RobotDescription) -> list[str]:

@@ -15,6 +15,7 @@ import numpy as np
 
 from harness.core.errors import HarnessError
 from harness.core.geometry import Rgba
+from harness.core.printable import json_printable
 from harness.recording.arrays import arrays_of, read_npz, signals_from, write_npz
 from harness.recording.files import FolderFiles, checked, write_files
 from harness.recording.plain import from_plain, to_plain
@@ -76,7 +77,7 @@ def write_run(
         arrays = arrays_of(run.signals)
         document = _document(run, verdicts, outcome, digest, wall_times, arrays)
         text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
-        (temporary / RUN).write_text(text + "\n", encoding="utf-8")
+        (temporary / RUN).write_text(json_printable(text) + "\n", encoding="utf-8")
         (temporary / RESOLVED).write_text(run.resolved, encoding="utf-8", newline="")
         write_npz(temporary / SIGNALS, arrays)
         write_npz(temporary / VISUALS, _mesh_arrays(run))
