@@ -20,10 +20,13 @@ _UNSAFE = (
     r"\ud800-\udfff"  # halves of characters: bytes of file names that are no UTF-8
     r"\U000e0000-\U000e007f"  # tags, which are invisible
 )
-_IN_A_LINE = re.compile(f"{ESC}|[{_UNSAFE}]")
-_IN_JSON = re.compile(f"(?!\n)[{_UNSAFE}]")
-_COMMAND = re.compile(r"^([ \t]*):(?=:)|#(?=#\[|#vso\[|#teamcity\[)")
-"""Where GitHub, Azure and TeamCity would read a command in a log."""
+_COMMAND = r"#(?=#\[|#vso\[|#teamcity\[)"
+"""Where GitHub, Azure and TeamCity read a command within a line of a log."""
+
+_IN_A_LINE = re.compile(f"{ESC}|[{_UNSAFE}]|{_COMMAND}")
+_IN_JSON = re.compile(f"(?!\n)[{_UNSAFE}]|{_COMMAND}")
+_COMMAND_LINE = re.compile(r"^( *):(?=:)")
+"""How a line begins that GitHub reads as a command."""
 
 _STYLING = re.compile(rf"{ESC}(?:\[\d+m|\]8;;[^\x1b]*{ESC}\\)")
 """Colours and links, which take no room."""
@@ -47,7 +50,10 @@ def json_printable(text: str) -> str:
     r"""The JSON text with the same meaning in which such characters are `\u` escapes."""
     import json  # here: `harness --help` has no use for it
 
-    return _IN_JSON.sub(lambda match: json.dumps(match[0])[1:-1], text)
+    def escaped(match: re.Match[str]) -> str:
+        return r"\u0023" if match[0] == "#" else json.dumps(match[0])[1:-1]
+
+    return _IN_JSON.sub(escaped, text)
 
 
 def terminal_text(line: str) -> str:
@@ -55,7 +61,7 @@ def terminal_text(line: str) -> str:
 
     A line that a CI service would take for a command is shown with its first sign escaped.
     """
-    return _COMMAND.sub(_defused, printable(line)).replace(ESC, "\x1b")
+    return _COMMAND_LINE.sub(r"\1\\x3a", printable(line)).replace(ESC, "\x1b")
 
 
 def columns_of(line: str) -> int:
@@ -107,8 +113,6 @@ def _columns(character: str) -> int:
 
 def _escaped(match: re.Match[str]) -> str:
     found = match[0]
+    if found == "#":
+        return r"\x23"
     return found if found == ESC else found.encode("unicode_escape").decode("ascii")
-
-
-def _defused(match: re.Match[str]) -> str:
-    return r"\x23" if match[0] == "#" else rf"{match[1]}\x3a"
