@@ -15,16 +15,17 @@ class ProgressEvent:
     """A sign of life of a running case.
 
     Attributes:
-        index: Of the step, from 0.
-        total: How many steps there are.
-        step: Its summary in one line.
+        kind: `activity` is work on the report or the verdicts, which takes time after the steps.
+        index: Of the step, from 0; of an activity, how many of its parts are done.
+        total: How many steps, or parts of the activity, there are; 0 where that is not known.
+        step: Its summary in one line; of an activity, what is being done.
         status: What became of it, for `step_finished` and `judged`.
         sim_time: Simulation time so far [s].
         wall_time: On a clock that only goes forward [s]; shown, never judged.
         speed: Simulated over wall seconds of the step that finished; None where it is not known.
     """
 
-    kind: Literal["compiled", "step_started", "step_finished", "judged", "written"]
+    kind: Literal["compiled", "step_started", "step_finished", "activity", "judged", "written"]
     index: int
     total: int
     step: str

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 from harness.assertions.judge import judge
 from harness.assertions.observations import observations
 from harness.assertions.placed import PlacedExpectation
+from harness.core.activity import Activity
 from harness.core.errors import HarnessError, Problem, SpecError
 from harness.core.types import FloatArray
 from harness.engine.execute import Execution, execute_program
@@ -86,13 +87,18 @@ def run_case(
         )  # fmt: skip
     program = prepared.program
     on_progress(ProgressEvent("compiled", 0, len(program.steps), program.title, "", 0.0, ""))
+
+    def activity(what: str, done: int, total: int) -> None:
+        on_progress(ProgressEvent("activity", done, total, what, "", 0.0, ""))
+
     try:
-        run = _execute(prepared, simulator, str(path), clock, on_progress, report_dir)
+        run = _execute(prepared, simulator, str(path), clock, on_progress, report_dir, activity)
         run = replace(run, case=case)
         placed = _placed(program)
         bare, is_kept = run, report_dir is not None and not only_failed
         with clock.part("render"):
-            run = with_camera_pictures(bare, program, placed, is_kept=is_kept)
+            run = with_camera_pictures(bare, program, placed, is_kept=is_kept, activity=activity)
+        activity("judging", 0, 0)
         with clock.part("judge"):
             verdicts = judge(run, placed)
         outcome = _outcome(run, verdicts)
@@ -104,7 +110,10 @@ def run_case(
         if report_dir is not None:
             if only_failed:
                 with clock.part("render"):
-                    run = with_camera_pictures(bare, program, placed, is_kept=True)
+                    run = with_camera_pictures(
+                        bare, program, placed, is_kept=True, activity=activity
+                    )
+            activity("writing the report", 0, 0)
             with clock.part("write"):
                 run = with_pictures(run) if stills else run
                 notes = _write(
@@ -118,6 +127,7 @@ def run_case(
                     stills,
                     page,
                     bag,
+                    activity,
                 )
             on_progress(ProgressEvent("written", 0, 0, "", outcome, run_time(run), str(report_dir)))
     except HarnessError as error:
@@ -216,8 +226,10 @@ def _execute(
     clock: Clock,
     on_progress: Notify,
     report_dir: Path | None,
+    activity: Activity,
 ) -> Run:
     program = prepared.program
+    activity("setting up planning and physics", 0, 0)
     needed = observations(expectation.spec for expectation in program.expectations)
     with clock.part("execute"):
         execution = execute_program(
@@ -228,6 +240,7 @@ def _execute(
             simulator,
             _step_teller(program, on_progress, simulator),
         )
+    activity("measuring distances and contacts", 0, 0)
     with clock.part("judge"):
         signals = simulator.finish()
         believed = believed_poses(execution.beliefs, signals.joint_positions, prepared.kinematics)
@@ -334,6 +347,7 @@ def _write(
     stills: bool,
     page: bool,
     bag: bool,
+    activity: Activity,
 ) -> tuple[str, ...]:
     """Write the report folder; what a person should know of it comes back as notes."""
     from harness.session.visuals import mesh_records
@@ -342,12 +356,14 @@ def _write(
     stored = StoredRun(run, verdicts, outcome, fingerprint, dict(clock.seconds))
 
     def add(target: Path) -> tuple[str, ...]:
-        notes = _draw_stills(prepared.program, run, target) if stills else ()
+        notes = _draw_stills(prepared.program, run, target, activity) if stills else ()
         if page:
+            activity("writing the page", 0, 0)
             from harness.reporting.html.write import write_page
 
             write_page(target, stored)
         if bag:
+            activity("writing the bag", 0, 0)
             from harness.reporting.rosbag.write import BAG, write_bag
 
             write_bag(target / BAG, stored)
@@ -358,9 +374,10 @@ def _write(
     )  # fmt: skip
 
 
-def _draw_stills(program: Program, run: Run, target: Path) -> tuple[str, ...]:
+def _draw_stills(program: Program, run: Run, target: Path, activity: Activity) -> tuple[str, ...]:
     from harness.cameras.stills import save_stills
 
-    report = save_stills(program.description, program.all_objects(), run, target / "images")
-    draw_pictures(program.description, program.all_objects(), run, target)
+    objects = program.all_objects()
+    report = save_stills(program.description, objects, run, target / "images", activity=activity)
+    draw_pictures(program.description, objects, run, target, activity)
     return (report.note,) if report.note else ()

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from harness.core.errors import SpecError
 from harness.reporting.result import CaseResult, ProgressEvent
-from harness.suite.environment import use_one_thread
+from harness.suite.environment import prepare_process
 from harness.suite.leftovers import clean_leftovers
 from harness.suite.variation import Redraw
 from harness.suite.warm import Ended, Heard, WarmServer
@@ -82,7 +82,7 @@ def nobody_watches(_index: int, _event: ProgressEvent) -> None:
 
 def run_case(job: CaseJob, notify: Callable[[ProgressEvent], None]) -> CaseResult:
     """Run a case in this process."""
-    use_one_thread()
+    prepare_process()
     from harness.session import run_case as session
 
     result = session.run_case(
@@ -124,6 +124,7 @@ def run_here(
     for index, job in enumerate(jobs):
         if is_needless(index):
             continue
+        _clean(job)
         try:
             result = function(job, lambda event, index=index: watch(index, event))
         except Exception:  # noqa: BLE001 - whatever breaks is this case's outcome
@@ -258,6 +259,8 @@ def describe(event: ProgressEvent) -> str:
         number = f" {event.index + 1}/{event.total}" if event.index >= 0 else ""
         after = "after " if event.kind == "step_finished" else ""
         return f"{after}step{number}: {event.step}"
+    if event.kind == "activity":
+        return event.step
     return {"compiled": "the first step", "judged": "the report", "written": "the end"}[event.kind]
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from harness.recording.run import Outcome
-from harness.reporting.result import CaseResult
+from harness.reporting.result import CaseResult, ProgressEvent
 from harness.reporting.sampled import SampledRate, with_starts
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.suite.cases import Watcher, nobody_watches, run_here, run_isolated
@@ -52,7 +52,8 @@ class SuiteRun:
         jobs: Their runs: with repetitions, `repeat` of each case side by side.
         results: By index into `jobs`; of samples, those that count.
         resumed: How many results are from an earlier run.
-        is_interrupted: Whether Ctrl-C ended it early.
+        is_interrupted: Whether Ctrl-C or SIGTERM ended it early.
+        unfinished: The last event of each run that has begun and not ended, by index into `jobs`.
     """
 
     def __init__(self, plan: Sequence[PlannedCase], how: How) -> None:
@@ -64,13 +65,14 @@ class SuiteRun:
         self.results: dict[int, CaseResult] = {}
         self.resumed = 0
         self.is_interrupted = False
+        self.unfinished: dict[int, ProgressEvent] = {}
         self._how = how
         self._sampling = Sampling(plan)
 
     def collect(
         self, server: WarmServer, watch: Watcher = nobody_watches, told: Told = lambda *_: None
     ) -> None:
-        """Run what is wanted; Ctrl-C leaves what is done.
+        """Run what is requested; an interruption keeps the results that there are.
 
         Args:
             server: Open, unless the cases run in this process.
@@ -80,12 +82,18 @@ class SuiteRun:
         Raises:
             HarnessError: The stream cannot be written.
         """
+
+        def watched(index: int, event: ProgressEvent) -> None:
+            self.unfinished[index] = event
+            watch(index, event)
+
         try:
             with ExitStack() as stack:
                 if self._repetitions is not None:
                     stack.enter_context(self._repetitions)
                 stream = self._stream(stack)
-                for index, result in self._arriving(server, watch):
+                for index, result in self._arriving(server, watched):
+                    self.unfinished.pop(index, None)
                     kept = self._take(index, result)
                     if stream is not None:
                         stream.write(self.jobs[index], kept)
