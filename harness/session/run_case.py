@@ -88,6 +88,9 @@ def run_case(
     on_progress(ProgressEvent("compiled", 0, len(program.steps), program.title, "", 0.0, ""))
     try:
         run = _execute(prepared, simulator, str(path), clock, on_progress, report_dir)
+        del (
+            simulator
+        )  # its record, of which the run has what it needs, is the largest thing there is
         run = replace(run, case=case)
         placed = _placed(program)
         bare, is_kept = run, report_dir is not None and not only_failed

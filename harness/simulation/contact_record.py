@@ -131,15 +131,15 @@ class ContactRecord:
         begin, end = int(self._end[first - 1]) if first else 0, int(self._end[last - 1])
         if begin == end:
             return
-        bodies = self._physics.model.geom_bodyid[self._geoms[begin:end]]
-        size = self._physics.model.nbody
-        codes = bodies.min(axis=1) * size + bodies.max(axis=1)
+        size, body_of = self._physics.model.nbody, self._physics.model.geom_bodyid
+        one, other = (body_of[self._geoms[begin:end, side]] for side in (0, 1))
+        codes = np.minimum(one, other) * size + np.maximum(one, other)
         counts = np.bincount(codes, minlength=size * size)
         pairs = np.flatnonzero(counts)
         places = np.zeros(size * size, dtype=np.uint16 if len(pairs) < 2**16 else np.int64)
         places[pairs] = np.arange(len(pairs))
         order = np.argsort(places[codes], kind="stable")  # of 16 bits: a radix sort
-        del bodies, codes
+        del one, other, codes
         ends = self._end[first:last]
         for code, part in zip(
             pairs.tolist(), np.split(order, np.cumsum(counts[pairs])[:-1]), strict=True
