@@ -93,6 +93,7 @@ def run_case(
 
     try:
         run = _execute(prepared, simulator, str(path), clock, on_progress, report_dir, activity)
+        del simulator  # frees the largest thing there is: the run has what it needs of its record
         run = replace(run, case=case)
         placed = _placed(program)
         bare, is_kept = run, report_dir is not None and not only_failed

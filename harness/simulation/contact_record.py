@@ -19,6 +19,9 @@ ROWS = 4096
 CONTACTS_PER_ROW = 24
 """Contacts that fit into the first arrays for each sample; more make them grow sooner."""
 
+BLOCK = 2**19
+"""Contacts that are sorted at a time."""
+
 BYTES = 40
 """Of a contact in the arrays."""
 
@@ -66,8 +69,8 @@ class ContactRecord:
         """Normal force [N] of pairs that touch in samples first to last - 1, (samples,) each."""
         found: dict[BodyPair, FloatArray] = {}
         for numbers, rows, contacts in self._by_pair(first, last):
-            sums = np.bincount(rows, self._forces[contacts], minlength=last - first)
-            found[self._pair(*numbers)] = sums.astype(np.float64, copy=False)
+            sums = found.setdefault(self._pair(*numbers), np.zeros(last - first))
+            _add(sums, rows, self._forces[contacts])
         return {pair: found[pair] for pair in sorted(found)}
 
     def presses(self, count: int) -> dict[BodyPair, FloatArray]:
@@ -86,18 +89,19 @@ class ContactRecord:
         for (first, second), rows, contacts in self._by_pair(0, count):
             if (first in robot) == (second in robot):
                 continue
-            link = first if first in robot else second
+            sums = found.setdefault(self._pair(first, second), np.zeros((count, 7)))
             force = self._forces[contacts]
-            signed = self._signs(contacts, link) * force
-            total = np.bincount(rows, force, minlength=count)
+            signed = self._signs(contacts, first if first in robot else second) * force
             weighted = [*(self._points[contacts] * force[:, None]).T]
             vectors = [*(self._normals[contacts] * signed[:, None]).T]
-            sums = [np.bincount(rows, values, minlength=count) for values in (*weighted, *vectors)]
+            for column, values in enumerate((*weighted, *vectors, force)):
+                _add(sums[:, column], rows, values)
+        for pair, sums in found.items():
             pressed = np.full((count, 6), np.nan)
-            there = total > 0
-            pressed[there] = np.stack(sums, axis=1)[there]
-            pressed[there, :3] /= total[there, None]
-            found[self._pair(first, second)] = pressed
+            there = sums[:, 6] > 0
+            pressed[there] = sums[there, :6]
+            pressed[there, :3] /= sums[there, 6:]
+            found[pair] = pressed
         return {pair: found[pair] for pair in sorted(found)}
 
     def support_forces(self, count: int) -> dict[BodyPair, FloatArray]:
@@ -114,38 +118,41 @@ class ContactRecord:
             pair = self._pair(*numbers)
             below = next(number for number in numbers if names[number] == pair[0])
             upward = self._forces[contacts] * self._normals[contacts, 2]
-            sums = np.bincount(rows, self._signs(contacts, below) * upward, minlength=count)
-            found[pair] = sums.astype(np.float64, copy=False)
+            sums = found.setdefault(pair, np.zeros(count))
+            _add(sums, rows, self._signs(contacts, below) * upward)
         return {pair: found[pair] for pair in sorted(found)}
 
     def _by_pair(self, first: int, last: int) -> Iterator[tuple[tuple[int, int], Array, Array]]:
         """Contacts of each pair of bodies in samples first to last - 1.
 
-        Contacts are sorted by pair once, so that the time is linear in their number however many
-        pairs there are.
+        Contacts are sorted by pair, some samples at a time: the time is linear in their number
+        however many pairs there are, and what is needed besides the record stays small.
 
         Yields:
-            Numbers of two bodies, the smaller first; of each of their contacts, in the order of
-            recording, the sample counted from `first`, and its index.
+            Numbers of two bodies, the smaller first; of each of their contacts in some samples, in
+            the order of recording, the sample counted from `first`, and its index.
         """
-        begin, end = int(self._end[first - 1]) if first else 0, int(self._end[last - 1])
+        ends = self._end[first:last]
+        row = 0
+        while row < len(ends):
+            begin = int(self._end[first + row - 1]) if first + row else 0
+            stop = max(row + 1, int(np.searchsorted(ends, begin + BLOCK, side="right")))
+            for numbers, contacts in self._sorted(begin, int(ends[stop - 1])):
+                yield numbers, np.searchsorted(ends, contacts, side="right"), contacts
+            row = stop
+
+    def _sorted(self, begin: int, end: int) -> Iterator[tuple[tuple[int, int], Array]]:
+        """Numbers of two bodies, the smaller first, and which of some contacts are theirs."""
         if begin == end:
             return
-        bodies = self._physics.model.geom_bodyid[self._geoms[begin:end]]
         size = self._physics.model.nbody
+        bodies = self._physics.model.geom_bodyid[self._geoms[begin:end]]
         codes = bodies.min(axis=1) * size + bodies.max(axis=1)
-        counts = np.bincount(codes, minlength=size * size)
-        pairs = np.flatnonzero(counts)
-        places = np.zeros(size * size, dtype=np.uint16 if len(pairs) < 2**16 else np.int64)
-        places[pairs] = np.arange(len(pairs))
-        order = np.argsort(places[codes], kind="stable")  # of 16 bits: a radix sort
-        del bodies, codes
-        ends = self._end[first:last]
-        for code, part in zip(
-            pairs.tolist(), np.split(order, np.cumsum(counts[pairs])[:-1]), strict=True
-        ):
-            contacts = part + begin
-            yield divmod(code, size), np.searchsorted(ends, contacts, side="right"), contacts
+        order = np.argsort(codes, kind="stable")
+        pairs, starts = np.unique(codes[order], return_index=True)
+        parts = np.split(order + begin, starts[1:])
+        for code, contacts in zip(pairs.tolist(), parts, strict=True):
+            yield divmod(code, size), contacts
 
     def _signs(self, contacts: Array, body: int) -> Array:
         """1 where a contact's normal, from its first geom to its second, leaves a body; else -1."""
@@ -162,6 +169,12 @@ class ContactRecord:
             )
         a, b = sorted((names[first], names[second]))
         return a, b
+
+
+def _add(sums: FloatArray, rows: Array, values: Array) -> None:
+    """Add values at their rows, which ascend."""
+    part = np.bincount(rows - rows[0], values)
+    sums[rows[0] : rows[0] + len(part)] += part
 
 
 def _doubled(values: Array) -> Array:

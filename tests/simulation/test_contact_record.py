@@ -80,8 +80,12 @@ def test_a_contact_that_only_touches_does_not_take_the_force_of_another_constrai
     assert expected["a floor", "box"] == 0.0
 
 
-def test_sums_of_the_contacts_are_those_of_a_plain_loop_over_them(gripper_over_table):
+@pytest.mark.parametrize("block", [1, 100, 2**19])
+def test_sums_of_the_contacts_are_those_of_a_plain_loop_over_them(
+    gripper_over_table, monkeypatch, block
+):
     """Of a grid of boxes, with one that lies on two others and one under the gripper."""
+    monkeypatch.setattr("harness.simulation.contact_record.BLOCK", block)
     grid = [
         a_box(f"box {row} {column}", (0.1, 0.1, 0.05), (row, column, 0.0245), mass=0.3)
         for row in range(1, 5)
