@@ -16,6 +16,7 @@ from harness import __version__
 from harness.cli import options
 
 EPILOG = """exit codes: 0 passed, 1 failed, 2 invalid file or wrong usage, 3 error, 130 Ctrl-C"""
+USAGE_EXIT_CODE = 2
 BROKEN_PIPE_EXIT_CODE = 141  # as a shell shows SIGPIPE
 
 
@@ -43,8 +44,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parsed = _parser().parse_args(arguments)
     if parsed.module == "run":
         gc.enable()
-    command = importlib.import_module(f"harness.cli.{parsed.module}")
     try:
+        if not _load_plugins(getattr(parsed, "plugins", ())):
+            return USAGE_EXIT_CODE
+        command = importlib.import_module(f"harness.cli.{parsed.module}")
         with _package_path(getattr(parsed, "package_folders", ())):
             code = command.run(parsed)
         sys.stdout.flush()
@@ -63,6 +66,21 @@ def _package_path(folders: Sequence[Path]) -> AbstractContextManager[None]:
     from harness.robot.packages import searched_too
 
     return searched_too(folders)
+
+
+def _load_plugins(modules: Sequence[str]) -> bool:
+    """Load the modules of `--plugin`; what is wrong with one is printed."""
+    if not modules:
+        return True
+    from harness.core.registry import PluginError, load_plugin
+
+    try:
+        for module in modules:
+            load_plugin(module)
+    except PluginError as error:
+        sys.stderr.write(f"harness: {error}\n")
+        return False
+    return True
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from harness.core.registry import Registry
+from harness.core.dispatch import Dispatch
 from harness.engine.cell import Cell
 from harness.spec.steps import Include
 
-execute: Registry[Cell, None] = Registry()
+execute: Dispatch[Cell, None] = Dispatch()
 
 
 def is_available(verb: type) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from harness.core.registry import Registry
+from harness.core.dispatch import Dispatch
 from harness.engine.blends import check_blends
 from harness.engine.program import Loc
 from harness.engine.scope import Scope
@@ -56,7 +56,7 @@ class At:
         return (*self.loc, *keys)
 
 
-check: Registry[At, None] = Registry()
+check: Dispatch[At, None] = Dispatch()
 
 
 def check_step(step: AnyStep, loc: Loc, scope: Scope) -> None:
