@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Literal
 
 from harness.bench.trial import Trial, try_plan
+from harness.cell.program import ProgramStep, step_seed
 from harness.core.errors import HarnessError
 from harness.core.types import FloatArray
 from harness.engine.dry_run import DryPlanner, DrySimulator
 from harness.engine.execute import execute_program
-from harness.engine.program import ProgramStep, step_seed
 from harness.planning.scene import CoalScene
 from harness.ports import AnyGoal, Goal, MotionPlan, PathConstraints, PlanningOptions
 from harness.recording.run import StepRecord

@@ -6,9 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from harness.cell.program import Loc
+from harness.cell.scope import Scope
 from harness.core.types import FloatArray
-from harness.engine.program import Loc
-from harness.engine.scope import Scope
 from harness.spec.goals import GoalFields
 from harness.spec.steps import Sequence, SequenceItem
 

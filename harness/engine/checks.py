@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pydantic import BaseModel
 
-from harness.engine.program import Loc
-from harness.engine.scope import Scope
+from harness.cell.program import Loc
+from harness.cell.scope import Scope
 from harness.engine.summary import words
 from harness.spec.checks import (
     AnyExpectation,

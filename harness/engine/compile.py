@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from harness.cell.program import Loc, Program, ProgramExpectation, ProgramStep, step_seed
+from harness.cell.scope import Problems, Scope
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh
 from harness.core.spatial import SE3
@@ -15,9 +17,7 @@ from harness.engine.cameras import all_cameras, check_cameras, check_videos
 from harness.engine.checks import check_expectation
 from harness.engine.objects import ObjectUnusableError, resolve_object, resolve_world
 from harness.engine.options import CheckPlanner, check_planning, merged_options
-from harness.engine.program import Loc, Program, ProgramExpectation, ProgramStep, step_seed
 from harness.engine.registry import execute
-from harness.engine.scope import Problems, Scope
 from harness.engine.steps import check_step
 from harness.engine.summary import summarize, words
 from harness.ports import Kinematics, PlanningOptions

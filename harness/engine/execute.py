@@ -6,11 +6,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
+from harness.cell.cell import Belief, Cell, Presence, StepNotes
+from harness.cell.program import Program, ProgramStep
 from harness.core.errors import StepFailed
 from harness.engine import executors as executors
 from harness.engine.advice import advice
-from harness.engine.cell import Belief, Cell, Presence, StepNotes
-from harness.engine.program import Program, ProgramStep
 from harness.engine.registry import execute
 from harness.ports import Kinematics, MotionPlanner, PlanningScene, Simulator
 from harness.recording.run import AttachmentRecord, ObjectRecord, StepRecord, StepStatus

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from harness.cell.program import Program
 from harness.core.world import World
-from harness.engine.program import Program
 from harness.ports import PlanningOptions
 from harness.recording.run import StepRecord
 from harness.robot.description import RobotDescription

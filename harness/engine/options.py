@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from harness.engine.program import Loc
-from harness.engine.scope import Problems
+from harness.cell.program import Loc
+from harness.cell.scope import Problems
 from harness.ports import PlanningOptions
 from harness.spec.planning import Planning
 

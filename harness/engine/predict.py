@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from harness.cell.program import Program
 from harness.engine.dry_run import DryPlanner, DrySimulator
 from harness.engine.execute import execute_program
-from harness.engine.program import Program
 from harness.ports import Kinematics, MotionPlanner, PlanningScene, Touch
 from harness.recording.run import StepRecord
 

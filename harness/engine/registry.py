@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from harness.cell.cell import Cell
 from harness.core.dispatch import Dispatch
-from harness.engine.cell import Cell
 from harness.spec.steps import Include
 
 execute: Dispatch[Cell, None] = Dispatch()

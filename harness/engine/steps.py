@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from harness.cell.program import Loc
+from harness.cell.scope import Scope
 from harness.core.dispatch import Dispatch
 from harness.engine.blends import check_blends
-from harness.engine.program import Loc
-from harness.engine.scope import Scope
 from harness.spec.goals import GoalFields
 from harness.spec.planning import PathConstraints
 from harness.spec.poses import Pose

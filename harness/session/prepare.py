@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from harness.assertions.judge import EXECUTED
+from harness.cell.program import Loc, Program
 from harness.core.errors import Problem, RobotError, SpecError
 from harness.core.geometry import Mesh
 from harness.engine.compile import Sources, compile_scenario
-from harness.engine.program import Loc, Program
 from harness.importers.imported import ImportedWorld
 from harness.planning.backend import make_planning
 from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND

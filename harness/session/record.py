@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import version
 
+from harness.cell.program import Program
 from harness.engine.execute import Execution
-from harness.engine.program import Program
 from harness.ports import Kinematics
 from harness.recording.run import (
     GripperRecord,

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Literal
 from harness.assertions.judge import judge
 from harness.assertions.observations import observations
 from harness.assertions.placed import PlacedExpectation
+from harness.cell.program import Program, ProgramStep
 from harness.core.errors import HarnessError, SpecError
 from harness.core.types import FloatArray
 from harness.engine.execute import Execution, execute_program
-from harness.engine.program import Program, ProgramStep
 from harness.recording.digest import digest
 from harness.recording.run import Outcome, Run, Signals, StepRecord, Verdict
 from harness.recording.store import PAGE, StoredRun, write_run

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from harness.engine.cell import Cell
+from harness.cell.cell import Cell
 from harness.engine.registry import execute
 from harness.spec.steps import Capture
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from harness.cell.cell import Cell
+from harness.cell.goals import group_of, link_limits, resolve_goal
 from harness.core.errors import PlanningFailed
-from harness.engine.cell import Cell
-from harness.engine.goals import group_of, link_limits, resolve_goal
 from harness.engine.registry import execute
 from harness.ports import CartesianPathOptions, JointGoal, JumpThreshold, PoseGoal, PositionGoal
 from harness.spec.goals import GoalFields

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
-from harness.engine.cell import Cell
 from harness.engine.executors.gripper import DEFAULT_TIMEOUT, note_result
 from harness.engine.registry import execute
 from harness.spec.steps import Grasp

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
-from harness.engine.cell import Cell
 from harness.engine.registry import execute
 from harness.ports import GripperResult
 from harness.robot.description import Gripper as GripperDescription

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.engine.cell import Cell
+from harness.cell.cell import Cell
 from harness.engine.registry import execute
 from harness.spec.steps import Inject
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from harness.engine.cell import Cell
-from harness.engine.goals import group_of, link_limits, resolve_goal
+from harness.cell.cell import Cell
+from harness.cell.goals import group_of, link_limits, resolve_goal
 from harness.engine.registry import execute
 from harness.spec.steps import Lin
 

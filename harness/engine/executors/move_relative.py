@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.engine.cell import Cell
-from harness.engine.goals import group_of
+from harness.cell.cell import Cell
+from harness.cell.goals import group_of
 from harness.engine.registry import execute
 from harness.spec.steps import MoveRelative
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from harness.engine.cell import Cell
-from harness.engine.goals import group_of, path_constraints, resolve_goals
+from harness.cell.cell import Cell
+from harness.cell.goals import group_of, path_constraints, resolve_goals
 from harness.engine.registry import execute
 from harness.spec.steps import MoveTo
 

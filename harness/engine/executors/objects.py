@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
-from harness.engine.cell import Cell
 from harness.engine.registry import execute
 from harness.spec.steps import AddObject, ClearObjects, MoveObject, RemoveObject
 

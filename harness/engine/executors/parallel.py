@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from harness.engine.cell import Cell
+from harness.cell.cell import Cell
 from harness.engine.executors.gripper import command_of
 from harness.engine.registry import execute
 from harness.spec.steps import Gripper, Parallel

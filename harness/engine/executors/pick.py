@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 
+from harness.cell.cell import Cell
+from harness.cell.goals import TcpGoal, group_of
+from harness.cell.grasp_choice import first_that_goes
+from harness.cell.grasping import grasp_point, gripper_axes, top_grasps
+from harness.cell.program import ProgramStep
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.engine.cell import Cell
-from harness.engine.goals import TcpGoal, group_of
-from harness.engine.grasp_choice import first_that_goes
-from harness.engine.grasping import grasp_point, gripper_axes, top_grasps
-from harness.engine.program import ProgramStep
 from harness.engine.registry import execute
 from harness.spec.poses import Direction, Pose, Position
 from harness.spec.steps import Grasp, Gripper, MoveRelative, Pick, Travel

@@ -7,21 +7,21 @@ from dataclasses import replace
 
 import numpy as np
 
+from harness.cell.cell import Cell
+from harness.cell.goals import TcpGoal, group_of
+from harness.cell.grasp_choice import first_that_goes
+from harness.cell.grasping import UP, gripper_axes, pitch_of, turn_about
+from harness.cell.program import ProgramStep
 from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.spatial import SE3
 from harness.core.symmetry import equal_turns
 from harness.core.types import FloatArray
-from harness.engine.cell import Cell
 from harness.engine.executors.pick import (
     arm_has_six_joints,
     relative_step,
     travel_distance,
     world_pose_spec,
 )
-from harness.engine.goals import TcpGoal, group_of
-from harness.engine.grasp_choice import first_that_goes
-from harness.engine.grasping import UP, gripper_axes, pitch_of, turn_about
-from harness.engine.program import ProgramStep
 from harness.engine.registry import execute
 from harness.ports import PositionGoal
 from harness.spec.poses import Direction, Position

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from harness.cell.cell import Cell
+from harness.cell.goals import group_of, resolve_goal
 from harness.core.errors import PlanningFailed
-from harness.engine.cell import Cell
-from harness.engine.goals import group_of, resolve_goal
 from harness.engine.registry import execute
 from harness.ports import JointGoal
 from harness.spec.steps import Ptp

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from harness.engine.cell import Cell
-from harness.engine.goals import arc_point, group_of, link_limits, resolve_goal
+from harness.cell.cell import Cell
+from harness.cell.goals import arc_point, group_of, link_limits, resolve_goal
 from harness.engine.registry import execute
 from harness.ports import SequenceItem
 from harness.spec.steps import Sequence

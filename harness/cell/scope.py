@@ -5,12 +5,12 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Iterable
 
+from harness.cell.program import Loc
 from harness.core.camera import Camera
 from harness.core.errors import Problem, SpecError
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
-from harness.engine.program import Loc
 from harness.ports import LONGEST_RUN
 from harness.robot.description import RobotDescription
 from harness.spec.source import SourceMap

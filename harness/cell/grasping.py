@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
+from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Shape, Sphere
 from harness.core.spatial import SE3, rotation_from_quat_wxyz
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
-from harness.engine.cell import Cell
 
 GRASP_DEPTH = 0.02  # [m] below the top of a tall object
 MAX_LEAN = 10.0  # [degrees]

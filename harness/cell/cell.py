@@ -6,13 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from harness.cell.program import ProgramStep, step_seed
 from harness.core.camera import Camera
 from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
-from harness.engine.program import ProgramStep, step_seed
 from harness.ports import Kinematics, MotionPlan, MotionPlanner, PlanningScene, Simulator
 from harness.recording.run import AttachmentRecord
 from harness.robot.description import Gripper, RobotDescription

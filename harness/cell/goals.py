@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.engine.cell import Cell
 from harness.ports import (
     AnyGoal,
     ArcPoint,

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from harness.cell.cell import Cell
+from harness.cell.goals import TcpGoal, resolve_goal
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
-from harness.engine.cell import Cell
-from harness.engine.goals import TcpGoal, resolve_goal
 from harness.ports import JointGoal, PlanningOptions
 
 MOST_BRANCHES = 2
