@@ -131,7 +131,7 @@ class _BenchPlanner(DryPlanner):
         # first the goal, so that one that cannot be had counts against no planner
         jump = super().plan(group, start, goal, options, constraints)
         step = self._step
-        if step is None or step.spec.do != "move_to" or constraints is not None:
+        if step is None or step.spec.verb != "move_to" or constraints is not None:
             return jump
         trials: list[Trial] = []
         for planner, seed in product(self._planners, self._seeds):

@@ -17,7 +17,7 @@ from harness.ports import Kinematics, MotionPlan, MotionPlanner, PlanningScene, 
 from harness.recording.run import AttachmentRecord
 from harness.robot.description import Gripper, RobotDescription
 from harness.spec.poses import Direction, Pose
-from harness.spec.steps import AnyStep
+from harness.spec.step import Step
 
 
 @dataclass
@@ -252,7 +252,7 @@ class Cell:
 
     # -- nested steps -------------------------------------------------------------------------
 
-    def child(self, name: str, spec: AnyStep, summary: str) -> ProgramStep:
+    def child(self, name: str, spec: Step, summary: str) -> ProgramStep:
         """A step that the current one is made of, with a seed of its own."""
         parent = self.current
         path = f"{parent.path}.{name}"

@@ -1,8 +1,9 @@
-"""From the goal a file states to the goal a planner takes."""
+"""From the goal in a file to the goal of a planner."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +12,6 @@ from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.ports import (
-    AnyGoal,
     ArcPoint,
     Goal,
     JointBand,
@@ -23,32 +23,26 @@ from harness.ports import (
     PositionGoal,
 )
 from harness.ports import CartesianLimits as LinkLimits
-from harness.spec.goals import GoalFields, GoalTolerance
+from harness.spec.goals import ArcFields, CartesianLimits, GoalFields, GoalTolerance
 from harness.spec.planning import PathConstraints as ConstraintsSpec
 from harness.spec.poses import Pose, Position
-from harness.spec.steps import ArcFields, CartesianLimits, Lin, MoveTo
 
 DEFAULT_TOLERANCE = GoalTolerance()
 
 
 @dataclass(frozen=True)
 class TcpGoal:
-    """Where a composite step wants the TCP: a pose, or a position and a pitch [rad]."""
+    """The goal of the TCP in a composite step: a pose, or a position and a pitch [rad]."""
 
     target: Pose | Position
     pitch: float | None = None
 
-    def move_to(self, group: str | None) -> MoveTo:
-        """The free motion there."""
+    @property
+    def keys(self) -> dict[str, Any]:
+        """The goal as a motion step has it."""
         if isinstance(self.target, Pose):
-            return MoveTo(pose=self.target, group=group)
-        return MoveTo(position=self.target, pitch=self.pitch, group=group)
-
-    def lin(self, group: str | None) -> Lin:
-        """The straight motion there."""
-        if isinstance(self.target, Pose):
-            return Lin(pose=self.target, group=group)
-        return Lin(position=self.target, pitch=self.pitch, group=group)
+            return {"pose": self.target}
+        return {"position": self.target, "pitch": self.pitch}
 
 
 def group_of(cell: Cell, group: str | None) -> str:
@@ -75,13 +69,6 @@ def resolve_goal(goal: GoalFields, group: str, cell: Cell) -> Goal:
         position_tolerance=tolerance.position,
         pitch_tolerance=_largest(tolerance),
     )
-
-
-def resolve_goals(step: MoveTo, group: str, cell: Cell) -> Goal | AnyGoal:
-    """The step's goal, or its several."""
-    if step.any_of is None:
-        return resolve_goal(step, group, cell)
-    return AnyGoal(tuple(resolve_goal(goal, group, cell) for goal in step.any_of))
 
 
 def pose_goal(

@@ -12,6 +12,7 @@ from harness.cell.goals import TcpGoal, resolve_goal
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.ports import JointGoal, PlanningOptions
+from harness.spec.goals import GoalFields
 
 MOST_BRANCHES = 2
 """Free solutions of inverse kinematics before the approach from which it is tried."""
@@ -51,7 +52,7 @@ def _ends(
     before: TcpGoal, at: TcpGoal, group: str, cell: Cell, options: PlanningOptions
 ) -> Iterator[FloatArray]:
     """The whole robot at the end of each straight approach that it can follow."""
-    goal = resolve_goal(at.lin(group), group, cell)
+    goal = resolve_goal(GoalFields(**at.keys), group, cell)
     for state in _free_states(before, group, cell)[:MOST_BRANCHES]:
         try:
             plan = cell.planner.plan_linear(group, state, goal, options)
@@ -62,7 +63,7 @@ def _ends(
 
 def _free_states(goal: TcpGoal, group: str, cell: Cell) -> list[FloatArray]:
     """The whole robot at a goal, free of collisions, nearest first."""
-    wanted = resolve_goal(goal.move_to(group), group, cell)
+    wanted = resolve_goal(GoalFields(**goal.keys), group, cell)
     if isinstance(wanted, JointGoal):
         raise TypeError("a way leads to a pose or a position")
     start, options = cell.planning_start(), cell.current.options

@@ -11,9 +11,8 @@ from harness.core.world import World, WorldObject
 from harness.ports import PlanningOptions
 from harness.robot.description import RobotDescription
 from harness.spec.checks import AnyExpectation
-from harness.spec.steps import AnyStep
-
-Loc = tuple[str | int, ...]
+from harness.spec.source import Loc
+from harness.spec.step import Step
 
 
 def step_seed(seed: int, path: str) -> int:
@@ -38,7 +37,7 @@ class ProgramStep:
 
     id: str
     path: str
-    spec: AnyStep
+    spec: Step
     summary: str
     line: int
     options: PlanningOptions

@@ -5,7 +5,6 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Iterable
 
-from harness.cell.program import Loc
 from harness.core.camera import Camera
 from harness.core.errors import Problem, SpecError
 from harness.core.spatial import SE3
@@ -13,7 +12,8 @@ from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.ports import LONGEST_RUN
 from harness.robot.description import RobotDescription
-from harness.spec.source import SourceMap
+from harness.spec.poses import Pose
+from harness.spec.source import Loc, SourceMap
 
 LISTED = 12  # names in a hint
 
@@ -208,3 +208,19 @@ class Scope:
             )
             return False
         return True
+
+
+class At:
+    """The scope at a step, and the step's place in the file."""
+
+    def __init__(self, scope: Scope, loc: Loc) -> None:
+        self.scope = scope
+        self.loc = loc
+
+    def key(self, *keys: str | int) -> Loc:
+        """Place of something inside the step."""
+        return (*self.loc, *keys)
+
+    def check_pose(self, pose: Pose, *keys: str | int) -> None:
+        """A pose under these keys of the step, whose frame must exist."""
+        self.scope.check_frame(pose.frame, self.key(*keys, "frame"))

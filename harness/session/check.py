@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from harness.assertions.wording import describe
-from harness.cell.program import Loc, Program
+from harness.cell.program import Program
 from harness.core.errors import Problem, SpecError
 from harness.engine.explain import explain
 from harness.engine.predict import predict, touches_at_start, unexpected
 from harness.ports import Touch
 from harness.reporting.explanation import explanation_lines
 from harness.session.prepare import prepare
+from harness.spec.source import Loc
 
 
 @dataclass(frozen=True)

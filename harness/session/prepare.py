@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from harness.assertions.judge import EXECUTED
-from harness.cell.program import Loc, Program
+from harness.cell.program import Program
 from harness.core.errors import Problem, RobotError, SpecError
 from harness.core.geometry import Mesh
 from harness.engine.compile import Sources, compile_scenario
@@ -28,6 +28,7 @@ from harness.spec.load import (
     read_scenario,
     world_path,
 )
+from harness.spec.source import Loc
 
 
 @dataclass(frozen=True, eq=False)

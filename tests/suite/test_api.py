@@ -11,8 +11,9 @@ from harness.core.resources import data_folder
 from harness.spec.checks import Always, DurationCheck, NamedTarget, WithinLimits
 from harness.spec.load import load_scenario, parse_scenario
 from harness.spec.scenario import Scenario
-from harness.spec.steps import MoveTo, Wait
 from harness.spec.written import scenario_text
+from harness.steps.move_to import MoveTo
+from harness.steps.wait import Wait
 from harness.suite.discovery import UsageError
 
 PAGE = data_folder("scenarios") / "PYTHON.md"

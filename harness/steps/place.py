@@ -4,28 +4,36 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
+from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.goals import TcpGoal, group_of
 from harness.cell.grasp_choice import first_that_goes
 from harness.cell.grasping import UP, gripper_axes, pitch_of, turn_about
 from harness.cell.program import ProgramStep
+from harness.cell.scope import At
 from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.spatial import SE3
 from harness.core.symmetry import equal_turns
 from harness.core.types import FloatArray
-from harness.engine.executors.pick import (
+from harness.ports import PositionGoal
+from harness.spec.base import Name
+from harness.spec.poses import Direction, Pose, Position
+from harness.spec.step import Step
+from harness.steps.lin import Lin
+from harness.steps.move_to import MoveTo
+from harness.steps.pick import (
+    Travel,
     arm_has_six_joints,
+    check_travel,
     relative_step,
     travel_distance,
     world_pose_spec,
 )
-from harness.engine.registry import execute
-from harness.ports import PositionGoal
-from harness.spec.poses import Direction, Position
-from harness.spec.steps import Place, Release, Travel
+from harness.steps.release import Release
 
 REFINEMENTS = 4
 PUT_DOWN_GAP = 0.001  # [m] above the target, so that the support is touched when the fingers open
@@ -34,24 +42,65 @@ TURNS_OF_ROUND = 8
 DEFAULT_RETREAT = Travel(min_distance=0.03, max_distance=0.1)
 
 
-@execute.handles(Place)
-def place(step: Place, cell: Cell) -> None:
-    """Go above the target, lower straight, release, retreat against the gripper's approach axis."""
-    name = step.object or (cell.held[-1] if cell.held else None)
-    if name is None or name not in cell.scene.attached():
-        what = f"'{name}' is not held" if name else "nothing is held"
-        raise StepFailed("INVALID_OBJECT_NAME", f"{what}, so nothing can be placed")
-    backwards = _retreat_direction(cell)
-    children = [
-        *_lowering(name, step, cell),
-        cell.child("release", Release(object=name), f"release {name}"),
-        cell.child(
-            "retreat",
-            relative_step(step.retreat or DEFAULT_RETREAT, backwards, step.group),
-            "move_relative back",
-        ),
-    ]
-    cell.run_children(children)
+class Place(Step):
+    """Approach, lower, release, retreat; expands into the steps it is made of.
+
+    Where the arm cannot lower the object to a `pose` without a rotation, or not open its hand
+    there, the object is turned about the vertical, if it looks the same then: by a half, what is
+    square by quarters, what is round by eighths; the step reports which `turn` of how many `turns`.
+    A `pose` with a rotation is kept to. An arm of fewer than six joints brings the object to the
+    position alone, with the pitch that the gripper has: the object turns with the arm.
+    """
+
+    verb: ClassVar[str] = "place"
+
+    object: Name | None = Field(
+        default=None,
+        description="The name of the object; the default is the one that was picked last.",
+    )
+    pose: Pose = Field(description="The pose at which the object will stand.")
+    approach: Travel | None = Field(
+        default=None, description="The approach; the default is 10 cm straight down."
+    )
+    retreat: Travel | None = Field(
+        default=None, description="The retreat; the default is 3 to 10 cm back along the gripper."
+    )
+
+    def summary(self) -> str:
+        return self.object or ""
+
+    def check(self, at: At) -> None:
+        at.scope.check_gripper(at.loc, "`place`")
+        at.check_pose(self.pose, "pose")
+        if self.object is not None:
+            at.scope.check_object(self.object, at.key("object"))
+        check_travel(self.approach, at, "approach")
+        check_travel(self.retreat, at, "retreat")
+        name = self.object or next(reversed(at.scope.attached), None)
+        if name is not None:
+            at.scope.attached.pop(name, None)
+
+    def execute(self, cell: Cell) -> None:
+        """Go above the target, lower straight, release, retreat along the gripper's approach axis.
+
+        Raises:
+            StepFailed: INVALID_OBJECT_NAME, when the object is not held.
+        """
+        name = self.object or (cell.held[-1] if cell.held else None)
+        if name is None or name not in cell.scene.attached():
+            what = f"'{name}' is not held" if name else "nothing is held"
+            raise StepFailed("INVALID_OBJECT_NAME", f"{what}, so nothing can be placed")
+        backwards = _retreat_direction(cell)
+        children = [
+            *_lowering(name, self, cell),
+            cell.child("release", Release(object=name), f"release {name}"),
+            cell.child(
+                "retreat",
+                relative_step(self.retreat or DEFAULT_RETREAT, backwards, self.group),
+                "move_relative back",
+            ),
+        ]
+        cell.run_children(children)
 
 
 def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
@@ -75,8 +124,10 @@ def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
     cell.notes.result.update(turns=len(ways), turn=chosen + 1)
     before, target = ways[chosen]
     return [
-        cell.child("reach", before.move_to(step.group), f"move_to above the place of {name}"),
-        _touching(cell.child("lower", target.lin(step.group), f"lin {name}")),
+        cell.child(
+            "reach", MoveTo(**before.keys, group=step.group), f"move_to above the place of {name}"
+        ),
+        _touching(cell.child("lower", Lin(**target.keys, group=step.group), f"lin {name}")),
     ]
 
 

@@ -3,45 +3,116 @@
 from __future__ import annotations
 
 import math
+from typing import Annotated, ClassVar
 
 import numpy as np
+from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.goals import TcpGoal, group_of
 from harness.cell.grasp_choice import first_that_goes
 from harness.cell.grasping import grasp_point, gripper_axes, top_grasps
 from harness.cell.program import ProgramStep
+from harness.cell.scope import At
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.engine.registry import execute
+from harness.spec.base import Angle, JointEffort, Name, PositiveLength, SpecModel
 from harness.spec.poses import Direction, Pose, Position
-from harness.spec.steps import Grasp, Gripper, MoveRelative, Pick, Travel
+from harness.spec.step import Step
+from harness.steps.grasp import Grasp, GripperAction, check_graspable
+from harness.steps.gripper import Gripper
+from harness.steps.lin import Lin
+from harness.steps.move_relative import MoveRelative
+from harness.steps.move_to import MoveTo
 
 DEFAULT_TRAVEL = 0.1  # [m]
 
 
-@execute.handles(Pick)
-def pick(step: Pick, cell: Cell) -> None:
-    """Open, go to where the approach begins, approach straight, grasp, lift."""
-    children = [
-        cell.child(
-            "open",
-            Gripper(position=cell.gripper.open_position, max_effort=cell.gripper.max_effort),
-            "gripper open",
-        ),
-        *_approach(step, cell),
-        cell.child(
-            "grasp",
-            Grasp(object=step.object, mode=step.mode, max_effort=step.max_effort),
-            f"grasp {step.object}",
-        ),
-        cell.child(
-            "lift",
-            relative_step(step.lift, Direction(xyz=(0, 0, 1)), step.group),
-            f"move_relative lift {step.object}",
-        ),
-    ]
-    cell.run_children(children)
+class Travel(SpecModel):
+    """A straight move of a pick or place."""
+
+    direction: Direction | None = Field(
+        default=None, description="The move has this direction; the default depends on the move."
+    )
+    min_distance: PositiveLength | None = Field(
+        default=None, description="The move has at least this length, or the step fails [m]."
+    )
+    max_distance: PositiveLength | None = Field(
+        default=None, description="The move has at most this length [m]."
+    )
+    distance: PositiveLength | None = Field(
+        default=None, description="The move has exactly this length [m]."
+    )
+
+
+class Pick(Step):
+    """Approach, grasp, lift; expands into the steps it is made of.
+
+    Without a `grasp_pose` the object's shape gives the grasps from above that are as good as each
+    other: half a turn of the gripper, a box's other side if it fits, eight turns about what is
+    round. The first that the arm can approach is taken; the step reports which `grasp` of how many
+    `grasps`.
+    """
+
+    short = "object"
+
+    verb: ClassVar[str] = "pick"
+
+    object: Name = Field(description="The name of the object.")
+    grasp_pose: Pose | None = Field(
+        default=None,
+        description="The pose of the TCP at the grasp; the default follows from the object's "
+        "shape.",
+    )
+    pitch: Angle | None = Field(
+        default=None, description="The pitch of the gripper, for arms of fewer than six joints."
+    )
+    approach: Travel | None = Field(
+        default=None, description="The approach; the default is 10 cm along the gripper."
+    )
+    lift: Travel | None = Field(
+        default=None, description="The lift after the grasp; the default is 10 cm up."
+    )
+    mode: GripperAction = Field(
+        default="friction",
+        description="`friction` holds the object by contact; `weld` also fixes it in the physics.",
+    )
+    max_effort: Annotated[JointEffort, Field(gt=0)] | None = Field(
+        default=None,
+        description="The effort limit of the gripper's joint while it holds; the default is the "
+        "robot's.",
+    )
+
+    def summary(self) -> str:
+        return self.object
+
+    def check(self, at: At) -> None:
+        at.scope.check_gripper(at.loc, "`pick`")
+        check_graspable(self.object, at)
+        if self.grasp_pose is not None:
+            at.check_pose(self.grasp_pose, "grasp_pose")
+        check_travel(self.approach, at, "approach")
+        check_travel(self.lift, at, "lift")
+        at.scope.attached[self.object] = None
+
+    def execute(self, cell: Cell) -> None:
+        """Open, go to where the approach begins, approach straight, grasp, lift."""
+        open_hand = Gripper(position=cell.gripper.open_position, max_effort=cell.gripper.max_effort)
+        grasp = Grasp(object=self.object, mode=self.mode, max_effort=self.max_effort)
+        lift = relative_step(self.lift, Direction(xyz=(0, 0, 1)), self.group)
+        children = [
+            cell.child("open", open_hand, "gripper open"),
+            *_approach(self, cell),
+            cell.child("grasp", grasp, f"grasp {self.object}"),
+            cell.child("lift", lift, f"move_relative lift {self.object}"),
+        ]
+        cell.run_children(children)
+
+
+def check_travel(travel: Travel | None, at: At, key: str) -> None:
+    """Report a travel's frame that does not exist."""
+    if travel is not None and travel.direction is not None:
+        at.scope.check_frame(travel.direction.frame, at.key(key, "direction", "frame"))
 
 
 def _approach(step: Pick, cell: Cell) -> list[ProgramStep]:
@@ -52,8 +123,10 @@ def _approach(step: Pick, cell: Cell) -> list[ProgramStep]:
     cell.notes.result.update(grasps=len(ways), grasp=chosen + 1)
     before, target = ways[chosen]
     return [
-        cell.child("reach", before.move_to(step.group), f"move_to before {step.object}"),
-        cell.child("approach", target.lin(step.group), f"lin to {step.object}"),
+        cell.child(
+            "reach", MoveTo(**before.keys, group=step.group), f"move_to before {step.object}"
+        ),
+        cell.child("approach", Lin(**target.keys, group=step.group), f"lin to {step.object}"),
     ]
 
 
