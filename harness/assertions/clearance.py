@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from harness.assertions.contacts import attached, in_hand
 from harness.assertions.registry import Evidence, MarginSignal, signal
-from harness.assertions.text import amount
+from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, NotReached, Window, object_record
 from harness.core.types import FloatArray, IntArray
 from harness.recording.run import Measure, Run
@@ -89,9 +90,9 @@ def _largest_loss(window: Window, check: Clearance) -> _Worst:
 def _refuse_beyond_cutoff(run: Run, at_least: float, distance: _Worst) -> None:
     cutoff = run.signals.clearance_cutoff
     if at_least > cutoff and float(distance.values.min()) >= cutoff:
+        recorded, required = amounts(cutoff, at_least, "m")
         raise NotObservable(
-            f"distances were recorded up to {amount(cutoff, 'm')} only;"
-            f" {amount(at_least, 'm')} are asked for"
+            f"distances were recorded up to {recorded} only; {required} are required"
         )
 
 
@@ -101,10 +102,14 @@ def _least(check: Clearance, window: Window, distance: _Worst) -> Callable[[int]
     def evidence(index: int) -> Evidence:
         key, value = distance.keys[int(distance.which[index])], float(distance.values[index])
         who = _nearest_link(window, key, index) or key[0]
-        about = "at least " if value >= window.run.signals.clearance_cutoff else ""
+        is_capped = value >= window.run.signals.clearance_cutoff
+        about = "at least " if is_capped else ""
         pair = f"{who} and {_itself(key)}"
-        text = f"{about}{amount(value, 'm')} between {pair}, {amount(limit, 'm')} asked for"
-        measure = Measure("clearance", value, limit, ">=", "m", window.time(index), pair)
+        actual, required = amounts(value, limit, "m")
+        text = f"{about}{actual} between {pair}, {required} required"
+        ceiling = value if is_capped else math.inf
+        time = window.time(index)
+        measure = Measure("clearance", value, limit, ">=", "m", time, pair, ceiling=ceiling)
         return Evidence(text, (measure,))
 
     return evidence
@@ -119,9 +124,10 @@ def _below(check: Clearance, window: Window, loss: _Worst) -> Callable[[int], Ev
         actual = float(window.run.signals.clearances[key][sample])
         planned = float(window.run.signals.planned_clearances[key][sample])
         pair = f"{key[0]} and {_itself(key)}"
+        lost, allowed = amounts(value, limit, "m")
         text = (
-            f"{amount(actual, 'm')} between {pair}, planned {amount(planned, 'm')};"
-            f" {amount(limit, 'm')} less allowed"
+            f"{amount(actual, 'm')} between {pair}, planned {amount(planned, 'm')}:"
+            f" {lost} less, {allowed} allowed"
         )
         measure = Measure("clearance below plan", value, limit, "<=", "m", window.time(index), pair)
         return Evidence(text, (measure,))

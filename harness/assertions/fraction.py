@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
+from harness.assertions.text import percentages
 from harness.assertions.window import NotReached, Window
 from harness.recording.run import Measure
 from harness.spec.checks import FractionCheck
@@ -34,12 +35,12 @@ def fraction(check: FractionCheck, window: Window) -> MarginSignal:
         last = max(step.end_index - 1, step.start_index)
         least[last:] = np.minimum(least[last:], _share(step.result["fraction"]))
     reported = window.cut(least)
-    part = Part("fraction", reported, check.at_least, ">=", "1")
+    part = Part("fraction", reported, check.at_least, ">=", "1", ceiling=1.0)
 
     def text(_: int, measure: Measure) -> str:
         worst = min(reporters, key=lambda step: _share(step.result["fraction"]))
-        asked = f"{100 * check.at_least:.1f} %"
-        return f"{100 * measure.value:.1f} % of the path of {worst.id} followed, {asked} asked for"
+        followed, required = percentages(measure.value, check.at_least)
+        return f"{followed} of the path of {worst.id} followed, {required} required"
 
     return all_of(window, [part], text, present=np.isfinite(reported))
 

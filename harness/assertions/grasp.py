@@ -33,7 +33,7 @@ from harness.core.pose_arrays import (
 )
 from harness.core.symmetry import ANY, equal_turns
 from harness.core.types import BoolArray, FloatArray
-from harness.recording.run import Measure, Run
+from harness.recording.run import AttachmentRecord, Measure, Run, is_nested
 from harness.spec.checks import Grasped, Released, Slip
 
 
@@ -135,10 +135,10 @@ def robot_contact(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
 def slip(check: Slip, window: Window) -> MarginSignal:
     """How far an object has drifted from where the planner carries it along.
 
-    Speaks of the samples at which the planning scene has the object attached, from the first one
-    at which all finger sides touch it; what planner and physics differ by at that moment (a
-    planning object that `represents` another may be a little beside it) is the zero. Turns about
-    the axis of a round object do not count.
+    Judges the samples at which the planning scene has the object attached, from the first one at
+    which all finger sides touch it until the gripper is opened to release it. What planner and
+    physics differ by at the first (a planning object that `represents` another may be a little next
+    to it) is the zero. Turns about the axis of a round object do not count.
     """
     run = window.run
     name, drift, turn, held = drift_in_hand(run, check.object)
@@ -155,6 +155,32 @@ def slip(check: Slip, window: Window) -> MarginSignal:
         )
 
     return all_of(window, parts, text, applies=window.cut(held))
+
+
+def released_at(run: Run, record: AttachmentRecord) -> float:
+    """When the gripper began to release an attached object: inf where it did not [s].
+
+    `release` opens the gripper and then detaches the object; `gripper` and `detach_object` one
+    after the other do the same. In between the object leaves the hand as it should.
+    """
+    leaves = [
+        step
+        for step in run.steps
+        if not any(is_nested(other.path, step.path) for other in run.steps)
+    ]
+    ends = [
+        place
+        for place, step in enumerate(leaves)
+        if step.verb in ("release", "detach_object")
+        and step.start_time <= record.end_time <= step.end_time
+    ]
+    if not ends:
+        return record.end_time
+    place = ends[0]
+    if leaves[place].verb == "detach_object":
+        while place > 0 and leaves[place - 1].verb == "gripper":
+            place -= 1
+    return leaves[place].start_time
 
 
 def drift_in_hand(run: Run, name: str) -> tuple[str, FloatArray, FloatArray, BoolArray]:
@@ -178,7 +204,9 @@ def drift_in_hand(run: Run, name: str) -> tuple[str, FloatArray, FloatArray, Boo
         if len(gripped) == 0:
             continue
         zero = error[gripped[0]]
-        held = during & (np.arange(count) >= gripped[0])
+        first = int(gripped[0])
+        held = during & (np.arange(count) >= first) & (times < released_at(run, record))
+        held[first] = True
         speaks |= held
         drift[held] = np.linalg.norm(error[held, :3] - zero[:3], axis=1)
         if equal_turns(object_record(run, record.represents).shapes, np.eye(3)) == ANY:

@@ -6,7 +6,7 @@ import numpy as np
 
 from harness.assertions.poses import object_poses, physical_poses, present
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
-from harness.assertions.text import amount
+from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, Window, object_record
 from harness.core.geometry import Box, Capsule, Cylinder, Shape, Sphere
 from harness.core.pose_arrays import angle_between, relative, rotate
@@ -39,10 +39,10 @@ def inside(check: In, window: Window) -> MarginSignal:
     def text(index: int, _: Measure) -> str:
         deep = float(depth[index])
         where = "inside" if deep >= 0 else "outside"
-        leans = amount(float(lean[index]), "rad")
+        leans, allowed = amounts(float(lean[index]), check.max_lean, "rad")
         return (
             f"{check.object} is {amount(abs(deep), 'm')} {where} {check.container},"
-            f" which leans by {leans} of {amount(check.max_lean, 'rad')}"
+            f" which leans by {leans} of {allowed}"
         )
 
     return all_of(window, parts, text, present=there)

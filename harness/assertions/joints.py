@@ -12,7 +12,7 @@ import numpy as np
 
 from harness.assertions.contacts import finger_gap, gripper_of
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
-from harness.assertions.text import amount
+from harness.assertions.text import amounts
 from harness.assertions.window import NotObservable, NotReached, Window
 from harness.recording.run import JointRecord, Measure, Run
 from harness.spec.checks import GripperState, Joints, NamedTarget
@@ -74,7 +74,7 @@ def _near(
         parts.append(Part("joint position error", np.abs(error), limit, "<=", unit, detail=name))
 
     def text(_: int, measure: Measure) -> str:
-        off, limit = amount(measure.value, measure.unit), amount(measure.limit, measure.unit)
+        off, limit = amounts(measure.value, measure.limit, measure.unit)
         return f"{measure.detail} is off its target by {off} of {limit}"
 
     return all_of(window, parts, text)
@@ -101,7 +101,8 @@ def gripper_state(check: GripperState, window: Window) -> MarginSignal:
     part = Part("gap error", np.abs(gap - width), limit, "<=", "m")
 
     def text(index: int, _: Measure) -> str:
-        return f"the gap is {amount(float(gap[index]), 'm')}, {amount(width, 'm')} asked for"
+        actual, required = amounts(float(gap[index]), width, "m")
+        return f"the gap is {actual}, {required} required"
 
     return all_of(window, [part], text)
 

@@ -16,7 +16,7 @@ from harness.assertions.contacts import (
 from harness.assertions.poses import object_poses, present, start_poses
 from harness.assertions.registry import Evidence, MarginSignal, signal
 from harness.assertions.support import rides_on
-from harness.assertions.text import amount
+from harness.assertions.text import amount, amounts
 from harness.assertions.window import Window, object_record
 from harness.recording.run import Measure
 from harness.spec.checks import Lifted
@@ -50,7 +50,7 @@ def lifted(check: Lifted, window: Window) -> MarginSignal:
     def evidence(index: int) -> Evidence:
         sample, time = window.start + index, window.time(index)
         height = float(rise[sample])
-        text = f"lifted {amount(height, 'm')} of {amount(check.above, 'm')}"
+        text = f"lifted {' of '.join(amounts(height, check.above, 'm'))}"
         text += ": " + ", ".join(
             f"{side} finger {amount(float(force[sample]), 'N')}" for side, force in sides.items()
         )

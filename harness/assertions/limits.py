@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from harness.assertions.joints import unit_of
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
-from harness.assertions.text import amount
+from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, Window
 from harness.core.types import FloatArray
 from harness.recording.run import JointRecord, Measure, Run
@@ -18,6 +19,13 @@ STOP_SOFTNESS = 0.02
 """Share of its range by which a joint that rests on its stop may sink into it."""
 ROUNDING = 1e-9
 """Share of a limit that is rounding: an effort that saturates is at its limit, not beyond."""
+POSITION_TOLERANCE = {"rad": 1e-3, "m": 1e-4}
+"""By which a measured position may exceed its limit [rad or m]: a controller that holds a joint
+at its limit deviates a little to either side."""
+VELOCITY_TOLERANCE = 1e-3
+"""Share of its limit by which a measured velocity may exceed it, for the same reason."""
+MEASURED = ("position", "velocity")
+"""Quantities with a tolerance; commands have none."""
 
 
 def gripper_joints(run: Run) -> frozenset[str]:
@@ -46,12 +54,13 @@ def resting_joints(run: Run) -> frozenset[str]:
 
 @signal.handles(WithinLimits)
 def within_limits(check: WithinLimits, window: Window) -> MarginSignal:
-    """Measured positions, velocities, efforts and commanded accelerations, as shares of limits."""
+    """Positions, velocities, efforts and commanded accelerations, as shares of their limits."""
     parts: list[Part] = []
     hand, resting = gripper_joints(window.run), resting_joints(window.run)
     for column, joint in enumerate(window.run.robot.joints):
         if check.position:
             parts += _position_parts(window, column, joint, joint.name in resting)
+            parts += _command_parts(window, column, joint)
         if check.velocity:
             parts += _rate_part(window, column, joint, "velocity")
         if check.effort:
@@ -62,8 +71,9 @@ def within_limits(check: WithinLimits, window: Window) -> MarginSignal:
         raise NotObservable("no limits of these kinds are known")
 
     def text(_: int, measure: Measure) -> str:
-        value, limit = amount(measure.value, measure.unit), amount(measure.limit, measure.unit)
-        return f"{measure.name} of {measure.detail} is {value}, limit {limit}"
+        value, limit = amounts(measure.value, measure.limit, measure.unit)
+        tolerance = " with its tolerance" if measure.name in MEASURED else ""
+        return f"{measure.name} of {measure.detail} is {value}, limit {limit}{tolerance}"
 
     return all_of(window, parts, text, shown=3)
 
@@ -89,12 +99,34 @@ def _position_parts(window: Window, column: int, joint: JointRecord, may_rest: b
         return []
     values = window.cut(recorded)
     softness = STOP_SOFTNESS * (joint.upper - joint.lower) if may_rest else 0.0
-    scale = 0.5 * (joint.upper - joint.lower) or 1.0
-    unit = unit_of(joint)
-    lower, upper = joint.lower - softness, joint.upper + softness
+    return _between("position", values, joint, max(softness, POSITION_TOLERANCE[unit_of(joint)]))
+
+
+def _command_parts(window: Window, column: int, joint: JointRecord) -> list[Part]:
+    """Commanded positions where they are beyond a limit, without a tolerance.
+
+    One inside the limits does not count: a command at the limit is as good as any other, and its
+    margin of zero would hide those of the measured signals.
+    """
+    if "joint_commands" in window.run.unrecorded:
+        return []
+    if not (math.isfinite(joint.lower) and math.isfinite(joint.upper)):
+        return []
+    recorded = window.run.signals.joint_commands[:, column]
+    if not _is_measured(recorded, joint, "command"):
+        return []
+    commands, rounding = window.cut(recorded), ROUNDING * (joint.upper - joint.lower)
     return [
-        Part("position", values, lower, ">=", unit, scale, detail=joint.name),
-        Part("position", values, upper, "<=", unit, scale, detail=joint.name),
+        replace(part, relevant=~(part.margins() >= 0))
+        for part in _between("commanded position", commands, joint, rounding)
+    ]
+
+
+def _between(name: str, values: FloatArray, joint: JointRecord, slack: float) -> list[Part]:
+    scale, unit = 0.5 * (joint.upper - joint.lower) or 1.0, unit_of(joint)
+    return [
+        Part(name, values, joint.lower - slack, ">=", unit, scale, detail=joint.name),
+        Part(name, values, joint.upper + slack, "<=", unit, scale, detail=joint.name),
     ]
 
 
@@ -114,7 +146,8 @@ def _rate_part(window: Window, column: int, joint: JointRecord, kind: str) -> li
     if not math.isfinite(limit) or not _is_measured(values[:, column], joint, kind):
         return []
     size = np.abs(window.cut(values)[:, column])
-    return [Part(kind, size, limit * (1 + ROUNDING), "<=", unit, limit, detail=joint.name)]
+    slack = VELOCITY_TOLERANCE if kind == "velocity" else ROUNDING
+    return [Part(kind, size, limit * (1 + slack), "<=", unit, limit, detail=joint.name)]
 
 
 @signal.handles(TrackingError)

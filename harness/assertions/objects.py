@@ -17,7 +17,7 @@ from harness.assertions.poses import (
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
 from harness.assertions.support import supports
 from harness.assertions.temporal import trailing_max
-from harness.assertions.text import amount
+from harness.assertions.text import amount, amounts
 from harness.assertions.window import Window, object_record
 from harness.core.pose_arrays import (
     angle_between,
@@ -139,8 +139,8 @@ def on(check: On, window: Window) -> MarginSignal:
     part = Part("support from below", window.cut(force), limit, ">=", "N", detail=check.support)
 
     def text(_: int, measure: Measure) -> str:
-        asked = amount(limit, "N")
-        return f"{check.support} carries {name} with {amount(measure.value, 'N')} of {asked}"
+        force, required = amounts(measure.value, limit, "N")
+        return f"{check.support} carries {name} with {force} of {required}"
 
     return all_of(window, [part], text, present=window.cut(present(run, name)))
 
@@ -223,6 +223,6 @@ def _calm(window: Window, speed: FloatArray) -> FloatArray:
 def _against(measure: Measure) -> str:
     if measure.comparison == "==":
         return measure.name
-    value, limit = amount(measure.value, measure.unit), amount(measure.limit, measure.unit)
+    value, limit = amounts(measure.value, measure.limit, measure.unit)
     detail = f" of {measure.detail}" if measure.detail else ""
     return f"{measure.name}{detail} {value} against {limit}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -120,4 +121,4 @@ def _part(
     unit: str,
 ) -> Part:
     values = np.asarray(by_picture, dtype=float)[spoken_by]
-    return Part(name, values, limit, ">=", unit)
+    return Part(name, values, limit, ">=", unit, ceiling=1.0 if unit == "1" else math.inf)

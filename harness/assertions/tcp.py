@@ -6,7 +6,7 @@ import numpy as np
 
 from harness.assertions.poses import frame_poses, link_poses
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
-from harness.assertions.text import amount
+from harness.assertions.text import amounts
 from harness.assertions.window import Window
 from harness.core.pose_arrays import compose, conjugate, quat_product, rotation_vector
 from harness.recording.run import Measure
@@ -37,8 +37,7 @@ def tcp_pose(check: TcpPose, window: Window) -> MarginSignal:
 
     def text(index: int, _: Measure) -> str:
         errors = " and ".join(
-            f"{amount(float(part.values[index]), part.unit)} of {amount(part.limit, part.unit)}"
-            for part in parts
+            " of ".join(amounts(float(part.values[index]), part.limit, part.unit)) for part in parts
         )
         return f"{what} is off its target by {errors}"
 
@@ -58,7 +57,7 @@ def path_length(check: PathLength, window: Window) -> MarginSignal:
 
     def text(_: int, measure: Measure) -> str:
         bound = "at most" if measure.comparison == "<=" else "at least"
-        limit = amount(measure.limit, "m")
-        return f"the TCP travelled {amount(measure.value, 'm')}, {bound} {limit} asked for"
+        travelled, limit = amounts(measure.value, measure.limit, "m")
+        return f"the TCP travelled {travelled}, {bound} {limit} required"
 
     return all_of(window, parts, text)

@@ -6,10 +6,11 @@ import numpy as np
 
 from harness.assertions.poses import frame_poses, link_poses
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
-from harness.assertions.text import amount
-from harness.assertions.window import NotObservable, Window
+from harness.assertions.text import amounts, percentages
+from harness.assertions.window import NotObservable, NotReached, Window
 from harness.core.pose_arrays import compose
 from harness.core.types import FloatArray
+from harness.recording.link_poses import link_poses as placed_links
 from harness.recording.run import Measure
 from harness.spec.checks import TcpPath
 from harness.spec.poses import Pose
@@ -25,30 +26,26 @@ def tcp_path(check: TcpPath, window: Window) -> MarginSignal:
     The share is of the whole window, so a TCP that stands on the line has not followed it, and
     neither has one that goes from its end to its start.
     """
+    limit = check.max_deviation
     tcp = window.cut(link_poses(window.run, window.run.robot.tcp_link))[:, :3]
-    if check.line is not None:
-        curve = "line"
-        start, end = (_point(window, pose) for pose in (check.line.start, check.line.end))
-        deviation, places = along_line(tcp, start, end)
-    elif check.arc is not None:
-        curve, arc = "arc", check.arc
-        points = [_point(window, pose) for pose in (arc.start, arc.interim, arc.end)]
-        deviation, places = along_arc(tcp, *points)
-    else:
-        raise NotObservable("neither a line nor an arc is given")
+    points = [_point(window, pose) for _, pose in check.corners()] or _planned(window)
+    curve = "line" if len(points) == 2 else "arc"
+    deviation, places = along_line(tcp, *points) if curve == "line" else along_arc(tcp, *points)
     share = forward_share(places)
+    if window.cut_short and share < check.min_fraction and not (deviation > limit).any():
+        raise NotReached(window.cut_short)
+    shares = np.full(len(tcp), share)
     parts = [
-        Part(f"deviation from the {curve}", deviation, check.max_deviation, "<=", "m"),
-        Part("share travelled forwards", np.full(len(tcp), share), check.min_fraction, ">=", "1"),
+        Part(f"deviation from the {curve}", deviation, limit, "<=", "m"),
+        Part("share travelled forwards", shares, check.min_fraction, ">=", "1", ceiling=1.0),
     ]
 
     def text(_: int, measure: Measure) -> str:
         if measure.unit == "1":
-            asked = f"{100 * check.min_fraction:.1f} %"
-            travelled = f"{100 * share:.1f} % of the {curve} forwards"
-            return f"the TCP travelled {travelled}, {asked} asked for"
-        asked = amount(check.max_deviation, "m")
-        return f"the TCP is {amount(measure.value, 'm')} from the {curve}, {asked} allowed"
+            travelled, required = percentages(share, check.min_fraction)
+            return f"the TCP travelled {travelled} of the {curve} forwards, {required} required"
+        away, allowed = amounts(measure.value, limit, "m")
+        return f"the TCP is {away} from the {curve}, {allowed} allowed"
 
     return all_of(window, parts, text)
 
@@ -62,6 +59,38 @@ def _point(window: Window, pose: Pose) -> FloatArray:
     """A point in the world at each sample, shape (n, 3)."""
     frame = window.cut(frame_poses(window.run, pose.frame))
     return compose(frame, pose.se3().as_vector())[:, :3]
+
+
+def _planned(window: Window) -> list[FloatArray]:
+    """Start and goal of the window's step as it was planned, and of `circ` a point between them.
+
+    Only they are taken from the plan: what lies between is a line or a circle, however the arm was
+    commanded.
+
+    Returns:
+        Points in the world, one after the other, shape (n, 3) each.
+
+    Raises:
+        NotReached: The step failed before its path was planned.
+        NotObservable: The step, or the whole run, has no path of its own.
+    """
+    run, step = window.run, window.step
+    if step is None:
+        raise NotObservable("the whole run has no start and goal: name a step, a line or an arc")
+    if step.trajectory is None:
+        if window.cut_short:
+            raise NotReached(window.cut_short)
+        raise NotObservable(f"step '{step.id}' has no path of its own: give a line or an arc")
+    planned = np.asarray(step.trajectory["positions"], dtype=float)
+    rows = [0, len(planned) // 2, -1] if step.verb == "circ" else [0, -1]
+    columns = {joint.name: column for column, joint in enumerate(run.robot.joints)}
+    positions = np.repeat(window.cut(run.signals.joint_positions)[:1], len(rows), axis=0)
+    for joint, values in zip(step.trajectory["joint_names"], planned[rows].T, strict=True):
+        positions[:, columns[joint]] = values
+    tcp = placed_links(run.robot, positions, [run.robot.tcp_link]).get(run.robot.tcp_link)
+    if tcp is None or len(tcp) != len(rows):
+        raise NotObservable(f"how '{run.robot.tcp_link}' moves with the joints was not recorded")
+    return [np.broadcast_to(point, (len(window.times), 3)) for point in tcp[:, :3]]
 
 
 def along_line(

@@ -6,6 +6,7 @@ import numpy as np
 
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
 from harness.assertions.window import NotReached, Window
+from harness.core.quantity import distinct
 from harness.recording.run import Measure
 from harness.spec.checks import DurationCheck
 
@@ -36,6 +37,9 @@ def duration(check: DurationCheck, window: Window) -> MarginSignal:
 
     def text(_: int, measure: Measure) -> str:
         bound = "at most" if measure.comparison == "<=" else "at least"
-        return f"took {measure.value:.3f} s, {bound} {measure.limit:.3f} s"
+        took, limit = distinct(
+            measure.value, measure.limit, lambda seconds, more: f"{seconds:.{3 + more}f} s"
+        )
+        return f"took {took}, {bound} {limit}"
 
     return all_of(window, parts, text, is_moment=False)

@@ -61,16 +61,11 @@ def _steps() -> Rows:
 
 
 def _expectations() -> Rows:
-    import harness.assertions.judge
-    from harness.assertions.registry import signal
-    from harness.spec.checks import Always, AnyPredicate, Eventually, Never, Until
+    from harness.assertions.judge import EXECUTED
+    from harness.spec.checks import Always, AnyPredicate, Eventually, Formula, Never, Until
 
-    del harness
-    predicates = [_row(model, "check", model in signal) for model in get_args(AnyPredicate)]
-    words = [
-        _row(model, "check", model is not Until) for model in (Always, Never, Eventually, Until)
-    ]
-    return predicates + words
+    models = (*get_args(AnyPredicate), Always, Never, Eventually, Until, Formula)
+    return [_row(model, "check", model in EXECUTED) for model in models]
 
 
 def _row(model: Any, tag: str, is_available: bool) -> tuple[str, str]:

@@ -48,11 +48,27 @@ def check_expectation(
     during = getattr(spec, "during", None)
     if during is not None and during not in scope.step_ids:
         scope.problems.unknown((*loc, "during"), "step with the id", during, scope.step_ids)
+    if loc[0] == "expect" and len(loc) == 2:
+        _check_step_is_named(spec, loc, scope)
     for key in ("predicate", "until"):
         inner = getattr(spec, key, None)
         if isinstance(inner, BaseModel):
             check_expectation(inner, (*loc, key), scope, judged)  # pyright: ignore[reportArgumentType]
     _check_names(spec, loc, scope)
+
+
+def _check_step_is_named(spec: AnyExpectation, loc: Loc, scope: Scope) -> None:
+    """Report a path without a curve that is expected of the whole run, which has no goal."""
+    parts = (spec, getattr(spec, "predicate", None), getattr(spec, "until", None))
+    if any(getattr(part, "during", None) for part in parts):
+        return
+    if any(isinstance(part, TcpPath) and not part.corners() for part in parts):
+        scope.problems.add(
+            loc,
+            "`tcp_path` without `line` or `arc` is the way of one step from its start to its goal;"
+            " this is expected of the whole run",
+            "write it under the step's `expect`, or name the step with `during`",
+        )
 
 
 def _check_names(spec: AnyExpectation, loc: Loc, scope: Scope) -> None:

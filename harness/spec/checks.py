@@ -254,12 +254,16 @@ class Arc(SpecModel):
 
 
 class TcpPath(CheckFields):
-    """The TCP follows a line or an arc: it stays near it and travels it from start to end."""
+    """The TCP follows a line or an arc: it stays near it and travels it from start to end.
+
+    Without `line` and `arc` it is the line from where the step starts to its goal; of a `circ` step
+    the arc.
+    """
 
     judged = "always"
     check: Literal["tcp_path"] = "tcp_path"
-    line: Line | None = Field(default=None, description="Either this")
-    arc: Arc | None = Field(default=None, description="or this.")
+    line: Line | None = Field(default=None, description="Another line.")
+    arc: Arc | None = Field(default=None, description="Another arc.")
     max_deviation: PositiveLength = Field(default=0.001, description="Largest distance to it [m].")
     min_fraction: Fraction = Field(
         default=0.95, description="Share of it that must be travelled forwards within the window."
@@ -277,8 +281,8 @@ class TcpPath(CheckFields):
 
     @model_validator(mode="after")
     def _one(self) -> TcpPath:
-        if (self.line is None) == (self.arc is None):
-            raise ValueError("exactly one of line, arc")
+        if self.line is not None and self.arc is not None:
+            raise ValueError("`line`, or `arc`, or neither for the step's own path: not both")
         return self
 
 
@@ -336,11 +340,17 @@ class GripperState(CheckFields):
 
 
 class WithinLimits(CheckFields):
-    """Joints stay within their limits."""
+    """Joints stay within their limits.
+
+    A controller that holds a joint at its limit deviates a little to either side: a measured
+    position may exceed the limit by 0.001 rad or 0.1 mm, a measured velocity by 0.1 %. Commands and
+    efforts have no tolerance. The gripper's joints and idle ones may sink into their stops by 2 %
+    of their range.
+    """
 
     judged = "always"
     check: Literal["within_limits"] = "within_limits"
-    position: Flag = Field(default=True, description="Measured positions.")
+    position: Flag = Field(default=True, description="Measured and commanded positions.")
     velocity: Flag = Field(default=True, description="Measured velocities.")
     acceleration: Flag = Field(default=False, description="Of the commanded trajectory.")
     effort: Flag = Field(default=True, description="Efforts of the motors.")

@@ -90,8 +90,13 @@ QUANTITIES: Mapping[str, tuple[Quantity, ...]] = {
         Quantity("stalled", "1", "as `stalled` says"),
     ),
     "within_limits": (
-        Quantity("position", JOINT, "between the joint's limits"),
-        Quantity("velocity", "rad/s or m/s", "at most the joint's limit"),
+        Quantity(
+            "position", JOINT, "between the joint's limits, with a tolerance of 0.001 rad or 0.1 mm"
+        ),
+        Quantity("commanded position", JOINT, "between the joint's limits, without a tolerance"),
+        Quantity(
+            "velocity", "rad/s or m/s", "at most the joint's limit, with a tolerance of 0.1 %"
+        ),
         Quantity("effort", "N m or N", "at most the joint's limit"),
         Quantity("acceleration", "rad/s^2 or m/s^2", "at most the joint's limit"),
     ),
