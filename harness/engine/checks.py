@@ -47,7 +47,9 @@ def check_expectation(
         return
     during = getattr(spec, "during", None)
     if during is not None and during not in scope.step_ids:
-        scope.problems.unknown((*loc, "during"), "step with the id", during, scope.step_ids)
+        scope.problems.unknown(
+            (*loc, "during"), "step with the id", during, scope.step_ids, needs=()
+        )
     if loc[0] == "expect" and len(loc) == 2:
         _check_step_is_named(spec, loc, scope)
     for key in ("predicate", "until"):

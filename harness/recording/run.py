@@ -221,10 +221,6 @@ def is_nested(inner: str, outer: str) -> bool:
     return inner.startswith((f"{outer}.", f"{outer}["))
 
 
-def _six_digits(number: float, more: int) -> str:
-    return f"{number:.{6 + more}g}"
-
-
 @dataclass(frozen=True)
 class Measure:
     """A measured quantity against its limit.

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import types
+from collections.abc import Iterable
 from typing import Annotated, Any, TypeGuard, Union, get_args, get_origin
 
+from pydantic import BeforeValidator
 from pydantic.fields import FieldInfo
 
 from harness.spec.base import SpecModel
@@ -36,6 +38,23 @@ def is_model(annotation: Any) -> TypeGuard[type[SpecModel]]:
 def spelling(name: str, field: FieldInfo) -> str:
     """A field's key in the file."""
     return field.alias or name
+
+
+def units_of(annotation: Any, metadata: Iterable[Any] = ()) -> tuple[str, ...]:
+    """SI units of a number that may carry one; none of anything else.
+
+    Args:
+        annotation: Of a field, or of a part of one.
+        metadata: Of the field, where pydantic has taken it out of the annotation.
+    """
+    members = [each for each in branches(annotation) if each is not type(None)]
+    if len(members) == 1:
+        return units_of(members[0])
+    while get_origin(annotation) is Annotated:
+        annotation, *more = get_args(annotation)
+        metadata = (*more, *metadata)
+    functions = (item.func for item in metadata if isinstance(item, BeforeValidator))
+    return next((func.units for func in functions if hasattr(func, "units")), ())  # type: ignore[union-attr]
 
 
 def keys_of(model: type[SpecModel]) -> dict[str, FieldInfo]:

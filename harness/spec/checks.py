@@ -26,6 +26,7 @@ from harness.spec.base import (
     Number,
     PositiveDuration,
     PositiveLength,
+    Share,
     SpecModel,
 )
 from harness.spec.formula_parser import readable
@@ -375,7 +376,7 @@ class Effort(CheckFields):
 
     judged = "always"
     check: Literal["effort"] = "effort"
-    max_fraction: Annotated[Number, Field(gt=0)] = Field(
+    max_fraction: Annotated[Share, Field(gt=0)] = Field(
         default=1.0, description="Of the worst joint; 1 is its limit."
     )
 
@@ -418,7 +419,7 @@ class FractionCheck(CheckFields):
     short = "at_least"
 
     check: Literal["fraction"] = "fraction"
-    at_least: Annotated[Number, Field(ge=0, le=1)] = Field(
+    at_least: Annotated[Share, Field(ge=0, le=1)] = Field(
         default=1.0, description="Share of the path."
     )
 
@@ -438,10 +439,10 @@ class HueRange(SpecModel):
         description="From, to on the colour circle: 0 is red, 120 deg green, 240 deg blue;"
         " `[340 deg, 20 deg]` goes through 0.",
     )
-    min_saturation: Annotated[Number, Field(ge=0, le=1)] = Field(
+    min_saturation: Annotated[Share, Field(ge=0, le=1)] = Field(
         default=0.4, description="0 is grey, 1 the pure colour."
     )
-    min_value: Annotated[Number, Field(ge=0, le=1)] = Field(
+    min_value: Annotated[Share, Field(ge=0, le=1)] = Field(
         default=0.15, description="0 is black, 1 the brightest."
     )
 

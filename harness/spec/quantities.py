@@ -68,7 +68,12 @@ QUANTITIES: Mapping[str, tuple[Quantity, ...]] = {
     "in_contact": (Quantity("contact force", "N", f"at least `min_force`, and {TOUCH}"),),
     "collision": (
         Quantity("contact force", "N", "more than 0 in a pair that nothing excuses; the largest"),
-        Quantity("clearance", "m", "where nothing collided: what was left, if it was recorded"),
+        Quantity(
+            "clearance",
+            "m",
+            "where nothing collided: what was left, if it was recorded; where bodies overlap at the"
+            " start: their depth, below 0",
+        ),
     ),
     "clearance": (
         Quantity("clearance", "m", "at least `at_least`"),
