@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -13,6 +13,31 @@ if TYPE_CHECKING:
     from harness.suite.api import ScenarioResult
 
 __version__ = "0.1.0"
+
+P = TypeVar("P")
+
+
+def register(plugin: P, *, kind: str = "", name: str = "") -> P:
+    """Make a plug-in known: a step, an expectation, a planner and so on; works as a decorator too.
+
+    An installed package need not call this for its steps and expectations: the entry-point group
+    `harness.plugins` names its modules, whose classes are registered.
+
+    Args:
+        plugin: A class that states its kind and name, such as a step, or anything else.
+        kind: One of `step`, `expectation`, `planner`, `ik_solver`, `controller`, `robot`,
+            `world_format`, `reporter`; needed where the plug-in does not state it.
+        name: Needed where the plug-in does not state it.
+
+    Returns:
+        The plug-in.
+
+    Raises:
+        PluginError: The kind or name is missing, or another package provides the name.
+    """
+    from harness.core import registry
+
+    return registry.register(plugin, kind=kind, name=name)
 
 
 def run(

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from harness.assertions.window import Window
-from harness.core.registry import Registry
+from harness.core.dispatch import Dispatch
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import Measure
 
@@ -54,7 +54,7 @@ class MarginSignal:
     progress: FloatArray | None = None
 
 
-signal: Registry[Window, MarginSignal] = Registry()
+signal: Dispatch[Window, MarginSignal] = Dispatch()
 """Handlers of the predicates; `harness.assertions.judge` imports all of them."""
 
 

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Literal
 
 from harness.bench.trial import Trial, try_plan
+from harness.cell.program import ProgramStep, step_seed
 from harness.core.errors import HarnessError
 from harness.core.types import FloatArray
 from harness.engine.dry_run import DryPlanner, DrySimulator
 from harness.engine.execute import execute_program
-from harness.engine.program import ProgramStep, step_seed
 from harness.planning.scene import CoalScene
 from harness.ports import AnyGoal, Goal, MotionPlan, PathConstraints, PlanningOptions
 from harness.recording.run import StepRecord
@@ -131,7 +131,7 @@ class _BenchPlanner(DryPlanner):
         # the goal comes first, so that an unreachable one counts against no planner
         jump = super().plan(group, start, goal, options, constraints)
         step = self._step
-        if step is None or step.spec.do != "move_to" or constraints is not None:
+        if step is None or step.spec.verb != "move_to" or constraints is not None:
             return jump
         trials: list[Trial] = []
         for planner, seed in product(self._planners, self._seeds):

@@ -7,9 +7,9 @@ import inspect
 from collections.abc import Callable, Iterable
 from typing import Any, get_args
 
-from harness.cli.output import guarded, say
+from harness.cli.output import complain, guarded, say
 
-Rows = Iterable[tuple[str, str]]
+Rows = Iterable[tuple[str, ...]]
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -19,9 +19,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run(rows: Rows) -> int:
     table = list(rows)
-    width = max((len(name) for name, _ in table), default=0)
-    for name, text in table:
-        say(f"{name:<{width}}  {text}".rstrip())
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    for row in table:
+        cells = (f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True))
+        say("  ".join(cells).rstrip())
     return 0
 
 
@@ -47,12 +48,16 @@ def _scenarios() -> Rows:
 
 
 def _steps() -> Rows:
-    import harness.engine.executors
-    from harness.engine.registry import is_available
-    from harness.spec.steps import AnyStep
+    from harness.core.registry import broken_plugins
+    from harness.spec.reference import sentence
+    from harness.spec.step import STEPS
 
-    del harness
-    return [_row(model, "do", is_available(model)) for model in get_args(AnyStep)]
+    for broken in broken_plugins():
+        complain(f"harness: {broken}")
+    return [
+        (verb, STEPS.package_of(verb), sentence(model).split("\n")[0])
+        for verb, model in STEPS.items()
+    ]
 
 
 def _expectations() -> Rows:

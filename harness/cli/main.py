@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 EPILOG = """exit codes: 0 passed, 1 failed, 2 invalid file or wrong usage, 3 error,
 130 interrupted (Ctrl-C, SIGTERM)"""
+USAGE_EXIT_CODE = 2
 ERROR_EXIT_CODE = 3
 INTERRUPTED_EXIT_CODE = 130
 BROKEN_PIPE_EXIT_CODE = 141  # as a shell shows SIGPIPE
@@ -65,6 +66,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if parsed.module == "run":
         gc.enable()
     try:
+        if not _load_plugins(getattr(parsed, "plugins", ())):
+            return USAGE_EXIT_CODE
         command = importlib.import_module(f"harness.cli.{parsed.module}")
         with _package_path(getattr(parsed, "package_folders", ())):
             code: int = command.run(parsed)
@@ -146,6 +149,22 @@ def _package_path(folders: Sequence[Path]) -> AbstractContextManager[None]:
     from harness.robot.packages import searched_too
 
     return searched_too(folders)
+
+
+def _load_plugins(modules: Sequence[str]) -> bool:
+    """Load the modules of `--plugin`; what is wrong with one is printed."""
+    if not modules:
+        return True
+    from harness.cli.output import complain
+    from harness.core.registry import PluginError, load_plugin
+
+    try:
+        for module in modules:
+            load_plugin(module)
+    except PluginError as error:
+        complain(f"harness: {error}")
+        return False
+    return True
 
 
 def _parser() -> argparse.ArgumentParser:

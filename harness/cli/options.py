@@ -148,6 +148,7 @@ def for_bench(bench: argparse.ArgumentParser) -> None:
 def for_list(listing: argparse.ArgumentParser) -> None:
     """Of `harness list`."""
     listing.add_argument("kind", choices=LISTS)
+    _plugin_option(listing)
 
 
 def for_view(view: argparse.ArgumentParser) -> None:
@@ -163,6 +164,7 @@ def for_judge(judge: argparse.ArgumentParser) -> None:
     judge.add_argument("folder", metavar="RUN", help="the run's report folder")
     judge.add_argument("--with", metavar="FILE", dest="with_file",
                        help="by the expectations of this scenario")  # fmt: skip
+    _plugin_option(judge)
     judge.add_argument("--contacts", action="store_true",
                        help="list who touched whom: first time, duration, peak force")  # fmt: skip
     judge.add_argument("--json", action="store_true", help="one JSON document on stdout")
@@ -171,6 +173,7 @@ def for_judge(judge: argparse.ArgumentParser) -> None:
 def for_grade(grade: argparse.ArgumentParser) -> None:
     """Of `harness grade`."""
     grade.add_argument("scenario", metavar="SCENARIO", help="a scenario file, or a bundled name")
+    _plugin_option(grade)
     grade.add_argument("bag", metavar="BAG", help="a rosbag2 folder, an .mcap or a .db3 file")
     grade.add_argument("--joint-states", metavar="TOPIC", default="/joint_states",
                        help="where the joints are (default: /joint_states)")  # fmt: skip
@@ -282,6 +285,7 @@ def for_robot(robot: argparse.ArgumentParser) -> None:
 def for_schema(schema: argparse.ArgumentParser) -> None:
     """Of `harness schema`."""
     schema.add_argument("--write", metavar="FILE", help="write it to a file instead")
+    _plugin_option(schema)
 
 
 def _file_options(command: argparse.ArgumentParser) -> None:
@@ -307,6 +311,19 @@ def _paths(command: argparse.ArgumentParser) -> None:
         help="change a value of the file: --set robot.model=ur5e, --set objects.cube.mass=1",
     )
     _package_option(command)
+    _plugin_option(command)
+
+
+def _plugin_option(command: argparse.ArgumentParser) -> None:
+    """Of every command that reads scenario files."""
+    command.add_argument(
+        "--plugin",
+        metavar="MODULE",
+        dest="plugins",
+        action="append",
+        default=[],
+        help="load the plug-ins of a Python module (its name, or a .py file)",
+    )
 
 
 def _package_option(command: argparse.ArgumentParser) -> None:

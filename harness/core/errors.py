@@ -105,7 +105,10 @@ class Problem:
         if len(beside) <= EXCERPT_WIDTH:
             below = [beside]
         else:
-            below = [caret, *textwrap.wrap(hint, EXCERPT_WIDTH, break_long_words=False)]
+            lines = textwrap.wrap(
+                hint, EXCERPT_WIDTH, break_long_words=False, break_on_hyphens=False
+            )
+            below = [caret, *lines]
         return [f"{self.line:>5} | {_shown(line)}", *(margin + each for each in below)]
 
 

@@ -1,37 +1,316 @@
-"""One handler per spec model, found by the model's type."""
+"""Named plug-ins of each kind, and the package that each comes from.
+
+Built-ins, installed packages and single files register through the same function. An installed
+package names its modules (or classes) in the entry-point group `harness.plugins`:
+
+    [project.entry-points."harness.plugins"]
+    remark = "my_package.remark"
+
+The built-ins of a kind are the modules of one package, found by their names: a built-in is imported
+when its name is first looked up, installed packages when a name is not a built-in's.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import difflib
+import importlib
+import importlib.util
+import inspect
+import os
+import pkgutil
+import sys
+from collections.abc import Generator, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
 from typing import Any, Generic, TypeVar
 
-M = TypeVar("M")
-C = TypeVar("C")
-R = TypeVar("R")
+from harness.core.errors import Problem, SpecError
+
+P = TypeVar("P")
+
+ENTRY_POINTS = "harness.plugins"
+OWN_PACKAGE = "armharness"
+VARIABLE = "HARNESS_PLUGINS"
+"""Environment variable: modules that `--plugin` loads, here and in processes that start later."""
+
+BUILT_IN = {
+    "step": "harness.steps",
+    "expectation": "harness.expectations",
+    "planner": "",
+    "ik_solver": "",
+    "controller": "",
+    "robot": "",
+    "world_format": "",
+    "reporter": "",
+}
+"""Every kind of plug-in, and the package whose modules are the built-in ones."""
+
+_package: ContextVar[str] = ContextVar("package", default="")
 
 
-class Registry(Generic[C, R]):
-    """Dispatches a spec model to the one function that carries it out."""
+class PluginError(SpecError):
+    """A plug-in cannot be used (exit code 2).
 
-    def __init__(self) -> None:
-        self._handlers: dict[type, Callable[[Any, C], R]] = {}
+    Attributes:
+        source: The package or module that the plug-in comes from.
+        reason: What is wrong with it.
+    """
 
-    def handles(self, model: type[M]) -> Callable[[Callable[[M, C], R]], Callable[[M, C], R]]:
-        """Register the decorated function for a model; a second one is an error of the program."""
+    def __init__(self, source: str, reason: str, hint: str = "") -> None:
+        self.source, self.reason = source, reason
+        super().__init__([Problem(f"plug-in {source}", 0, 0, reason, hint)])
 
-        def register(handler: Callable[[M, C], R]) -> Callable[[M, C], R]:
-            if model in self._handlers:
-                raise ValueError(f"{model.__name__} already has a handler")
-            self._handlers[model] = handler
-            return handler
 
-        return register
+@dataclass(frozen=True)
+class _Plugin(Generic[P]):
+    value: P
+    package: str
 
-    def __contains__(self, model: type) -> bool:
-        return model in self._handlers
 
-    def __iter__(self) -> Iterator[type]:
-        return iter(self._handlers)
+class Registry(Mapping[str, P]):
+    """The plug-ins of one kind by their names: the built-in ones first, in alphabetical order."""
 
-    def __call__(self, spec: object, context: C) -> R:
-        return self._handlers[type(spec)](spec, context)
+    def __init__(self, kind: str, built_in: str = "") -> None:
+        self.kind = kind
+        self._built_in = built_in
+        self._modules: dict[str, str] | None = None
+        self._plugins: dict[str, _Plugin[P]] = {}
+
+    def add(self, name: str, plugin: P, package: str) -> None:
+        """Register a plug-in under its name; the same one may be added again.
+
+        Raises:
+            PluginError: Another package provides this name.
+        """
+        known = self._plugins.get(name)
+        if known is not None and known.value is plugin:
+            return
+        owner = known.package if known else OWN_PACKAGE if name in self._built_in_modules else ""
+        if known or owner not in ("", package):
+            both = f"two packages provide the {self._what} `{name}`: `{owner}` and `{package}`"
+            twice = f"`{package}` provides the {self._what} `{name}` twice"
+            raise PluginError(package, twice if owner == package else both, "rename one of them")
+        self._plugins[name] = _Plugin(plugin, package)
+
+    def package_of(self, name: str) -> str:
+        """The package (distribution) or module that a plug-in comes from."""
+        self[name]
+        return self._plugins[name].package
+
+    def find(self, name: str) -> P:
+        """The plug-in of this name.
+
+        Raises:
+            LookupError: There is none; the message has the nearest name, then all names.
+        """
+        if name in self:
+            return self[name]
+        names = list(self)
+        near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+        guess = f"did you mean '{near[0]}'? " if near else ""
+        message = f"there is no {self._what} '{name}'; {guess}known: "
+        raise LookupError("; ".join([message + ", ".join(names), *broken_plugins()]))
+
+    def __getitem__(self, name: str) -> P:
+        if name not in self._built_in_modules:
+            load_installed()
+        elif name not in self._plugins:
+            with _loading(OWN_PACKAGE):
+                register_module(importlib.import_module(self._built_in_modules[name]))
+        return self._plugins[name].value
+
+    def __contains__(self, name: object) -> bool:
+        if name in self._built_in_modules:
+            return True
+        load_installed()
+        return name in self._plugins
+
+    def __iter__(self) -> Iterator[str]:
+        load_installed()
+        others = sorted(name for name in self._plugins if name not in self._built_in_modules)
+        return iter([*self._built_in_modules, *others])
+
+    def __len__(self) -> int:
+        return len(list(iter(self)))
+
+    @property
+    def _what(self) -> str:
+        return self.kind.replace("_", " ")
+
+    @property
+    def _built_in_modules(self) -> dict[str, str]:
+        """Module of each built-in by its name; a name that is a keyword has an underscore."""
+        if self._modules is None:
+            spec = importlib.util.find_spec(self._built_in) if self._built_in else None
+            folders = spec.submodule_search_locations if spec else None
+            self._modules = {
+                module.name.rstrip("_"): f"{self._built_in}.{module.name}"
+                for module in sorted(pkgutil.iter_modules(folders or ()), key=lambda m: m.name)
+                if not module.ispkg and not module.name.startswith("_")
+            }
+        return self._modules
+
+
+_registries: dict[str, Registry[Any]] = {
+    kind: Registry[Any](kind, package) for kind, package in BUILT_IN.items()
+}
+_broken: dict[str, str] = {}
+_is_loaded = False
+
+
+def registry(kind: str) -> Registry[Any]:
+    """The registry of a kind of plug-in."""
+    return _registries[kind]
+
+
+def register(plugin: P, *, kind: str = "", name: str = "") -> P:
+    """Register a plug-in; its package is the one that is being loaded, else its module's.
+
+    Args:
+        plugin: A class that states its kind and name, such as a step, or anything else.
+        kind: One of the keys of `BUILT_IN`; needed where the plug-in does not state it.
+        name: Needed where the plug-in does not state it.
+
+    Returns:
+        The plug-in, so that this function is a decorator too.
+
+    Raises:
+        PluginError: The kind or name is missing, or another package provides the name.
+    """
+    module = str(getattr(plugin, "__module__", "")).partition(".")[0]
+    package = _package.get() or (OWN_PACKAGE if module == "harness" else module)
+    kind = kind or getattr(plugin, "plugin_kind", "")
+    if kind not in _registries:
+        kinds = ", ".join(_registries)
+        raise PluginError(package, f"{plugin!r} has no known `plugin_kind`", f"kinds: {kinds}")
+    name = name or _stated_name(plugin)
+    if not name:
+        raise PluginError(package, f"{plugin!r} has no name to be registered under")
+    _registries[kind].add(name, plugin, package)
+    return plugin
+
+
+def register_module(module: ModuleType) -> None:
+    """Register every plug-in class that a module defines."""
+    for value in list(vars(module).values()):
+        is_defined_here = inspect.isclass(value) and value.__module__ == module.__name__
+        if is_defined_here and hasattr(value, "plugin_kind") and _stated_name(value):
+            register(value)
+
+
+def load_plugin(module: str) -> None:
+    """Load a module of plug-ins, by its name or as the path of a .py file, and keep it loaded.
+
+    Processes that are started later load it too.
+
+    Raises:
+        PluginError: It cannot be imported, or another package provides one of its names.
+    """
+    path = Path(module)
+    if path.suffix == ".py":
+        module = str(path.resolve())
+    _load_module(module)
+    listed = _listed_plugins()
+    if module not in listed:
+        os.environ[VARIABLE] = os.pathsep.join([*listed, module])
+
+
+def load_installed() -> None:
+    """Load the modules of `--plugin` and of the installed packages, once.
+
+    A package that cannot be imported is left out; `broken_plugins` says why.
+
+    Raises:
+        PluginError: Two packages provide the same name, or a module of `--plugin` cannot be loaded.
+    """
+    global _is_loaded
+    if _is_loaded:
+        return
+    _is_loaded = True  # at once, since a plug-in may look up names while it is imported
+    try:
+        for module in _listed_plugins():
+            _load_module(module)
+        _load_entry_points()
+    except PluginError:
+        _is_loaded = False
+        raise
+
+
+def _load_entry_points() -> None:
+    from importlib.metadata import entry_points  # takes time
+
+    for entry in sorted(entry_points(group=ENTRY_POINTS), key=lambda each: each.value):
+        package = entry.dist.name if entry.dist else entry.module
+        try:
+            with _loading(package):
+                loaded = entry.load()
+                if isinstance(loaded, ModuleType):
+                    register_module(loaded)
+                else:
+                    register(loaded)
+        except PluginError:
+            raise
+        except Exception as error:  # noqa: BLE001 - a foreign package may raise anything
+            _broken[package] = f"{type(error).__name__}: {error}"
+
+
+def broken_plugins() -> list[str]:
+    """A sentence for each installed package whose plug-ins cannot be loaded."""
+    load_installed()
+    return [
+        f"the plug-ins of the package `{package}` cannot be loaded: {reason}"
+        for package, reason in _broken.items()
+    ]
+
+
+def _listed_plugins() -> list[str]:
+    return [each for each in os.environ.get(VARIABLE, "").split(os.pathsep) if each]
+
+
+def _load_module(name: str) -> None:
+    path = Path(name)
+    try:
+        with _loading(path.stem if path.suffix == ".py" else name):
+            register_module(
+                _module_of_file(path) if path.suffix == ".py" else importlib.import_module(name)
+            )
+    except PluginError:
+        raise
+    except Exception as error:
+        raise PluginError(name, f"{type(error).__name__}: {error}") from error
+
+
+def _module_of_file(path: Path) -> ModuleType:
+    known = sys.modules.get(path.stem)
+    if known is not None and getattr(known, "__file__", None) == str(path):
+        return known
+    if known is not None:
+        raise ImportError(f"there is another module `{path.stem}`; rename the file")
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    if spec is None or spec.loader is None:
+        raise ImportError(f"{path} is not a Python file")
+    module = sys.modules[path.stem] = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[path.stem]
+        raise
+    return module
+
+
+def _stated_name(plugin: object) -> str:
+    name = getattr(plugin, "plugin_name", None)
+    return str(name()) if callable(name) else ""
+
+
+@contextmanager
+def _loading(package: str) -> Generator[None]:
+    """Attribute what is registered meanwhile to a package."""
+    token = _package.set(package)
+    try:
+        yield
+    finally:
+        _package.reset(token)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
-from harness.engine.cell import Cell
 
 
 def advice(failure: StepFailed, cell: Cell) -> str:

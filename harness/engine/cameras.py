@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from harness.cell.scope import Problems, Scope
 from harness.core.camera import Camera
-from harness.engine.scope import Problems, Scope
 from harness.spec.cameras import CameraSpec, VideoSpec
 
 

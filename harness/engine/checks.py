@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pydantic import BaseModel
 
-from harness.engine.program import Loc
-from harness.engine.scope import Scope
+from harness.cell.scope import Scope
 from harness.engine.summary import words
 from harness.spec.checks import (
     AnyExpectation,
@@ -28,6 +27,7 @@ from harness.spec.checks import (
 from harness.spec.formula import SIGNALS, signals_of
 from harness.spec.formula_parser import parse_formula
 from harness.spec.poses import Pose
+from harness.spec.source import Loc
 
 SPECIAL = ("robot", "gripper", "any")
 GRIPPER_CHECKS = ("grasped", "released", "lifted", "gripper")

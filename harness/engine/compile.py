@@ -6,31 +6,25 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from harness.cell.program import Program, ProgramExpectation, ProgramStep, step_seed
+from harness.cell.scope import At, Part, Problems, Scope
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
-from harness.engine import executors as executors
 from harness.engine.cameras import all_cameras, check_cameras, check_videos
 from harness.engine.checks import check_expectation
 from harness.engine.objects import ObjectUnusableError, resolve_object, resolve_world
 from harness.engine.options import CheckPlanner, check_planning, merged_options
-from harness.engine.program import Loc, Program, ProgramExpectation, ProgramStep, step_seed
-from harness.engine.registry import execute
-from harness.engine.scope import Part, Problems, Scope
-from harness.engine.steps import check_step
-from harness.engine.summary import summarize, words
 from harness.ports import Kinematics, PlanningOptions
 from harness.robot.description import RobotDescription
 from harness.spec.checks import AnyExpectation
-from harness.spec.nesting import blocks
 from harness.spec.planning import Planning
 from harness.spec.scenario import Scenario
-from harness.spec.source import SourceMap
-from harness.spec.steps import AddObject, AnyStep, AttachObject
+from harness.spec.source import Loc, SourceMap
+from harness.spec.step import Step
 from harness.spec.world import ObjectSpec, WorldSpec
 
-NOT_YET = "not yet available"
 MOST_STEPS = 10_000  # a file of more is a mistake, and would fill the memory
 MOST_OBJECTS = 1000  # of all kinds; 300 that move already take 2 s of wall time for each simulated
 
@@ -249,33 +243,30 @@ class _Compiler:
     # -- steps --------------------------------------------------------------------------------
 
     def _steps(
-        self, specs: Sequence[AnyStep], loc: Loc, path: str, suffix: str = ""
+        self, specs: Sequence[Step], loc: Loc, path: str, suffix: str = ""
     ) -> tuple[ProgramStep, ...]:
         return tuple(
             self._step(spec, (*loc, index), f"{path}[{index}]", suffix)
             for index, spec in enumerate(specs)
         )
 
-    def _step(self, spec: AnyStep, loc: Loc, path: str, suffix: str) -> ProgramStep:
+    def _step(self, spec: Step, loc: Loc, path: str, suffix: str) -> ProgramStep:
         sources = self.sources
         self.step_locs[path] = loc
-        if type(spec) not in execute:
-            self.problems.add(loc, f"the step `{spec.do}` is {NOT_YET}", _available_steps())
         step_id = f"{spec.id}{suffix}" if spec.id else path
         if not self.scope.claim_step_id(step_id):
             self.problems.add((*loc, "id"), f"another step has the id '{step_id}'", needs=())
-        if isinstance(spec, AddObject):
-            for index, obj in enumerate(spec.objects):
-                self._later_object(obj, (*loc, "objects", index))
-        if isinstance(spec, AttachObject) and isinstance(spec.object, ObjectSpec):
-            self._later_object(spec.object, (*loc, "object"))
-        check_step(spec, loc, self.scope)
+        for keys, obj in spec.new_objects():
+            self._later_object(obj, (*loc, *keys))
+        if spec.group is not None:
+            self.scope.check_group(spec.group, (*loc, "group"))
+        spec.check(At(self.scope, loc))
         line, _ = sources.lines.line_of(loc)
         step = ProgramStep(
             id=step_id,
             path=path,
             spec=spec,
-            summary=summarize(spec),
+            summary=spec.title,
             line=line,
             options=self._options(spec.planning, loc, step_seed(sources.scenario.seed, path)),
             children=self._children(spec, loc, path, suffix),
@@ -284,9 +275,9 @@ class _Compiler:
             self._expectation(expectation, (*loc, "expect", index), step_id)
         return step
 
-    def _children(self, spec: AnyStep, loc: Loc, path: str, suffix: str) -> tuple[ProgramStep, ...]:
+    def _children(self, spec: Step, loc: Loc, path: str, suffix: str) -> tuple[ProgramStep, ...]:
         children: list[ProgramStep] = []
-        for block in blocks(spec, loc, path):
+        for block in spec.blocks(loc, path):
             if len(self.step_locs) > MOST_STEPS:
                 self.problems.add(
                     loc,
@@ -321,10 +312,6 @@ class _Compiler:
         self.pending.append((spec, loc))
         line, _ = self.sources.lines.line_of(loc)
         self.expectations.append(ProgramExpectation(spec, step, line))
-
-
-def _available_steps() -> str:
-    return "available: " + ", ".join(words(execute, "do"))
 
 
 def _without_pose(spec: ObjectSpec) -> ObjectSpec:

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from harness.cell.program import Program, ProgramStep
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.engine.program import Program, ProgramStep
 from harness.ports import (
     AnyGoal,
     ArcPoint,

@@ -6,12 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
+from harness.cell.cell import Belief, Cell, Presence, StepNotes
+from harness.cell.program import Program, ProgramStep
 from harness.core.errors import StepFailed
-from harness.engine import executors as executors
 from harness.engine.advice import advice
-from harness.engine.cell import Belief, Cell, Presence, StepNotes
-from harness.engine.program import Program, ProgramStep
-from harness.engine.registry import execute
 from harness.ports import Kinematics, MotionPlanner, PlanningScene, Simulator
 from harness.recording.run import AttachmentRecord, ObjectRecord, StepRecord, StepStatus
 
@@ -96,7 +94,7 @@ class _Runner:
     def _attempt(self, step: ProgramStep) -> StepFailed | _RunEndedError | None:
         self.depth += 1
         try:
-            execute(step.spec, self.cell)
+            step.spec.execute(self.cell)
         except (StepFailed, _RunEndedError) as failure:
             return failure
         finally:
@@ -188,7 +186,7 @@ def _not_reached(step: ProgramStep) -> StepRecord:
     return StepRecord(
         id=step.id,
         path=step.path,
-        verb=step.spec.do,
+        verb=step.spec.verb,
         summary=step.summary,
         line=step.line,
         status="not_reached",

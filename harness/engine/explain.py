@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from harness.cell.program import Program
 from harness.core.printable import printable
 from harness.core.spatial import SE3, xyzw_from_wxyz
 from harness.core.world import World
-from harness.engine.program import Program
 from harness.ports import PlanningOptions
 from harness.recording.run import StepRecord
 from harness.robot.description import RobotDescription

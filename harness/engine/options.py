@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from harness.engine.program import Loc
-from harness.engine.scope import Problems
+from harness.cell.scope import Problems
 from harness.ports import PlanningOptions
 from harness.spec.planning import Planning
+from harness.spec.source import Loc
 
 CheckPlanner = Callable[[str, Mapping[str, float]], str]
 """Normalises a planner's name; ValueError, with what there is, for it or its parameters."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Literal
 
+from harness.cell.program import Program, ProgramStep
 from harness.core.spatial import SE3
 from harness.engine.dry_run import DryPlanner, DrySimulator
 from harness.engine.execute import execute_program
-from harness.engine.program import Program, ProgramStep
 from harness.ports import Kinematics, MotionPlanner, PlanningScene, Touch
 from harness.recording.run import StepRecord
 

@@ -12,10 +12,12 @@ from harness.core.printable import printable, terminal_text
 from harness.suite.header import Header, read_header
 
 PYTEST_MARKS = frozenset(
-    "skip skipif xfail parametrize parameterize parametrise parameterise usefixtures"
-    " filterwarnings tryfirst trylast".split()
+    {
+        *("skip", "skipif", "xfail", "usefixtures", "filterwarnings", "tryfirst", "trylast"),
+        *("parametrize", "parameterize", "parametrise", "parameterise"),
+    }
 )
-"""Marks that change the meaning of a verdict, or that pytest refuses. No tag becomes one of them."""
+"""Marks that change the meaning of a verdict, or that pytest refuses; no tag becomes one."""
 
 
 class ScenarioFile(pytest.File):

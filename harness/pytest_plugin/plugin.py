@@ -46,6 +46,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         default=False,
         help="run scenarios inside the pytest process, so that a debugger can attach",
     )
+    group.addoption(
+        "--harness-plugin",
+        metavar="MODULE",
+        action="append",
+        default=[],
+        help="load the plug-ins of a Python module (its name, or a .py file)",
+    )
+    parser.addini("harness_plugins", "modules whose plug-ins scenarios may use", type="args")
     parser.addini(
         "harness_files",
         "file name patterns of scenario files; an empty value collects none",
@@ -61,9 +69,22 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Gather results where they are told to a person: not in xdist's workers."""
+    """Load plug-ins; gather results where a person sees them, which is not in xdist's workers."""
+    modules = [*config.getini("harness_plugins"), *(config.getoption("--harness-plugin") or [])]
+    if modules:
+        _load_plugins(modules)
     if not hasattr(config, "workerinput"):
         config.pluginmanager.register(SessionResults(config), "armharness-session")
+
+
+def _load_plugins(modules: list[str]) -> None:
+    from harness.core.registry import PluginError, load_plugin
+
+    try:
+        for module in modules:
+            load_plugin(module)
+    except PluginError as error:
+        raise pytest.UsageError(str(error)) from error
 
 
 @pytest.hookimpl(wrapper=True)

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from harness.cell.cell import Belief
 from harness.core.pose_arrays import compose
 from harness.core.types import FloatArray
-from harness.engine.cell import Belief
 from harness.ports import Kinematics
 
 

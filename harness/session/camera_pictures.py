@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from harness.assertions.looks import looks_of_expectations
 from harness.assertions.placed import PlacedExpectation
+from harness.cell.program import Program
 from harness.core.activity import Activity, unobserved
-from harness.engine.program import Program
 from harness.recording.looks import looks_of_steps, merged
 from harness.recording.run import Run
 

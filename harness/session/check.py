@@ -7,15 +7,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from harness.assertions.wording import describe
+from harness.cell.program import Program
 from harness.core.errors import Problem, SpecError
 from harness.engine.explain import explain
 from harness.engine.predict import predict, predict_with_poses, touches_at_start, unexpected
-from harness.engine.program import Loc, Program
 from harness.ports import Touch
 from harness.reporting.explanation import explanation_lines
 from harness.session.physics import overlap_note, start_physics
 from harness.session.prepare import prepare
 from harness.spec.load import LoadedScenario
+from harness.spec.source import Loc
 from harness.spec.varied_paths import as_json, choices
 
 MOST_CHOICES = 20

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from harness.cell.program import Program
 from harness.core.errors import Problem
-from harness.engine.program import Program
 from harness.ports import Touch
 from harness.recording.run import Finding, StepRecord
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from harness.assertions.judge import EXECUTED
+from harness.cell.program import Program
+from harness.cell.scope import Part
 from harness.core.errors import Problem, RobotError, SpecError
 from harness.core.geometry import Mesh
 from harness.engine.compile import Sources, compile_scenario
-from harness.engine.program import Loc, Program
-from harness.engine.scope import Part
 from harness.importers.imported import ImportedWorld
 from harness.planning.backend import make_planning
 from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
@@ -33,6 +33,7 @@ from harness.spec.load import (
 )
 from harness.spec.mending import STAND_IN_ROBOT
 from harness.spec.scenario import RobotSpec
+from harness.spec.source import Loc
 
 ROBOT: frozenset[Part] = frozenset({"robot"})
 WORLD: frozenset[Part] = frozenset({"world"})

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.metadata import version
 
+from harness.cell.program import Program
 from harness.engine.execute import Execution
-from harness.engine.program import Program
 from harness.ports import Kinematics, Touch
 from harness.recording.run import (
     Finding,

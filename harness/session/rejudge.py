@@ -12,7 +12,7 @@ from harness.assertions.wording import describe
 from harness.recording.run import Verdict
 from harness.recording.store import RESOLVED, StoredRun, read_run
 from harness.spec.load import LoadedScenario, load_scenario
-from harness.spec.nesting import Block, blocks
+from harness.spec.step import Block
 
 
 def judge_run(run_dir: Path, with_file: Path | None = None) -> tuple[Verdict, ...]:
@@ -67,7 +67,7 @@ def expectations_of(loaded: LoadedScenario) -> list[PlacedExpectation]:
     def visit(block: Block) -> None:
         for index, step in enumerate(block.steps):
             loc, path = (*block.loc, index), f"{block.path}[{index}]"
-            for inner in blocks(step, loc, path):
+            for inner in step.blocks(loc, path):
                 visit(replace(inner, suffix=block.suffix + inner.suffix))
             step_id = f"{step.id}{block.suffix}" if step.id else path
             for number, spec in enumerate(step.expect):

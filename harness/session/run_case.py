@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Literal
 from harness.assertions.judge import judge
 from harness.assertions.observations import observations
 from harness.assertions.placed import PlacedExpectation
+from harness.cell.program import Program, ProgramStep
 from harness.core.activity import Activity
 from harness.core.errors import HarnessError, Problem, SpecError
 from harness.core.types import FloatArray
 from harness.engine.execute import Execution, execute_program
-from harness.engine.program import Program, ProgramStep
 from harness.ports import Touch
 from harness.recording.digest import digest
 from harness.recording.run import Outcome, Run, Signals, StepRecord, Verdict

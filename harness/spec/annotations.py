@@ -62,5 +62,5 @@ def keys_of(model: type[SpecModel]) -> dict[str, FieldInfo]:
     return {
         spelling(name, field): field
         for name, field in model.model_fields.items()
-        if name not in ("do", "check")
+        if name != "check"
     }

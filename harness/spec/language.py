@@ -1,4 +1,4 @@
-"""The words of the file: which verb, predicate and temporal word is which model."""
+"""The words of the file: which predicate and temporal word is which model."""
 
 from __future__ import annotations
 
@@ -16,20 +16,19 @@ from harness.spec.checks import (
     TemporalFields,
     Until,
 )
-from harness.spec.steps import AnyStep, StepFields
+from harness.spec.step import Step
 
 
 def _by_tag(models: Iterable[Any], tag: str) -> dict[str, type[SpecModel]]:
     return {model.model_fields[tag].default: model for model in models}
 
 
-VERBS = _by_tag(get_args(AnyStep), "do")
 PREDICATES = _by_tag(get_args(AnyPredicate), "check")
 TEMPORAL = _by_tag((Always, Never, Eventually), "check")
 EXPECTATIONS = _by_tag((each for each in get_args(AnyExpectation) if each is not Until), "check")
 
-BESIDE_VERB = tuple(keys_of(StepFields))
-"""Reserved words: they stand beside a verb, never inside its content."""
+BESIDE_VERB = tuple(keys_of(Step))
+"""Reserved keys: they stand next to a verb, never inside its content."""
 
 BESIDE_CHECK = tuple(keys_of(TemporalFields))
 """Words that stand beside a predicate or a temporal word (or inside, as in the models)."""

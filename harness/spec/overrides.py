@@ -9,13 +9,13 @@ from harness.core.errors import Problem, SpecError
 from harness.spec.annotations import bare, branches, is_model, keys_of
 from harness.spec.base import Rpy, SpecModel
 from harness.spec.checks import Expectation, Predicate
-from harness.spec.language import BESIDE_CHECK, EXPECTATIONS, TEMPORAL, UNTIL, VERBS
+from harness.spec.language import BESIDE_CHECK, EXPECTATIONS, TEMPORAL, UNTIL
 from harness.spec.mistakes import describe, did_you_mean
 from harness.spec.params import PARAMS
 from harness.spec.scenario import RobotSpec, Scenario
 from harness.spec.short_forms import expanded
 from harness.spec.source import Entry, Located, Place, Source, located
-from harness.spec.steps import Step, StepFields
+from harness.spec.step import STEPS, Step
 from harness.spec.written import written
 from harness.spec.yaml_file import parse_value
 
@@ -157,7 +157,7 @@ def _kind(item: Located, annotation: Any) -> Any:
     """The annotation without unions: the branch that a value of this shape belongs to."""
     annotation = bare(annotation)
     members = [bare(each) for each in branches(annotation)]
-    if not members or annotation in (bare(Step), bare(Expectation), bare(Predicate)):
+    if not members or annotation in (Step, bare(Expectation), bare(Predicate)):
         return annotation
     models = [each for each in members if is_model(each)]
     lists = [each for each in members if get_origin(each) is tuple]
@@ -179,10 +179,8 @@ def _alias(part: str, item: Located, kind: Any) -> str:
 
 def _field(kind: Any, key: str) -> tuple[Any, Any]:
     """Annotation and default of a key, as plain data; None where the language has none."""
-    if kind == bare(Step):
-        if key in VERBS:
-            return VERBS[key], {}
-        kind = StepFields
+    if kind is Step and key in STEPS:
+        return STEPS[key], {}
     if kind in (bare(Expectation), bare(Predicate)):
         if key in TEMPORAL or key == UNTIL:
             return Predicate, None

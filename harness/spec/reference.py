@@ -11,11 +11,12 @@ from pydantic import BeforeValidator
 from pydantic.fields import FieldInfo
 
 from harness.core.errors import ErrorCode
-from harness.spec.annotations import bare, is_model, keys_of
+from harness.core.registry import OWN_PACKAGE
+from harness.spec.annotations import is_model, keys_of
 from harness.spec.base import SpecModel
-from harness.spec.language import BESIDE_VERB, VERBS
+from harness.spec.language import BESIDE_VERB
 from harness.spec.scenario import Scenario
-from harness.spec.steps import Step, StepFields
+from harness.spec.step import STEPS, Step
 from harness.spec.units import MEANINGS, SHARE
 from harness.spec.world import WorldSpec
 
@@ -26,7 +27,7 @@ KINDS: dict[Any, str] = {str: "text", float: "number", int: "whole number", bool
 VALUES = """Numbers are SI and radians; where a unit stands in brackets, text with another one may
 be written: `5 cm`, `90 deg`, `200 ms`. `${name}` stands for a parameter of the file. Only keys
 marked as required must be given."""
-STEPS_HEAD = """A step is one verb with its content, and what stands beside it:
+STEPS_HEAD = """A step is one verb with its content, and the keys next to it:
 
 ```yaml
 - move_to:
@@ -44,19 +45,17 @@ def scenario_reference() -> str:
     return "\n\n".join([*parts, *part_sections((Scenario, WorldSpec))]) + "\n"
 
 
-def steps_reference(available: Collection[type] | None = None) -> str:
-    """Every verb: what it does, its keys with type, unit and default.
-
-    Args:
-        available: Models of the steps that can be executed; None leaves that out.
-    """
-    beside = table((key, keys_of(StepFields)[key]) for key in BESIDE_VERB)
-    parts = ["# Steps", STEPS_HEAD, VALUES, contents(VERBS, available)]
-    parts += ["Beside every verb may stand:", beside]
+def steps_reference() -> str:
+    """Every verb: what it does, its keys with type, unit and default."""
+    next_to = table((key, keys_of(Step)[key]) for key in BESIDE_VERB)
+    parts = ["# Steps", STEPS_HEAD, VALUES, contents(STEPS, None)]
+    parts += ["These keys may stand next to every verb:", next_to]
     parts.append(f"Error codes are {', '.join(f'`{code}`' for code in get_args(ErrorCode))}.")
-    for verb, model in VERBS.items():
-        parts += section(verb, model, BESIDE_VERB, available, ())
-    parts += part_sections(VERBS.values())
+    for verb, model in STEPS.items():
+        package = STEPS.package_of(verb)
+        notes = [] if package == OWN_PACKAGE else [f"This step comes from the package `{package}`."]
+        parts += section(verb, model, BESIDE_VERB, None, notes)
+    parts += part_sections(STEPS.values())
     return "\n\n".join(parts) + "\n"
 
 
@@ -111,7 +110,7 @@ def part_sections(models: Iterable[type[SpecModel]]) -> list[str]:
 def _models_in(annotation: Any) -> list[type[SpecModel]]:
     """The models that are no step and no expectation, anywhere in an annotation."""
     if is_model(annotation):
-        is_word = "do" in annotation.model_fields or "check" in annotation.model_fields
+        is_word = issubclass(annotation, Step) or "check" in annotation.model_fields
         return [] if is_word else [annotation]
     return [model for each in get_args(annotation) for model in _models_in(each)]
 
@@ -154,7 +153,7 @@ def _described(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
             return f"{MEANINGS['1'][0]} (`0.5`, `50 %`)"
         if units is not None:
             return " or ".join(f"{MEANINGS[unit][0]} [{unit}]" for unit in units)
-    if annotation == bare(Step):
+    if annotation is Step:
         return "step"
     arguments = get_args(annotation)
     if get_origin(annotation) in (Union, types.UnionType):

@@ -22,7 +22,7 @@ from harness.spec.cameras import CameraSpec, VideoSpec
 from harness.spec.checks import Expectation
 from harness.spec.planning import Planning
 from harness.spec.poses import Pose
-from harness.spec.steps import Step
+from harness.spec.step import AnyStep
 from harness.spec.variation import Distribution, Expected, Parametrize
 from harness.spec.world import ObjectSpec
 
@@ -178,7 +178,7 @@ class Scenario(SpecModel):
     deterministic: Flag = Field(
         default=True, description="`false` allows planners that cannot be repeated."
     )
-    steps: Annotated[tuple[Step, ...], Field(min_length=1)] = Field(
+    steps: Annotated[tuple[AnyStep, ...], Field(min_length=1)] = Field(
         description="What the arm does, in order."
     )
     expect: tuple[Expectation, ...] = Field(default=(), description="Judged over the whole run.")

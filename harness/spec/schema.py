@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, cast
 
 from pydantic import ValidationError
-from pydantic.json_schema import GenerateJsonSchema
+from pydantic.json_schema import GenerateJsonSchema, models_json_schema
 from pydantic_core import core_schema
 
 from harness.spec.base import SpecModel
@@ -22,9 +22,10 @@ from harness.spec.language import (
     PREDICATES,
     TEMPORAL,
     UNTIL,
-    VERBS,
 )
+from harness.spec.plugin_field import MARK
 from harness.spec.scenario import Scenario
+from harness.spec.step import STEPS, Step
 from harness.spec.units import SHARE, written
 from harness.spec.world import WorldSpec
 
@@ -42,6 +43,9 @@ BOUNDS = {
     "min_length": "minItems",
 }
 """pydantic's words on a validated value -> JSON Schema's."""
+
+MODEL = "model"
+"""In a model's schema while it is made: the model itself."""
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
 
@@ -71,23 +75,28 @@ def world_schema() -> Schema:
 
 
 def _schema_of(model: type[SpecModel], title: str) -> Schema:
-    plain = model.model_json_schema(by_alias=True, schema_generator=_WithUnits)
-    models = {each.__name__: each for each in _subclasses(SpecModel)}
-    definitions: dict[str, Schema] = plain.pop("$defs", {})
+    models = [model, *(STEPS.values() if model is Scenario else ())]
+    names, plain = models_json_schema(
+        [(each, "validation") for each in models], by_alias=True, schema_generator=_WithUnits
+    )
+    definitions: dict[str, Schema] = plain["$defs"]
     own: dict[str, Schema] = {}
     for name, definition in definitions.items():
-        own[name] = _with_short_form(_written(definition), models[name])
+        own[name] = _with_short_form(_written(definition), definition[MODEL])
     if "RobotSpec" in own:
         _accept_ur_type(own["RobotSpec"])
     if model is Scenario:
-        own |= _language(own)
-    reached = _written(plain)
+        own |= _language(own, {each: _name(names[each, "validation"]) for each in models})
+    reached = own.pop(_name(names[model, "validation"]))
     head: Schema = {"$schema": DRAFT, "title": title}
     return {**head, **reached, "$defs": dict(sorted(_reachable(reached, own).items()))}
 
 
 class _WithUnits(GenerateJsonSchema):
-    """Keeps the units that a validator of numbers knows."""
+    """Keeps the units that a validator of numbers knows, and the class of each model."""
+
+    def model_schema(self, schema: core_schema.ModelSchema) -> Schema:
+        return {**super().model_schema(schema), MODEL: schema["cls"]}
 
     def function_before_schema(self, schema: core_schema.BeforeValidatorFunctionSchema) -> Schema:
         written_schema = super().function_before_schema(schema)
@@ -105,17 +114,17 @@ def _written(schema: Any) -> Any:
     if not isinstance(schema, dict):
         return schema
     part = cast("Schema", schema)
-    tag = part.get("discriminator", {}).get("propertyName")
-    if tag is not None:
-        is_predicate = tag == "check" and "always" not in part["discriminator"]["mapping"]
-        name = "Step" if tag == "do" else "Predicate" if is_predicate else "Expectation"
-        return {"$ref": f"#/$defs/{name}"}
+    if MARK in part:
+        return {"$ref": f"#/$defs/{part[MARK].capitalize()}"}
+    if "discriminator" in part and part["discriminator"]["propertyName"] == "check":
+        is_predicate = "always" not in part["discriminator"]["mapping"]
+        return {"$ref": f"#/$defs/{'Predicate' if is_predicate else 'Expectation'}"}
     result: Schema = {
         key: {name: _written(each) for name, each in cast("Schema", value).items()}
         if key == "properties"
         else _written(value)
         for key, value in part.items()
-        if key not in ("title", "discriminator") and not (key == "default" and value is None)
+        if key not in ("title", "discriminator", MODEL) and not (key == "default" and value is None)
     }
     if "properties" in part:
         return result
@@ -166,8 +175,8 @@ def _with_references(schema: Schema) -> Schema:
 def _with_short_form(definition: Schema, model: type[SpecModel]) -> Schema:
     """A model's schema without its tag, and the bare value that may stand for it."""
     properties: dict[str, Schema] = definition.get("properties", {})
-    is_step, is_check = "do" in properties, "check" in properties
-    hidden = ("do", *BESIDE_VERB) if is_step else ("check",) if is_check else ()
+    is_step, is_check = issubclass(model, Step), "check" in properties
+    hidden = BESIDE_VERB if is_step else ("check",) if is_check else ()
     kept = {key: value for key, value in properties.items() if key not in hidden}
     mapping = {**definition, "properties": kept}
     branches: list[Schema] = [mapping]
@@ -194,19 +203,27 @@ def _accept_ur_type(robot: Schema) -> None:
     properties["ur_type"] = {"type": "string", "description": "As `model`: the course's word."}
 
 
-def _language(definitions: Mapping[str, Schema]) -> dict[str, Schema]:
-    """Steps, predicates and expectations: one word, its content, and what may stand beside."""
+def _language(
+    definitions: Mapping[str, Schema], names: Mapping[type[SpecModel], str]
+) -> dict[str, Schema]:
+    """Steps, predicates and expectations: one word, its content, and the keys next to it.
+
+    Args:
+        definitions: The schema of each model by its name.
+        names: The names of models whose class has another name there.
+    """
 
     def content(models: Mapping[str, type[SpecModel]]) -> dict[str, Schema]:
         return {
             word: {
-                "description": definitions[model.__name__].get("description", ""),
-                "allOf": [{"$ref": f"#/$defs/{model.__name__}"}],
+                "description": definitions[name].get("description", ""),
+                "allOf": [{"$ref": f"#/$defs/{name}"}],
             }
             for word, model in models.items()
+            for name in [names.get(model, model.__name__)]
         }
 
-    plain_step = _properties(next(iter(VERBS.values())))
+    plain_step = _properties(Step)
     plain_check = _properties(next(iter(TEMPORAL.values())))
     beside_verb = {key: _written(plain_step[key]) for key in BESIDE_VERB}
     beside_check = {key: _written(plain_check[key]) for key in BESIDE_CHECK if key in plain_check}
@@ -227,7 +244,7 @@ def _language(definitions: Mapping[str, Schema]) -> dict[str, Schema]:
     expectation = _one_word(words, beside_check | until, PREDICATES)
     expectation["anyOf"][0]["dependencies"] = {UNTIL: ["always"]}
     return {
-        "Step": _one_word(content(VERBS), beside_verb, VERBS),
+        "Step": _one_word(content(STEPS), beside_verb, STEPS),
         "Predicate": predicate,
         "Expectation": expectation,
     }
@@ -276,7 +293,7 @@ def _references(schema: Any) -> Iterable[str]:
     if isinstance(schema, dict):
         for key, value in cast("Schema", schema).items():
             if key == "$ref":
-                yield str(value).rsplit("/", 1)[-1]
+                yield _name({key: value})
             else:
                 yield from _references(value)
     elif isinstance(schema, list):
@@ -284,7 +301,6 @@ def _references(schema: Any) -> Iterable[str]:
             yield from _references(value)
 
 
-def _subclasses(model: type[SpecModel]) -> Iterable[type[SpecModel]]:
-    for child in model.__subclasses__():
-        yield child
-        yield from _subclasses(child)
+def _name(reference: Schema) -> str:
+    """The name that a reference to a definition has."""
+    return str(reference["$ref"]).rsplit("/", 1)[-1]

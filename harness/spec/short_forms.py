@@ -24,15 +24,14 @@ from harness.spec.language import (
     PREDICATES,
     TEMPORAL,
     UNTIL,
-    VERBS,
 )
 from harness.spec.mistakes import describe, did_you_mean, nearest
 from harness.spec.scenario import RobotSpec
 from harness.spec.source import Entry, Located
-from harness.spec.steps import Step, StepFields
+from harness.spec.step import STEPS, TAG, Step
 from harness.spec.words import UNTIL_USAGE, Words, take_apart, wrong_way_round
 
-STEP, EXPECTATION, PREDICATE = bare(Step), bare(Expectation), bare(Predicate)
+EXPECTATION, PREDICATE = bare(Expectation), bare(Predicate)
 
 
 TURN = 6.283186  # [rad], rounded up
@@ -63,7 +62,7 @@ class _Shaper:
     def shape(self, item: Located, annotation: Any, metadata: Iterable[Any] = ()) -> Located:
         self._note_angle(item, annotation, metadata)
         annotation = bare(annotation)
-        if annotation == STEP:
+        if annotation is Step:
             return self.step(item)
         if annotation == EXPECTATION:
             return self.expectation(item)
@@ -107,7 +106,7 @@ class _Shaper:
         if not isinstance(item.value, dict):
             return item
         keys = keys_of(model)
-        inside = [key for key in keys if not (issubclass(model, StepFields) and key in BESIDE_VERB)]
+        inside = [key for key in keys if not (issubclass(model, Step) and key in BESIDE_VERB)]
         entries: dict[str, Entry] = {}
         for key, entry in item.value.items():
             if key in inside:
@@ -129,10 +128,10 @@ class _Shaper:
         return Located(entries, item.place)
 
     def step(self, item: Located) -> Located:
-        found = take_apart(item, VERBS, BESIDE_VERB, "step", "verb", self.problems)
+        found = take_apart(item, STEPS, BESIDE_VERB, "step", "verb", self.problems)
         if found is None:
-            return _stand_in(item, "do", "settle", {})
-        model = VERBS[found.word]
+            return _stand_in(item, TAG, "settle", {})
+        model = STEPS[found.word]
         content = self.model(_content(found.entry), model, verb=found.word)
         if not isinstance(content.value, dict):
             self._not_content(found, content, model)
@@ -141,7 +140,7 @@ class _Shaper:
             key: Entry(entry.key, self.field(entry.value, keys_of(model)[key]))
             for key, entry in found.beside.items()
         }
-        return _tagged("do", found, content.mapping() | beside)
+        return _tagged(TAG, found, content.mapping() | beside)
 
     def expectation(self, item: Located) -> Located:
         words = (*BESIDE_CHECK, UNTIL)
@@ -247,7 +246,7 @@ def course_words(robot: Located) -> Located:
 def _list_of_models(model: type[SpecModel]) -> bool:
     """Whether one mapping alone may stand for the list: `add_object: {name: ...}`."""
     kind = get_args(bare(keys_of(model)[model.short].annotation))[0]
-    return is_model(bare(kind)) or bare(kind) == STEP
+    return is_model(bare(kind))
 
 
 def _fits(item: Located, annotation: Any) -> bool:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from harness.core.errors import Problem
+from harness.core.registry import Registry, broken_plugins
 from harness.spec.annotations import is_model, keys_of
 from harness.spec.language import EXPECTATIONS, PREDICATES, UNTIL
 from harness.spec.mistakes import describe, did_you_mean, nearest
@@ -66,8 +67,9 @@ def take_apart(
         message = f"{_a(whole)} is a {kind} with its content, not {describe(item.plain())}"
         problems.append(item.place.problem(message, _all(words, kind)))
         return None
-    said = [key for key in item.value if key in words]
-    others = [key for key in item.value if key not in words and key not in beside]
+    keys = [key for key in item.value if key not in beside]
+    said = [key for key in keys if key in words]
+    others = [key for key in keys if key not in words]
     rest = {key: entry for key, entry in item.value.items() if key in beside}
     if not said and others:
         wrong = max(others, key=lambda key: nearest(key, words) is not None)
@@ -113,7 +115,10 @@ def _unknown(
         message = f"`{word}:` is not written; the {kind} itself is the key"
     else:
         message = f"no {kind} is called `{word}`"
-    problems.append(place.problem(message, did_you_mean(word, words, f"{kind}s")))
+    hints = [did_you_mean(word, words, f"{kind}s")]
+    if isinstance(words, Registry):
+        hints += broken_plugins()
+    problems.append(place.problem(message, "; ".join(hints)))
     return nearest(word, words)
 
 

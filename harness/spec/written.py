@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, cast
 
 from harness.spec.base import SpecModel
@@ -11,9 +11,11 @@ from harness.spec.language import BESIDE_CHECK, BESIDE_VERB
 from harness.spec.params import escaped
 from harness.spec.scenario import Scenario
 from harness.spec.source import Place, Source, located
+from harness.spec.step import Step
 from harness.spec.yaml_text import yaml_text
 
 TEMPORAL = (Always, Never, Eventually)
+CHECK = "check"
 
 
 def scenario_text(scenario: Scenario) -> str:
@@ -30,11 +32,11 @@ def written(value: object) -> Any:
         return {value.check: written(value.predicate), **_beside(value)}
     if isinstance(value, SpecModel):
         entries = _entries(value)
-        for tag, beside in (("do", BESIDE_VERB), ("check", BESIDE_CHECK)):
-            if tag in type(value).model_fields:
-                inside = {k: v for k, v in entries.items() if k not in (*beside, tag)}
-                word = getattr(value, tag)
-                return {word: inside, **{k: v for k, v in entries.items() if k in beside}}
+        if isinstance(value, Step):
+            return _one_word(value.verb, entries, BESIDE_VERB)
+        if CHECK in type(value).model_fields:
+            entries.pop(CHECK, None)
+            return _one_word(getattr(value, CHECK), entries, BESIDE_CHECK)
         return entries
     if isinstance(value, Mapping):
         items = cast("Mapping[str, object]", value).items()
@@ -42,6 +44,12 @@ def written(value: object) -> Any:
     if isinstance(value, tuple | list):
         return [written(item) for item in cast("list[object]", value)]
     return value
+
+
+def _one_word(word: str, entries: dict[str, Any], outside: Collection[str]) -> dict[str, Any]:
+    """A verb or predicate with its content, and the keys next to it."""
+    inside = {key: value for key, value in entries.items() if key not in outside}
+    return {word: inside, **{key: value for key, value in entries.items() if key in outside}}
 
 
 def _entries(model: SpecModel) -> dict[str, Any]:

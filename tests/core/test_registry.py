@@ -1,40 +1,145 @@
-from dataclasses import dataclass
+import subprocess
+import sys
+import textwrap
 
 import pytest
 
-from harness.core.registry import Registry
+from harness.core.registry import OWN_PACKAGE, PluginError, Registry
 
+PLUGIN = """
+import harness
 
-@dataclass
-class Open:
-    width: float
+class Tool:
+    plugin_kind = "reporter"
 
+    @classmethod
+    def plugin_name(cls):
+        return cls.__dict__.get("word", "")
 
-@dataclass
-class Close:
+class Base(Tool):
     pass
 
-
-def test_a_handler_is_found_by_the_models_type():
-    act: Registry[str, str] = Registry()
-
-    @act.handles(Open)
-    def _open(spec, context):
-        return f"{context} opens {spec.width}"
-
-    assert act(Open(0.1), "hand") == "hand opens 0.1"
-    assert Open in act
-    assert Close not in act
-    assert list(act) == [Open]
+class Remark(Base):
+    word = "{name}"
+"""
 
 
-def test_a_second_handler_for_a_model_is_refused():
-    act: Registry[None, None] = Registry()
-    act.handles(Open)(lambda _spec, _context: None)
-    with pytest.raises(ValueError, match="Open already has a handler"):
-        act.handles(Open)(lambda _spec, _context: None)
+def install(folder, package, entry, source):
+    """A package with one module and an entry point, as a wheel leaves it in a folder."""
+    module, _, _ = entry.partition(":")
+    (folder / f"{module}.py").write_text(source, encoding="utf-8")
+    info = folder / f"{package.replace('-', '_')}-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {package}\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text(f"[harness.plugins]\n{module} = {entry}\n")
 
 
-def test_a_model_without_handler_is_an_error_of_the_program():
-    with pytest.raises(KeyError):
-        Registry()(Close(), None)
+def ask(folder, code, **environment):
+    """What Python code prints in a process of its own, whose path has a folder more."""
+    head = (
+        f"import sys, os; sys.path.insert(0, {str(folder)!r}); os.environ.update({environment})\n"
+    )
+    head += "from harness.core.registry import *\n"
+    done = subprocess.run(
+        [sys.executable, "-c", head + textwrap.dedent(code)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert not done.stderr, done.stderr
+    return done.stdout.split("\n")[:-1]
+
+
+def test_names_of_installed_packages_come_with_their_package(tmp_path):
+    install(tmp_path, "remarks-for-arms", "remarks", PLUGIN.format(name="remark"))
+    install(tmp_path, "one-class", "single:Remark", PLUGIN.format(name="other"))
+    code = "r = registry('reporter'); print([(n, r.package_of(n), r[n].__name__) for n in r])"
+    assert ask(tmp_path, code) == [
+        "[('other', 'one-class', 'Remark'), ('remark', 'remarks-for-arms', 'Remark')]"
+    ]
+
+
+def test_a_name_of_two_packages_is_refused_with_both(tmp_path):
+    install(tmp_path, "first", "first", PLUGIN.format(name="remark"))
+    install(tmp_path, "second", "second", PLUGIN.format(name="remark"))
+    code = """
+    for attempt in range(2):
+        try:
+            "remark" in registry("reporter")
+        except PluginError as error:
+            print(error)
+    """
+    said = ask(tmp_path, code)
+    message = "plug-in second: two packages provide the reporter `remark`: `first` and `second`"
+    assert [line for line in said if line.startswith("plug-in")] == [message, message]
+
+
+def test_a_package_that_cannot_be_imported_is_named_where_a_name_is_missing(tmp_path):
+    install(tmp_path, "remarks-for-arms", "remarks", PLUGIN.format(name="remark"))
+    install(tmp_path, "broken-for-arms", "broken", "import no_such_module\n")
+    code = """
+    try:
+        registry("reporter").find("remarkk")
+    except LookupError as error:
+        print(error.args[0])
+    """
+    assert ask(tmp_path, code) == [
+        "there is no reporter 'remarkk'; did you mean 'remark'? known: remark; the plug-ins of the"
+        " package `broken-for-arms` cannot be loaded: ModuleNotFoundError: No module named"
+        " 'no_such_module'"
+    ]
+
+
+@pytest.mark.parametrize("by_path", [True, False])
+def test_a_named_module_is_loaded_here_and_in_later_processes(tmp_path, by_path):
+    (tmp_path / "remarks.py").write_text(PLUGIN.format(name="remark"), encoding="utf-8")
+    module = str(tmp_path / "remarks.py") if by_path else "remarks"
+    code = f"load_plugin({module!r}); print(dict(registry('reporter')), os.environ[VARIABLE])"
+    (said,) = ask(tmp_path, code)
+    assert said.startswith("{'remark': <class 'remarks.Remark'>}")
+    code = "print(registry('reporter').package_of('remark'))"
+    assert ask(tmp_path, code, HARNESS_PLUGINS=module) == ["remarks"]
+
+
+def test_anything_registers_under_a_given_kind_and_name(tmp_path):
+    code = """
+    import harness
+    harness.register(len, kind="planner", name="longest")
+    print(registry("planner").find("longest") is len)
+    for arguments in ({}, {"kind": "plannr", "name": "x"}, {"kind": "planner"}):
+        try:
+            harness.register(len, **arguments)
+        except PluginError as error:
+            print(error.reason)
+    """
+    assert ask(tmp_path, code) == [
+        "True",
+        "<built-in function len> has no known `plugin_kind`",
+        "<built-in function len> has no known `plugin_kind`",
+        "<built-in function len> has no name to be registered under",
+    ]
+
+
+def test_built_ins_are_found_by_their_modules_and_imported_on_demand(tmp_path):
+    package = tmp_path / "words"
+    package.mkdir()
+    (package / "__init__.py").write_text("")
+    (package / "_shared.py").write_text("raise RuntimeError\n")
+    for name in ("lift", "in_"):
+        (package / f"{name}.py").write_text(PLUGIN.format(name=name.rstrip("_")))
+    code = """
+    r = Registry("reporter", "words")
+    print("lift" in r, "words.lift" in sys.modules)
+    print(list(r), "words.in_" in sys.modules)
+    """
+    assert ask(tmp_path, code) == ["True False", "['in', 'lift'] False"]
+
+
+def test_a_built_in_name_cannot_be_taken():
+    tools = Registry("step", "harness.core")
+    with pytest.raises(PluginError, match=f"`errors`: `{OWN_PACKAGE}` and `mine`"):
+        tools.add("errors", object(), "mine")
+    tools.add("other", int, "mine")
+    tools.add("other", int, "mine")
+    with pytest.raises(PluginError, match="`mine` provides the step `other` twice"):
+        tools.add("other", float, "mine")

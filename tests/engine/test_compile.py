@@ -2,7 +2,7 @@
 
 import pytest
 
-from harness.engine.program import step_seed
+from harness.cell.program import step_seed
 from harness.session.prepare import prepare
 from tests.engine.front_door import UR, file_of, problems
 

@@ -3,14 +3,26 @@
 from typing import get_args
 
 from harness.assertions.judge import EXECUTED
-from harness.engine import executors as executors
-from harness.engine.registry import is_available
 from harness.spec.checks import AnyExpectation
-from harness.spec.steps import AnyStep
+from harness.spec.step import STEPS, Step
 
 
-def test_every_verb_of_the_language_is_carried_out():
-    assert [model.__name__ for model in get_args(AnyStep) if not is_available(model)] == []
+def test_every_verb_is_a_class_that_says_checks_and_does_it():
+    for verb, step in STEPS.items():
+        assert step.verb == verb
+        assert step.__module__ == f"harness.steps.{verb}"
+        assert step.execute is not Step.execute
+
+
+def test_every_key_of_a_step_is_described_in_a_sentence():
+    described = {
+        f"{verb}.{name}": field.description or ""
+        for verb, step in STEPS.items()
+        for name, field in step.model_fields.items()
+    }
+    assert [
+        key for key, text in described.items() if not text.endswith((".", "].")) or len(text) < 20
+    ] == []
 
 
 def test_every_expectation_of_the_language_is_judged():

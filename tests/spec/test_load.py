@@ -5,7 +5,12 @@ import pytest
 from harness.core.errors import SpecError
 from harness.spec.checks import Always, Eventually, Grasped, Lifted, Never, Until, WithinLimits
 from harness.spec.load import bundled_worlds, load_scenario, load_world, parse_scenario
-from harness.spec.steps import AddObject, AllowCollisions, ClearObjects, Gripper, MoveTo, Wait
+from harness.steps.add_object import AddObject
+from harness.steps.allow_collisions import AllowCollisions
+from harness.steps.clear_objects import ClearObjects
+from harness.steps.gripper import Gripper
+from harness.steps.move_to import MoveTo
+from harness.steps.wait import Wait
 
 FILES = Path(__file__).parent / "files"
 HEAD = "scenario: x\nrobot: ur3e\n"

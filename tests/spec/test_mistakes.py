@@ -40,16 +40,16 @@ def test_a_problem_shows_the_line_a_caret_and_the_nearest_word():
     assert first == "f.yaml:4:5: no verb is called `grsp`"
     assert excerpt == "    4 |   - grsp: {object: box}"
     assert caret == "      |     ^^^^"
-    assert rest[0].startswith("      | did you mean `grasp`? verbs: move_to, ptp, lin")
+    assert rest[0].startswith("      | did you mean `grasp`? verbs: add_object, allow_")
 
 
 @pytest.mark.parametrize(
     ("step", "message", "hint"),
     [
-        ("- §5", "a step is a verb with its content, not `5`", "verbs: move_to"),
+        ("- §5", "a step is a verb with its content, not `5`", "verbs: add_object"),
         ("- §moveto: up", "no verb is called `moveto`", "did you mean `move_to`?"),
-        ("- §xyzzy", "no verb is called `xyzzy`", "verbs: move_to"),
-        ("- §{id: a}", "a step has one verb; this one has none", "verbs: move_to"),
+        ("- §xyzzy", "no verb is called `xyzzy`", "verbs: add_object"),
+        ("- §{id: a}", "a step has one verb; this one has none", "verbs: add_object"),
         ("- {§do: lin}", "`do:` is not written", "verbs"),
         ("- {lin: up, §pose: {}}", "`pose` stands inside `lin`, not beside", "further right"),
         ("- {lin: up, §expct: []}", "unknown key `expct` beside `lin`", "mean `expect`?"),

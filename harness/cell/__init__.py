@@ -1,0 +1,1 @@
+"""The robot cell that steps work in: the program, names in scope, adapters, goals."""

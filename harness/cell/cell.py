@@ -1,0 +1,314 @@
+"""The robot cell while a program runs: adapters, what is believed of the scene, what is held."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from harness.cell.program import ProgramStep, step_seed
+from harness.core.camera import Camera
+from harness.core.errors import StepFailed
+from harness.core.spatial import SE3
+from harness.core.trajectory import JointTrajectory
+from harness.core.types import FloatArray
+from harness.core.world import WorldObject
+from harness.ports import Kinematics, MotionPlan, MotionPlanner, PlanningScene, Simulator
+from harness.recording.run import AttachmentRecord
+from harness.robot.description import Gripper, RobotDescription
+from harness.spec.poses import Direction, Pose
+from harness.spec.step import Step
+
+
+@dataclass
+class Presence:
+    """When an object was in the scene, and where it appeared."""
+
+    obj: WorldObject
+    pose: SE3
+    intervals: list[list[float]] = field(default_factory=list[list[float]])
+    added_by_step: bool = False
+
+    @property
+    def is_there(self) -> bool:
+        """Whether it is in the scene now."""
+        return bool(self.intervals) and self.intervals[-1][1] == float("inf")
+
+
+@dataclass(frozen=True, eq=False)
+class Belief:
+    """Where the planning scene has an object from a sample on.
+
+    Attributes:
+        sample: Index into the recorded samples.
+        link: That carries it; empty when it stands in the world.
+        pose: T_link_object, or T_world_object; None when it is in the scene no more.
+    """
+
+    sample: int
+    link: str
+    pose: SE3 | None
+
+
+@dataclass
+class StepNotes:
+    """What a step leaves in its record."""
+
+    trajectory: Mapping[str, Any] | None = None
+    planner: dict[str, Any] = field(default_factory=dict[str, Any])
+    explanation: dict[str, Any] = field(default_factory=dict[str, Any])
+    result: dict[str, Any] = field(default_factory=dict[str, Any])
+
+
+def _cannot_nest(_: Sequence[ProgramStep]) -> None:
+    raise RuntimeError("no program is being executed")
+
+
+@dataclass
+class Cell:
+    """What steps work with."""
+
+    description: RobotDescription
+    scene: PlanningScene
+    kinematics: Kinematics
+    planner: MotionPlanner
+    simulator: Simulator
+    later_objects: Mapping[str, WorldObject]
+    presence: dict[str, Presence] = field(default_factory=dict[str, Presence])
+    attachments: list[AttachmentRecord] = field(default_factory=list[AttachmentRecord])
+    held: list[str] = field(default_factory=list[str])
+    allowed: list[Sequence[tuple[str, str]]] = field(
+        default_factory=list[Sequence[tuple[str, str]]]
+    )
+    beliefs: dict[str, list[Belief]] = field(default_factory=dict[str, list[Belief]])
+    notes: StepNotes = field(default_factory=StepNotes)
+    step: ProgramStep | None = None
+    seed: int = 0
+    cameras: Mapping[str, Camera] = field(default_factory=dict[str, Camera])
+    run_steps: Callable[[Sequence[ProgramStep]], None] = _cannot_nest
+
+    @property
+    def current(self) -> ProgramStep:
+        """The step being executed."""
+        if self.step is None:
+            raise RuntimeError("no step is being executed")
+        return self.step
+
+    @property
+    def gripper(self) -> Gripper:
+        """The robot's gripper; compile has made sure that there is one."""
+        gripper = self.description.gripper
+        if gripper is None:
+            raise StepFailed("INVALID_GROUP_NAME", f"{self.description.name} has no gripper")
+        return gripper
+
+    def with_open_gripper(self, joint_positions: FloatArray) -> FloatArray:
+        """Joint positions of the whole robot with the gripper open."""
+        opened = joint_positions.copy()
+        opened[self.description.joint_index[self.gripper.joint]] = self.gripper.open_position
+        return self.description.with_mimics(opened)
+
+    @contextmanager
+    def unpadded_gripper(self, name: str) -> Generator[None]:
+        """Apply no padding between the gripper and an object that it is about to grasp."""
+        links = (self.gripper.palm_link, *self.gripper.links)
+        self.scene.set_unpadded([(link, name) for link in links])
+        try:
+            yield
+        finally:
+            self.scene.set_unpadded([])
+
+    # -- where things are ---------------------------------------------------------------------
+
+    def planning_start(self) -> FloatArray:
+        """Where motions start: set points of the arm, measured positions of the gripper."""
+        start = self.simulator.commanded_positions()
+        gripper = self.description.gripper
+        if gripper is not None:
+            measured = self.simulator.joint_positions()
+            index = self.description.joint_index[gripper.joint]
+            start[index] = measured[index]
+        return self.description.with_mimics(start)
+
+    def frame(self, name: str) -> SE3:
+        """T_world_frame of `world`, a link, or an object as the physics has it now."""
+        if name == "world":
+            return SE3.identity()
+        if name in self.description.link_names:
+            return self.kinematics.link_pose(self.planning_start(), name)
+        presence = self.presence.get(name)
+        if presence is None or not presence.is_there:
+            raise StepFailed("FRAME_TRANSFORM_FAILURE", f"'{name}' is not in the scene now")
+        if presence.obj.in_simulation:
+            return self.simulator.object_pose(name)
+        return self.scene.object_pose(name, self.planning_start())
+
+    def world_pose(self, pose: Pose) -> SE3:
+        """T_world_x of a pose that a file gives in some frame."""
+        return self.frame(pose.frame) @ pose.se3()
+
+    def world_direction(self, direction: Direction) -> FloatArray:
+        """Unit vector in the world of a direction that a file gives in some frame, shape (3,)."""
+        vector = self.frame(direction.frame).rotation @ direction.xyz
+        return vector / float((vector @ vector) ** 0.5)
+
+    # -- the planner's belief -----------------------------------------------------------------
+
+    def sync_scene(self) -> None:
+        """Let the planning scene know where the physics has the objects that are not held."""
+        held = self.scene.attached()
+        for name in self.scene.object_names():
+            presence = self.presence.get(name)
+            if presence is None or name in held or presence.obj.is_static:
+                continue
+            if presence.obj.in_simulation:
+                self.scene.move_object(name, self.simulator.object_pose(name))
+
+    def add_to_scene(self, obj: WorldObject, pose: SE3) -> None:
+        """Let an object appear in the planning scene, the physics, or both, and say since when."""
+        known = self.presence.get(obj.name)
+        if known is None:
+            known = self.presence[obj.name] = Presence(obj, pose, added_by_step=True)
+        self.notes.result.setdefault("added", []).append(obj.name)
+        known.pose = pose
+        known.intervals.append([self.simulator.time, float("inf")])
+        self.believe(obj.name, pose)
+        if obj.in_simulation:
+            self.simulator.add_object(obj.name, pose)
+        if obj.in_planning:
+            self.scene.add_object(obj, pose)
+
+    def remove_from_scene(self, name: str) -> None:
+        """Take an object out of the planning scene and the physics."""
+        presence = self._free_object(name)
+        self.notes.result.setdefault("removed", []).append(name)
+        presence.intervals[-1][1] = self.simulator.time
+        self.believe(name, None)
+        if name in self.scene.object_names():
+            self.scene.remove_object(name)
+        if presence.obj.in_simulation:
+            self.simulator.remove_object(name)
+
+    def move_in_scene(self, name: str, pose: SE3) -> None:
+        """Put an object somewhere else, at rest, in planning scene and physics."""
+        presence = self._free_object(name)
+        presence.pose = pose
+        presence.intervals[-1][1] = self.simulator.time
+        presence.intervals.append([self.simulator.time, float("inf")])
+        self.believe(name, pose)
+        if presence.obj.in_simulation:
+            self.simulator.move_object(name, pose)
+        if name in self.scene.object_names():
+            self.scene.move_object(name, pose)
+
+    def _free_object(self, name: str) -> Presence:
+        """An object that is in the scene, and not attached."""
+        presence = self.presence.get(name)
+        if presence is None or not presence.is_there:
+            raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is not in the scene now")
+        if name in self.scene.attached():
+            raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is attached: detach it first")
+        return presence
+
+    def believe(self, name: str, pose: SE3 | None, link: str = "") -> None:
+        """Note where an object of the planning scene alone stands from now on."""
+        presence = self.presence.get(name)
+        if presence is None or presence.obj.in_simulation:
+            return
+        # what is gone was still there at the present sample, what comes is there already
+        sample = self.simulator.sample_count - (0 if pose is None else 1)
+        self.beliefs.setdefault(name, []).append(Belief(sample, link, pose))
+
+    def attach(
+        self, name: str, link: str, touch_links: Sequence[str], represents: str | None = None
+    ) -> None:
+        """Fix an object to a link in the planning scene and note what it stands for."""
+        if name not in self.scene.object_names():
+            raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is not in the planning scene now")
+        if name in self.scene.attached():
+            raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is attached already")
+        pose = self.scene.attach_object(name, link, touch_links, self.planning_start())
+        self.believe(name, pose, link)
+        if represents is not None and represents in self.scene.object_names():
+            self.scene.remove_object(represents)
+        record = AttachmentRecord(
+            object=name,
+            link=link,
+            start_time=self.simulator.time,
+            end_time=float("inf"),
+            pose_in_link=tuple(float(value) for value in pose.as_vector()),
+            represents=represents or name,
+        )
+        self.attachments.append(record)
+        self.notes.result.update(attached=name, link=link, touch_links=list(touch_links))
+        if represents is not None:
+            self.notes.result["represents"] = represents
+
+    def detach(self, name: str) -> None:
+        """Let go of an attached object and its weld; what it stood for is in the scene again."""
+        if name not in self.scene.attached():
+            raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is not attached")
+        if self.presence[name].obj.in_simulation:
+            self.simulator.unweld(name)
+        self.believe(name, self.scene.detach_object(name, self.planning_start()))
+        for index, record in enumerate(self.attachments):
+            if record.object == name and record.end_time == float("inf"):
+                self.attachments[index] = replace(record, end_time=self.simulator.time)
+                self._return_represented(record)
+        if name in self.held:
+            self.held.remove(name)
+
+    def _return_represented(self, record: AttachmentRecord) -> None:
+        presence = self.presence.get(record.represents)
+        if presence is None or not presence.is_there or not presence.obj.in_planning:
+            return
+        if record.represents not in self.scene.object_names():
+            pose = self.simulator.object_pose(record.represents)
+            self.scene.add_object(presence.obj, pose)
+
+    # -- nested steps -------------------------------------------------------------------------
+
+    def child(self, name: str, spec: Step, summary: str) -> ProgramStep:
+        """A step that the current one is made of, with a seed of its own."""
+        parent = self.current
+        path = f"{parent.path}.{name}"
+        options = replace(parent.options, seed=step_seed(self.seed, path))
+        return ProgramStep(f"{parent.id}.{name}", path, spec, summary, parent.line, options)
+
+    def run_children(self, children: Sequence[ProgramStep] | None = None) -> None:
+        """Run the steps that the current one is made of; its own notes go on after them."""
+        current, notes = self.current, self.notes
+        try:
+            self.run_steps(current.children if children is None else children)
+        finally:
+            self.step, self.notes = current, notes
+
+    # -- motion -------------------------------------------------------------------------------
+
+    def carry_out(self, plan: MotionPlan) -> None:
+        """Note a plan, check it against the step's timeout, then follow it."""
+        self.notes.trajectory = trajectory_record(plan.trajectory)
+        self.notes.planner.update(plan.statistics)
+        self.notes.explanation.update(plan.explanation)
+        self.notes.result.update(plan.result)
+        timeout = self.current.spec.timeout
+        if timeout is not None and plan.trajectory.duration > timeout:
+            raise StepFailed(
+                "TIMED_OUT",
+                f"the motion takes {plan.trajectory.duration:.2f} s, the step's timeout is"
+                f" {timeout:g} s; raise the timeout or the velocity scaling",
+                {"duration": plan.trajectory.duration, "timeout": timeout},
+            )
+        self.simulator.track(plan.trajectory)
+
+
+def trajectory_record(trajectory: JointTrajectory) -> dict[str, Any]:
+    """A commanded trajectory as the run keeps it."""
+    return {
+        "joint_names": list(trajectory.joint_names),
+        "times": trajectory.times,
+        "positions": trajectory.positions,
+        "velocities": trajectory.velocities,
+        "accelerations": trajectory.accelerations,
+    }

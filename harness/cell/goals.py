@@ -1,0 +1,151 @@
+"""From the goal in a file to the goal of a planner."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from harness.cell.cell import Cell
+from harness.core.errors import StepFailed
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.ports import (
+    ArcPoint,
+    Goal,
+    JointBand,
+    JointGoal,
+    OrientationBand,
+    PathConstraints,
+    PoseGoal,
+    PositionBox,
+    PositionGoal,
+)
+from harness.ports import CartesianLimits as LinkLimits
+from harness.robot.description import RobotDescription
+from harness.spec.goals import ArcFields, CartesianLimits, GoalFields, GoalTolerance
+from harness.spec.planning import PathConstraints as ConstraintsSpec
+from harness.spec.poses import Pose, Position
+
+DEFAULT_TOLERANCE = GoalTolerance()
+
+
+@dataclass(frozen=True)
+class TcpGoal:
+    """The goal of the TCP in a composite step: a pose, or a position and a pitch [rad]."""
+
+    target: Pose | Position
+    pitch: float | None = None
+
+    @property
+    def keys(self) -> dict[str, Any]:
+        """The goal as a motion step has it."""
+        if isinstance(self.target, Pose):
+            return {"pose": self.target}
+        return {"position": self.target, "pitch": self.pitch}
+
+
+def group_of(cell: Cell, group: str | None) -> str:
+    """The step's planning group: its own, else the robot's default."""
+    return cell.description.default_group if group is None else group
+
+
+def arm_has_six_joints(description: RobotDescription, group: str | None) -> bool:
+    """Whether the arm can reach any pose near it, not only positions at a pitch."""
+    name = description.default_group if group is None else group
+    return len(description.groups[name].joint_names) >= 6
+
+
+def resolve_goal(goal: GoalFields, group: str, cell: Cell) -> Goal:
+    """The goal with every number known, in the world, as things stand now."""
+    if goal.named_target is not None:
+        state = cell.description.states_of(group)[goal.named_target]
+        return JointGoal(_joint_positions(cell, group, dict(state.positions)))
+    if goal.joints is not None:
+        return JointGoal(_joint_positions(cell, group, goal.joints))
+    if goal.pose is not None:
+        return pose_goal(goal.pose, goal.link, goal.tolerance, cell)
+    if goal.position is None:
+        raise StepFailed("UNRECOGNIZED_GOAL_TYPE", "the step has no goal")
+    tolerance = goal.tolerance or DEFAULT_TOLERANCE
+    return PositionGoal(
+        link=goal.link or cell.description.tcp_link,
+        position=world_point(goal.position, cell),
+        pitch=goal.pitch,
+        position_tolerance=tolerance.position,
+        pitch_tolerance=_largest(tolerance),
+    )
+
+
+def pose_goal(
+    pose: Pose, link: str | None, tolerance: GoalTolerance | None, cell: Cell
+) -> PoseGoal:
+    """A pose goal; `link` may be a held object, as Task Constructor's ik_frame."""
+    limits = tolerance or DEFAULT_TOLERANCE
+    target = cell.world_pose(pose)
+    name = link or cell.description.tcp_link
+    attached = cell.scene.attached()
+    if name in attached:
+        start = cell.planning_start()
+        carrier = attached[name]
+        in_carrier = cell.kinematics.link_pose(start, carrier).inverse() @ cell.scene.object_pose(
+            name, start
+        )
+        name, target = carrier, target @ in_carrier.inverse()
+    axes = limits.orientation if isinstance(limits.orientation, tuple) else None
+    return PoseGoal(name, target, limits.position, _largest(limits), axes)
+
+
+def _largest(tolerance: GoalTolerance) -> float:
+    given = tolerance.orientation
+    return max(given) if isinstance(given, tuple) else given
+
+
+def path_constraints(said: ConstraintsSpec, cell: Cell) -> PathConstraints:
+    """What must hold along a motion, in the world, as things stand now."""
+    band, box = said.orientation, said.position
+    tcp = cell.description.tcp_link
+    orientation = position = None
+    if band is not None:
+        rotation = cell.world_pose(band.pose).rotation
+        orientation = OrientationBand(band.link or tcp, rotation, band.tolerance)
+    if box is not None:
+        frame = cell.frame(box.center.frame)
+        middle = SE3(frame.rotation, frame.apply(np.array(box.center.xyz)))
+        position = PositionBox(box.link or tcp, middle, box.size)
+    joints = tuple(
+        JointBand(
+            name, joint.position - joint.tolerance_below, joint.position + joint.tolerance_above
+        )
+        for name, joint in (said.joints or {}).items()
+    )
+    return PathConstraints(orientation, position, joints)
+
+
+def arc_point(arc: ArcFields, cell: Cell) -> ArcPoint:
+    """The point that makes an arc of a start and a goal, in the world."""
+    if arc.interim is not None:
+        return ArcPoint("interim", world_point(arc.interim, cell))
+    if arc.center is not None:
+        return ArcPoint("center", world_point(arc.center, cell))
+    raise ValueError("the model has an interim point or a centre")
+
+
+def world_point(position: Position, cell: Cell) -> FloatArray:
+    """A point that a file gives in some frame, in the world, shape (3,)."""
+    return cell.frame(position.frame).apply(np.array(position.xyz))
+
+
+def link_limits(limits: CartesianLimits | None) -> LinkLimits:
+    """A step's Cartesian limits as the planner takes them."""
+    if limits is None:
+        return LinkLimits()
+    return LinkLimits(limits.max_trans_vel, limits.max_trans_acc, limits.max_rot_vel)
+
+
+def _joint_positions(cell: Cell, group: str, positions: dict[str, float]) -> FloatArray:
+    start = cell.planning_start()
+    index = cell.description.joint_index
+    names = cell.description.groups[group].joint_names
+    return np.array([positions.get(name, float(start[index[name]])) for name in names])

@@ -1,0 +1,260 @@
+"""What exists while a file is read from top to bottom, and the problems found on the way."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Iterable
+from typing import Literal
+
+from harness.core.camera import Camera
+from harness.core.errors import Problem, SpecError
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.core.world import WorldObject
+from harness.ports import LONGEST_RUN
+from harness.robot.description import RobotDescription
+from harness.spec.poses import Pose
+from harness.spec.source import Loc, SourceMap
+
+LISTED = 12  # names in a hint
+
+Part = Literal["robot", "world"]
+EVERYTHING: tuple[Part, ...] = ("robot", "world")
+
+
+class Problems:
+    """Collects located problems, so that all of a file's are reported at once.
+
+    Every problem says what it needs to be known: where the robot cannot be loaded, a joint's name
+    cannot be judged, but a planner's name can.
+    """
+
+    def __init__(self, lines: SourceMap, missing: frozenset[Part] = frozenset()) -> None:
+        """Collect nothing yet.
+
+        Args:
+            lines: Of the file.
+            missing: What could not be loaded; something stands in for it.
+        """
+        self._lines = lines
+        self._missing = missing
+        self._found: dict[Loc, Problem] = {}
+
+    def add(
+        self, loc: Loc, message: str, hint: str = "", *, needs: tuple[Part, ...] = EVERYTHING
+    ) -> None:
+        """Note a problem at a place of the file; others at the same place follow from the first."""
+        if not self._missing.intersection(needs):
+            self._found.setdefault(loc, self._lines.problem(loc, message, hint))
+
+    def unknown(
+        self,
+        loc: Loc,
+        what: str,
+        name: str,
+        known: Iterable[str],
+        *,
+        is_key: bool = False,
+        start: int | None = None,
+        needs: tuple[Part, ...] = EVERYTHING,
+    ) -> None:
+        """Note a name that nothing has, with the nearest that something has, then the rest.
+
+        Args:
+            loc: Where the name stands.
+            what: It should be the name of.
+            name: That nothing has.
+            known: Names that something has.
+            is_key: The name is a key, not a value.
+            start: The name is a part of the text there and begins at this character, from 0.
+            needs: What must be loaded to know the names.
+        """
+        if self._missing.intersection(needs):
+            return
+        names = list(dict.fromkeys(known))
+        near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+        rest = ", ".join(names[:LISTED]) + (", ..." if len(names) > LISTED else "")
+        parts = [f"did you mean '{near[0]}'?"] if near else []
+        parts.append(f"known: {rest}" if names else "there is none here")
+        message, hint = f"there is no {what} '{name}'", " ".join(parts)
+        if start is not None:
+            problem = self._lines.problem_in_text(loc, start, len(name), message, hint)
+            self._found.setdefault((*loc, start), problem)
+            return
+        locate = self._lines.problem_at_key if is_key else self._lines.problem
+        self._found.setdefault(loc, locate(loc, message, hint))
+
+    def raise_if_any(self) -> None:
+        """Raise SpecError with everything found, if anything was."""
+        if self._found:
+            raise SpecError(self._found.values())
+
+
+class Scope:
+    """Names that a step or an expectation may use.
+
+    Attributes:
+        description: The robot.
+        objects: Every object known so far, by name, whether it is in the scene now or not.
+        present: Objects in the scene at this point of the file, as far as the file tells.
+        attached: Objects attached at this point.
+        added: Objects that steps added and nothing removed.
+        cameras: Every camera, by name.
+        asked_time: Simulated time that steps have asked for by number [s].
+        problems: Where to report.
+        link_pose: T_world_link at joint positions in description order.
+    """
+
+    def __init__(
+        self,
+        description: RobotDescription,
+        problems: Problems,
+        link_pose: Callable[[FloatArray, str], SE3] | None = None,
+    ) -> None:
+        self.description = description
+        self.problems = problems
+        self.link_pose = link_pose
+        self.objects: dict[str, WorldObject] = {}
+        self.present: dict[str, None] = {}
+        self.attached: dict[str, None] = {}
+        self.added: dict[str, None] = {}
+        self.cameras: dict[str, Camera] = {}
+        self.asked_time = 0.0
+        self.step_ids: dict[str, None] = {}
+
+    def add_object(self, obj: WorldObject, *, present: bool = False) -> None:
+        """Make an object known; `present` when it is in the scene from the start."""
+        self.objects[obj.name] = obj
+        if present:
+            self.present[obj.name] = None
+
+    def claim_step_id(self, step_id: str) -> bool:
+        """Whether the id was free; it no longer is."""
+        if step_id in self.step_ids:
+            return False
+        self.step_ids[step_id] = None
+        return True
+
+    # -- names --------------------------------------------------------------------------------
+
+    def check_frame(self, name: str, loc: Loc) -> None:
+        """`world`, a link, or an object."""
+        frames = ("world", *self.description.link_names)
+        if name not in frames and name not in self.objects:
+            self.problems.unknown(loc, "frame", name, (*frames, *self.objects))
+
+    def check_link(self, name: str | None, loc: Loc) -> None:
+        """A robot link."""
+        if name is not None and name not in self.description.link_names:
+            self.problems.unknown(loc, "link", name, self.description.link_names, needs=("robot",))
+
+    def check_link_or_held(self, name: str | None, loc: Loc) -> None:
+        """A robot link, or an object that is attached here (Task Constructor's ik_frame)."""
+        if name is not None and name not in self.attached:
+            self.check_link(name, loc)
+
+    def take_time(self, seconds: float, loc: Loc) -> None:
+        """Simulated time that a step asks for; all of it must fit into a run."""
+        before, self.asked_time = self.asked_time, self.asked_time + seconds
+        if before <= LONGEST_RUN < self.asked_time:
+            self.problems.add(
+                loc,
+                f"the steps up to here ask for {self.asked_time:g} s, and a run may take"
+                f" {LONGEST_RUN:g} s of simulated time",
+                "shorten it, or make it several scenarios",
+                needs=(),
+            )
+
+    def check_group(self, name: str | None, loc: Loc) -> str:
+        """A planning group; returns the one that is meant."""
+        if name is None:
+            return self.description.default_group
+        if name not in self.description.groups:
+            self.problems.unknown(
+                loc, "planning group", name, self.description.groups, needs=("robot",)
+            )
+        return name
+
+    def check_object(
+        self, name: str, loc: Loc, *, simulated: bool = False, is_key: bool = False
+    ) -> None:
+        """An object of the world or of an earlier step, and one that the physics knows."""
+        obj = self.objects.get(name)
+        if obj is None:
+            self.problems.unknown(
+                loc, "object", name, self.objects, is_key=is_key, needs=("world",)
+            )
+        elif simulated and not obj.in_simulation:
+            self.problems.add(
+                loc,
+                f"'{name}' is known to the planner alone, so the physics cannot tell of it",
+                "name an object that is `in: both` or `in: simulation`",
+            )
+
+    def check_present(self, name: str, loc: Loc) -> None:
+        """An object that is in the scene at this point of the file."""
+        if name not in self.objects:
+            self.check_object(name, loc)
+        elif name not in self.present:
+            self.problems.add(
+                loc, f"'{name}' is not in the scene at this step", "add it first", needs=("world",)
+            )
+
+    def check_camera(self, name: str, loc: Loc) -> None:
+        """A camera of the robot, the world or the scenario."""
+        if name not in self.cameras:
+            self.problems.unknown(loc, "camera", name, self.cameras)
+
+    def check_body(self, name: str, loc: Loc, *, special: tuple[str, ...]) -> None:
+        """A link, an object, or one of some special words."""
+        known = (*special, *self.objects, *self.description.link_names)
+        if name not in known:
+            self.problems.unknown(loc, "object or link", name, known)
+
+    def check_state(self, group: str, state: str, loc: Loc) -> None:
+        """A named state of a group."""
+        states = self.description.states_of(group)
+        if state not in states and group in self.description.groups:
+            self.problems.unknown(
+                loc, f"named state of {group} called", state, states, needs=("robot",)
+            )
+
+    def check_joint(
+        self, name: str, loc: Loc, group: str | None = None, *, is_key: bool = True
+    ) -> None:
+        """A movable joint, of a group if one is given."""
+        names = self.description.joint_names
+        where = "joint"
+        if group is not None and group in self.description.groups:
+            names = self.description.groups[group].joint_names
+            where = f"joint of '{group}'"
+        if name not in names:
+            self.problems.unknown(loc, where, name, names, is_key=is_key, needs=("robot",))
+
+    def check_gripper(self, loc: Loc, what: str) -> bool:
+        """Whether the robot has a gripper, which `what` needs."""
+        if self.description.gripper is None:
+            self.problems.add(
+                loc,
+                f"{what} needs a gripper, and {self.description.name} has none",
+                "say `gripper: rh_p12_rn_a` under `robot`",
+                needs=("robot",),
+            )
+            return False
+        return True
+
+
+class At:
+    """The scope at a step, and the step's place in the file."""
+
+    def __init__(self, scope: Scope, loc: Loc) -> None:
+        self.scope = scope
+        self.loc = loc
+
+    def key(self, *keys: str | int) -> Loc:
+        """Place of something inside the step."""
+        return (*self.loc, *keys)
+
+    def check_pose(self, pose: Pose, *keys: str | int) -> None:
+        """A pose under these keys of the step, whose frame must exist."""
+        self.scope.check_frame(pose.frame, self.key(*keys, "frame"))

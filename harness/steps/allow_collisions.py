@@ -1,0 +1,53 @@
+"""allow_collisions: pairs may touch while the nested steps run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, ClassVar
+
+from pydantic import Field
+
+from harness.cell.cell import Cell
+from harness.cell.scope import At
+from harness.spec.base import Name
+from harness.spec.source import Loc
+from harness.spec.step import AnyStep, Block, Step
+
+SPECIAL_BODIES = ("robot",)
+
+
+class AllowCollisions(Step):
+    """Allow collisions of pairs while the nested steps run."""
+
+    verb: ClassVar[str] = "allow_collisions"
+
+    pairs: Annotated[tuple[tuple[Name, Name], ...], Field(min_length=1)] = Field(
+        description="Pairs of names of links or objects that may touch."
+    )
+    during: Annotated[tuple[AnyStep, ...], Field(min_length=1)] = Field(
+        description="The steps during which the pairs may touch."
+    )
+
+    def summary(self) -> str:
+        return ", ".join(f"{a}-{b}" for a, b in self.pairs)
+
+    def blocks(self, loc: Loc, path: str) -> Iterator[Block]:
+        yield Block(self.during, (*loc, "during"), f"{path}.during")
+
+    def check(self, at: At) -> None:
+        for index, pair in enumerate(self.pairs):
+            for side, name in enumerate(pair):
+                at.scope.check_body(name, at.key("pairs", index, side), special=SPECIAL_BODIES)
+
+    def execute(self, cell: Cell) -> None:
+        """Allow the pairs, run the nested steps, and check the pairs again, whatever happened."""
+        cell.notes.result["allowed_collisions"] = [list(pair) for pair in self.pairs]
+        cell.scene.set_allowed(self.pairs, allowed=True)
+        cell.allowed.append(self.pairs)
+        try:
+            cell.run_children()
+        finally:
+            cell.allowed.pop()
+            cell.scene.set_allowed(self.pairs, allowed=False)
+            for around in cell.allowed:  # may name the same pairs
+                cell.scene.set_allowed(around, allowed=True)

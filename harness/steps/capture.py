@@ -1,0 +1,49 @@
+"""capture: the camera's next picture."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from harness.cell.cell import Cell
+from harness.cell.scope import At
+from harness.spec.base import Name
+from harness.spec.step import Step
+
+
+class Capture(Step):
+    """Wait for a camera's next picture and keep it; it is drawn after the run."""
+
+    short = "camera"
+
+    verb: ClassVar[str] = "capture"
+
+    camera: Name = Field(description="The name of the camera.")
+    kinds: Annotated[
+        tuple[Literal["color", "depth", "segmentation"], ...], Field(min_length=1, max_length=3)
+    ] = Field(default=("color",), description="The kinds of images that are kept.")
+
+    def summary(self) -> str:
+        return f"{self.camera}: {', '.join(self.kinds)}"
+
+    def check(self, at: At) -> None:
+        at.scope.check_camera(self.camera, at.key("camera"))
+
+    def execute(self, cell: Cell) -> None:
+        """Hold the last commands until the camera takes its next picture.
+
+        Pictures are taken at multiples of 1 / update_rate. This one is drawn after the run, from
+        the last recorded sample of the step: physics never waits for it.
+        """
+        camera = cell.cameras[self.camera]
+        now = cell.simulator.time
+        taken = math.floor(now * camera.update_rate + 1e-6) + 1
+        cell.simulator.hold(taken / camera.update_rate - now)
+        cell.notes.result.update(
+            camera=self.camera,
+            kinds=list(self.kinds),
+            time=cell.simulator.time,
+            sample=cell.simulator.sample_count - 1,
+        )

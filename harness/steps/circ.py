@@ -1,0 +1,33 @@
+"""circ: Pilz's arc."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import ClassVar
+
+from harness.cell.cell import Cell
+from harness.cell.goal_checks import check_arc, check_goal
+from harness.cell.goals import arc_point, group_of, link_limits, resolve_goal
+from harness.cell.scope import At
+from harness.spec.goals import ArcFields
+from harness.spec.step import Step
+
+
+class Circ(ArcFields, Step):
+    """Pilz CIRC: the link moves on an arc, through `interim` or about `center`."""
+
+    verb: ClassVar[str] = "circ"
+    moves_arm: ClassVar[bool] = True
+
+    def check(self, at: At) -> None:
+        check_goal(self, self.group, at)
+        check_arc(self, at)
+
+    def execute(self, cell: Cell) -> None:
+        """Move the link on an arc to the goal, turning at an even rate."""
+        cell.sync_scene()
+        group = group_of(cell, self.group)
+        goal, point = resolve_goal(self, group, cell), arc_point(self, cell)
+        options = replace(cell.current.options, cartesian_limits=link_limits(self.cartesian_limits))
+        start = cell.planning_start()
+        cell.carry_out(cell.planner.plan_circular(group, start, goal, point, options))

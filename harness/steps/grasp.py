@@ -1,0 +1,98 @@
+"""grasp: close until both finger sides touch the object, then attach it in the planning scene."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from harness.cell.cell import Cell
+from harness.cell.scope import At
+from harness.core.errors import StepFailed
+from harness.spec.base import JointEffort, JointValue, Name
+from harness.spec.step import Step
+from harness.steps.gripper import DEFAULT_TIMEOUT, check_gripper_position, note_result
+
+GripperAction = Literal["friction", "weld"]
+
+
+class Grasp(Step):
+    """Close until both finger sides touch the object, verify, attach it in the planning scene."""
+
+    short = "object"
+
+    verb: ClassVar[str] = "grasp"
+
+    object: Name = Field(description="The name of the object.")
+    mode: GripperAction = Field(
+        default="friction",
+        description="`friction` holds the object by contact; `weld` also fixes it in the physics.",
+    )
+    max_effort: Annotated[JointEffort, Field(gt=0)] | None = Field(
+        default=None,
+        description="The effort limit of the gripper's joint while it holds; the default is the "
+        "robot's.",
+    )
+    position: JointValue | None = Field(
+        default=None,
+        description="The gripper's joint closes to this position at most; the default is closed.",
+    )
+
+    def summary(self) -> str:
+        return self.object if self.mode == "friction" else f"{self.object} ({self.mode})"
+
+    def check(self, at: At) -> None:
+        if at.scope.check_gripper(at.loc, "`grasp`"):
+            check_gripper_position(self.position, at)
+        check_graspable(self.object, at)
+        at.scope.attached[self.object] = None
+
+    def execute(self, cell: Cell) -> None:
+        """Close, verify the contact on both sides, attach; `weld` fixes it in the physics too.
+
+        Raises:
+            StepFailed: CONTROL_FAILED, when a finger side does not touch the object.
+        """
+        hand = cell.gripper
+        target = hand.closed_position if self.position is None else self.position
+        result = cell.simulator.command_gripper(
+            target, self.max_effort or hand.grip_effort, timeout=self.timeout or DEFAULT_TIMEOUT
+        )
+        note_result(cell, target, result)
+        cell.notes.result["mode"] = self.mode
+        empty = [side for side, names in result.contacts.items() if self.object not in names]
+        if empty:
+            raise StepFailed("CONTROL_FAILED", _missed(self.object, empty, cell), cell.notes.result)
+        cell.sync_scene()
+        cell.attach(self.object, cell.description.tcp_link, hand.links)
+        if self.mode == "weld":
+            cell.simulator.weld(self.object, hand.palm_link)
+        cell.held.append(self.object)
+
+
+def check_graspable(name: str, at: At) -> None:
+    """Report an object that is not there, cannot be lifted, or is unknown to the planner."""
+    scope = at.scope
+    scope.check_present(name, at.key("object"))
+    obj = scope.objects.get(name)
+    if obj is not None:
+        scope.check_object(name, at.key("object"), simulated=True)
+    if obj is not None and obj.is_static:
+        scope.problems.add(at.key("object"), f"'{name}' is static: it cannot be picked up")
+    if obj is not None and not obj.in_planning:
+        scope.problems.add(
+            at.key("object"),
+            f"'{name}' is unknown to the planner, so it cannot be attached",
+            "name an object that is `in: both`",
+        )
+
+
+def _missed(name: str, empty: list[str], cell: Cell) -> str:
+    """Which side misses, and how the object stands to the TCP."""
+    tcp = cell.frame(cell.description.tcp_link)
+    offset = tcp.inverse().apply(cell.frame(name).translation) * 1e3
+    sides = " and ".join(f"the {side} finger" for side in empty)
+    return (
+        f"{sides} did not touch '{name}' when the gripper closed; its origin stands"
+        f" ({offset[0]:.1f}, {offset[1]:.1f}, {offset[2]:.1f}) mm from the TCP, in the TCP's axes"
+    )

@@ -1,0 +1,122 @@
+"""gripper: GripperCommand."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from harness.cell.cell import Cell
+from harness.cell.scope import At
+from harness.core.errors import StepFailed
+from harness.ports import GripperResult
+from harness.robot.description import Gripper as GripperDescription
+from harness.spec.base import JointEffort, JointValue, Name, NonNegativeLength
+from harness.spec.step import Step
+
+DEFAULT_TIMEOUT = 10.0  # [s] of simulation
+
+
+class Gripper(Step):
+    """Move the gripper to a named state, a `position` or a `width`: ROS's GripperCommand."""
+
+    short = "named_target"
+
+    verb: ClassVar[str] = "gripper"
+
+    named_target: Name | None = Field(
+        default=None, description="The gripper moves to this SRDF group state."
+    )
+    position: JointValue | None = Field(
+        default=None, description="The gripper's joint moves to this position."
+    )
+    width: NonNegativeLength | None = Field(
+        default=None, description="The gap between the pads becomes this wide [m]."
+    )
+    max_effort: Annotated[JointEffort, Field(gt=0)] | None = Field(
+        default=None,
+        description="The effort limit of the gripper's joint; the default is the robot's.",
+    )
+
+    @model_validator(mode="after")
+    def _one_target(self) -> Gripper:
+        given = [k for k in ("named_target", "position", "width") if getattr(self, k) is not None]
+        if len(given) != 1:
+            raise ValueError("exactly one of a named state, `position`, `width`")
+        return self
+
+    def summary(self) -> str:
+        if self.named_target is not None:
+            return self.named_target
+        if self.position is not None:
+            return f"to {self.position:g}"
+        return f"width {(self.width or 0.0) * 1e3:g} mm"
+
+    def check(self, at: At) -> None:
+        if not at.scope.check_gripper(at.loc, "`gripper`"):
+            return
+        hand = at.scope.description.gripper
+        if hand is not None and self.named_target is not None:
+            at.scope.check_state(hand.group, self.named_target, at.key("named_target"))
+        check_gripper_position(self.position, at)
+
+    def execute(self, cell: Cell) -> None:
+        """Drive the gripper's joint until it arrives or stalls; a stall is no failure, as in ROS.
+
+        Raises:
+            StepFailed: TIMED_OUT, when it does neither in time.
+        """
+        hand = cell.gripper
+        target, effort = self.command(cell)
+        timeout = self.timeout or DEFAULT_TIMEOUT
+        result = cell.simulator.command_gripper(target, effort, timeout=timeout)
+        note_result(cell, target, result)
+        if not (result.reached_goal or result.stalled):
+            raise StepFailed(
+                "TIMED_OUT",
+                f"'{hand.joint}' is at {result.position:.4g} and still moves towards {target:.4g}"
+                f" after {timeout:g} s",
+            )
+
+    def command(self, cell: Cell) -> tuple[float, float]:
+        """GripperCommand's position and max_effort."""
+        hand = cell.gripper
+        effort = self.max_effort or hand.grip_effort
+        if self.named_target is not None:
+            states = cell.description.states_of(hand.group)
+            return states[self.named_target].positions[hand.joint], effort
+        if self.position is not None:
+            return self.position, effort
+        return _position_for_width(hand, self.width or 0.0), effort
+
+
+def check_gripper_position(position: float | None, at: At) -> None:
+    """Report a position outside the limits of the gripper's joint."""
+    hand = at.scope.description.gripper
+    if position is None or hand is None:
+        return
+    joint = at.scope.description.joint_by_name[hand.joint]
+    if not joint.lower <= position <= joint.upper:
+        at.scope.problems.add(
+            at.key("position"),
+            f"'{joint.name}' goes from {joint.lower:g} to {joint.upper:g}, not to {position:g}",
+        )
+
+
+def note_result(cell: Cell, target: float, result: GripperResult) -> None:
+    """Leave GripperCommand's result, and the contacts, in the step's record."""
+    cell.notes.result.update(
+        target=target,
+        position=result.position,
+        effort=result.effort,
+        stalled=result.stalled,
+        reached_goal=result.reached_goal,
+        contacts={side: list(names) for side, names in result.contacts.items()},
+    )
+
+
+def _position_for_width(hand: GripperDescription, width: float) -> float:
+    """Joint position at which the pads are `width` apart [m]."""
+    rows = hand.widths[np.argsort(hand.widths[:, 1])]
+    return float(np.interp(width, rows[:, 1], rows[:, 0]))

@@ -1,0 +1,34 @@
+"""move_object: an object stands somewhere else."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from pydantic import Field
+
+from harness.cell.cell import Cell
+from harness.cell.scope import At
+from harness.spec.base import Name
+from harness.spec.poses import Pose
+from harness.spec.step import Step
+
+
+class MoveObject(Step):
+    """Put an object somewhere else, at rest."""
+
+    verb: ClassVar[str] = "move_object"
+
+    object: Name = Field(description="The name of the object.")
+    pose: Pose = Field(description="The object's new pose.")
+
+    def summary(self) -> str:
+        return self.object
+
+    def check(self, at: At) -> None:
+        at.scope.check_present(self.object, at.key("object"))
+        at.check_pose(self.pose, "pose")
+
+    def execute(self, cell: Cell) -> None:
+        """Put the object somewhere else, at rest, in planning scene and physics."""
+        cell.move_in_scene(self.object, cell.world_pose(self.pose))
+        cell.notes.result["moved"] = [self.object]

@@ -1,0 +1,108 @@
+"""move_relative: Task Constructor's straight move by a distance."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from harness.cell.cell import Cell
+from harness.cell.goals import group_of
+from harness.cell.scope import At
+from harness.core.types import FloatArray
+from harness.ports import MotionPlan, PlanningOptions
+from harness.spec.base import Angle, Length, Name, PositiveLength
+from harness.spec.poses import Direction
+from harness.spec.step import Step
+
+
+class MoveRelative(Step):
+    """Move the link by a distance, or turn it by an angle: Task Constructor's MoveRelative."""
+
+    verb: ClassVar[str] = "move_relative"
+    moves_arm: ClassVar[bool] = True
+
+    direction: Direction | None = Field(
+        default=None, description="The link moves straight in this direction."
+    )
+    rotation: Direction | None = Field(
+        default=None, description="The link turns about this axis through its origin."
+    )
+    distance: Annotated[Length, Field(gt=0)] | None = Field(
+        default=None, description="The move has exactly this length [m]."
+    )
+    min_distance: PositiveLength | None = Field(
+        default=None, description="The move has at least this length, or the step fails [m]."
+    )
+    max_distance: PositiveLength | None = Field(
+        default=None, description="The move has at most this length [m]."
+    )
+    angle: Annotated[Angle, Field(gt=0)] | None = Field(
+        default=None, description="With `rotation`, the link turns by this angle [rad]."
+    )
+    link: Name | None = Field(
+        default=None, description="The link that moves; the default is the TCP."
+    )
+
+    @model_validator(mode="after")
+    def _one_amount(self) -> MoveRelative:
+        if (self.direction is None) == (self.rotation is None):
+            raise ValueError("exactly one of `direction` and `rotation`")
+        if self.rotation is not None:
+            if self.angle is None:
+                raise ValueError("a `rotation` has an `angle`")
+            if any((self.distance, self.min_distance, self.max_distance)):
+                raise ValueError("a `rotation` has an `angle`, a `direction` has a distance")
+            return self
+        if self.angle is not None:
+            raise ValueError("an `angle` goes with `rotation`")
+        if self.distance is not None and (self.min_distance or self.max_distance):
+            raise ValueError("either `distance`, or `min_distance` and `max_distance`")
+        if self.distance is None and self.max_distance is None:
+            raise ValueError("a `direction` has a `distance`, or a `max_distance`")
+        if self.min_distance and self.max_distance and self.min_distance > self.max_distance:
+            raise ValueError("`min_distance` is more than `max_distance`")
+        return self
+
+    def summary(self) -> str:
+        amount = self.distance or self.max_distance
+        return f"{amount:g} m" if amount else f"{self.angle or 0.0:g} rad"
+
+    def check(self, at: At) -> None:
+        at.scope.check_group(self.group, at.key("group"))
+        at.scope.check_link(self.link, at.key("link"))
+        for key in ("direction", "rotation"):
+            direction = getattr(self, key)
+            if direction is not None:
+                at.scope.check_frame(direction.frame, at.key(key, "frame"))
+
+    def execute(self, cell: Cell) -> None:
+        """Move the link along the direction, or turn it about the axis, by the given amount."""
+        cell.sync_scene()
+        cell.carry_out(self.plan(cell.planning_start(), cell.current.options, cell))
+
+    def plan(self, start: FloatArray, options: PlanningOptions, cell: Cell) -> MotionPlan:
+        """Plan the motion from joint positions in description order.
+
+        Raises:
+            PlanningFailed: The arm cannot make it.
+        """
+        twist = np.zeros(6)
+        if self.direction is not None:
+            twist[:3] = cell.world_direction(self.direction)
+            most = self.distance or self.max_distance or 0.0
+            least = self.distance or self.min_distance or 0.0
+        elif self.rotation is not None and self.angle is not None:
+            twist[3:] = cell.world_direction(self.rotation)
+            least = most = self.angle
+        else:
+            raise ValueError("the model has a direction or a rotation")
+        return cell.planner.plan_relative(
+            group_of(cell, self.group),
+            start,
+            self.link or cell.description.tcp_link,
+            twist,
+            (least, most),
+            options,
+        )

@@ -1,0 +1,278 @@
+"""place: approach, lower, release, retreat, as Task Constructor's Place; each is recorded."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from harness.cell.cell import Cell
+from harness.cell.goals import TcpGoal, arm_has_six_joints, group_of
+from harness.cell.grasp_choice import Approach, Search, choose_approach
+from harness.cell.grasping import UP, gripper_axes, pitch_of, turn_about
+from harness.cell.program import ProgramStep
+from harness.cell.scope import At
+from harness.core.errors import PlanningFailed, StepFailed
+from harness.core.spatial import SE3
+from harness.core.symmetry import equal_turns
+from harness.core.types import FloatArray
+from harness.ports import PositionGoal, Touch
+from harness.spec.base import Name
+from harness.spec.poses import Direction, Pose, Position
+from harness.spec.step import Step
+from harness.steps.lin import Lin
+from harness.steps.move_to import MoveTo
+from harness.steps.pick import (
+    Travel,
+    check_travel,
+    millimetres,
+    relative_step,
+    travel_lengths,
+    with_advice,
+    world_pose_spec,
+)
+from harness.steps.release import Release
+
+REFINEMENTS = 4
+PUT_DOWN_GAP = 0.001  # [m] above the target, so that the support is touched when the fingers open
+DEEPEST_OPENING = 0.002
+"""Penetration of the opening gripper above which nothing is put down [m]."""
+TURNS_OF_ROUND = 8
+"""As many turns are tried of what is round about the vertical."""
+DEFAULT_RETREAT = Travel(min_distance=0.03, max_distance=0.1)
+
+
+class Place(Step):
+    """Approach, lower, release, retreat; expands into the steps it is made of.
+
+    Where the arm cannot lower the object to a `pose` without a rotation, or not open its hand
+    there, the object is turned about the vertical, if it looks the same then: by a half, what is
+    square by quarters, what is round by eighths; the step reports which `turn` of how many `turns`.
+    A `pose` with a rotation is kept to. An arm of fewer than six joints brings the object to the
+    position alone, with the pitch that the gripper has: the object turns with the arm.
+    """
+
+    verb: ClassVar[str] = "place"
+
+    object: Name | None = Field(
+        default=None,
+        description="The name of the object; the default is the one that was picked last.",
+    )
+    pose: Pose = Field(description="The pose at which the object will stand.")
+    approach: Travel | None = Field(
+        default=None,
+        description="The approach; the default is straight down, 10 cm or as much as the arm can "
+        "follow, at least 3 cm.",
+    )
+    retreat: Travel | None = Field(
+        default=None, description="The retreat; the default is 3 to 10 cm back along the gripper."
+    )
+
+    def summary(self) -> str:
+        return self.object or ""
+
+    def check(self, at: At) -> None:
+        at.scope.check_gripper(at.loc, "`place`")
+        at.check_pose(self.pose, "pose")
+        if self.object is not None:
+            at.scope.check_object(self.object, at.key("object"))
+        check_travel(self.approach, at, "approach")
+        check_travel(self.retreat, at, "retreat")
+        name = self.object or next(reversed(at.scope.attached), None)
+        if name is not None:
+            at.scope.attached.pop(name, None)
+
+    def execute(self, cell: Cell) -> None:
+        """Go above the target, lower straight, release, retreat along the gripper's approach axis.
+
+        Raises:
+            StepFailed: INVALID_OBJECT_NAME, when the object is not held.
+        """
+        name = self.object or (cell.held[-1] if cell.held else None)
+        if name is None or name not in cell.scene.attached():
+            what = f"'{name}' is not held" if name else "nothing is held"
+            raise StepFailed("INVALID_OBJECT_NAME", f"{what}, so nothing can be placed")
+        backwards = _retreat_direction(cell)
+        children = [
+            *_lowering(name, self, cell),
+            cell.child("release", Release(object=name), f"release {name}"),
+            cell.child(
+                "retreat",
+                relative_step(self.retreat or DEFAULT_RETREAT, backwards, self.group),
+                "move_relative back",
+            ),
+        ]
+        cell.run_children(children)
+
+
+def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
+    """The free motion above the place, and the straight one down to it."""
+    along = -UP
+    if step.approach is not None and step.approach.direction is not None:
+        along = cell.world_direction(step.approach.direction)
+    targets = [
+        SE3(stated.rotation, stated.translation + PUT_DOWN_GAP * UP)
+        for stated in _equal_poses(name, step, cell)
+    ]
+    goals = [_tcp_goal(name, target, step, cell) for target in targets]
+    approaches = [
+        Approach(
+            _tcp_goal(name, SE3(target.rotation, target.translation - length * along), step, cell),
+            goal,
+            number,
+        )
+        for length in travel_lengths(step.approach)
+        for number, (target, goal) in enumerate(zip(targets, goals, strict=True))
+    ]
+    cell.notes.result.update(turns=len(targets), turn=1)
+    refused: list[Touch] = []
+    search = Search(
+        group_of(cell, step.group),
+        cell.planning_start(),
+        replace(cell.current.options, padding=0.0),
+        may_end=lambda state: _can_open(state, refused, cell),
+    )
+    try:
+        chosen = choose_approach(approaches, search, cell)
+    except PlanningFailed as failure:
+        advice = place_advice(name, step, failure, cell)
+        raise with_advice(failure, advice) from failure
+    least = max(refused, key=lambda touch: touch.distance, default=None)
+    if least is not None and least.distance < -DEEPEST_OPENING:
+        raise _no_room(name, least)
+    cell.notes.result.update(turn=chosen.number + 1)
+    return [
+        cell.child(
+            "reach",
+            MoveTo(**chosen.before.keys, group=step.group),
+            f"move_to above the place of {name}",
+        ),
+        _touching(cell.child("lower", Lin(**chosen.at.keys, group=step.group), f"lin {name}")),
+    ]
+
+
+def _can_open(state: FloatArray, refused: list[Touch], cell: Cell) -> bool:
+    """Whether the open gripper touches nothing but what it holds; keeps the deepest pair if not."""
+    touches = cell.scene.touches(cell.with_open_gripper(state))
+    if touches:
+        refused.append(touches[0])
+        return False
+    refused.clear()
+    return True
+
+
+def _no_room(name: str, touch: Touch) -> StepFailed:
+    """Where the arm can put the object down, but not let go of it."""
+    depth = millimetres(-touch.distance)
+    return StepFailed(
+        "GOAL_IN_COLLISION",
+        f"the gripper has no room to open where '{name}' is put down: open, {touch.first} and"
+        f" {touch.second} would be {depth} inside each other",
+        {
+            "touches": [{"pair": [touch.first, touch.second], "distance": touch.distance}],
+            "advice": (
+                f"put it down farther from '{touch.second}', or where there is {depth} more room"
+                " on that side of the gripper"
+            ),
+        },
+    )
+
+
+def place_advice(name: str, step: Place, failure: PlanningFailed, cell: Cell) -> str:
+    """What to do in the keys of a place."""
+    if failure.facts.get("is_start_of_approach"):
+        return (
+            "the place can be reached, the start of the approach cannot: give `approach` a shorter"
+            " `distance`, or another `direction`"
+        )
+    stated = cell.world_pose(step.pose)
+    if failure.code == "GOAL_IN_COLLISION":
+        shift = failure.facts.get("nearest", {}).get("nearest_free", {}).get("shift")
+        if shift is None:
+            return ""
+        return (
+            f"move '{name}' to where it is free: `pose: {{{_xyz(stated.translation + shift)}}}`, or"
+            " move what is in the way"
+        )
+    nearest = failure.facts.get("nearest", {}).get("joint_positions")
+    if nearest is None:
+        return ""
+    state = np.array([nearest[joint] for joint in cell.description.joint_names])
+    pose = cell.scene.object_pose(name, state)
+    point = pose.translation - PUT_DOWN_GAP * UP
+    away = float(np.linalg.norm(point - stated.translation))
+    return (
+        f"the nearest place that the arm can bring '{name}' to, held as it is, is `pose:"
+        f" {{{_xyz(point)}}}`, {millimetres(away)} away; or pick it with another `pitch` or"
+        " `grasp_pose`"
+    )
+
+
+def _xyz(point: FloatArray) -> str:
+    x, y, z = np.round(point, 3) + 0.0
+    return f"xyz: [{x:g}, {y:g}, {z:g}]"
+
+
+def _equal_poses(name: str, step: Place, cell: Cell) -> list[SE3]:
+    """T_world_object of every way to put it there: as stated, then turned further and further.
+
+    An arm of fewer than six joints turns the object as it reaches there: it has one way.
+    """
+    stated = cell.world_pose(step.pose)
+    if step.pose.has_rotation or not arm_has_six_joints(cell.description, step.group):
+        return [stated]
+    obj = cell.presence[name].obj
+    count = equal_turns(obj.visuals or obj.shapes, stated.rotation) or TURNS_OF_ROUND
+    turns = sorted(range(count), key=lambda turn: min(turn, count - turn))
+    return [
+        SE3(turn_about(UP, 2 * math.pi * turn / count) @ stated.rotation, stated.translation)
+        for turn in turns
+    ]
+
+
+def _touching(step: ProgramStep) -> ProgramStep:
+    """The step without padding: what is put down comes as near to its support as it will stand."""
+    return replace(step, options=replace(step.options, padding=0.0))
+
+
+def _retreat_direction(cell: Cell) -> Direction:
+    """Against the gripper's approach axis, in the TCP's frame, so it is read when it is needed."""
+    x, y, z = (-float(value) for value in gripper_axes(cell)[0])
+    return Direction(xyz=(x, y, z), frame=cell.description.tcp_link)
+
+
+def _tcp_goal(name: str, target: SE3, step: Place, cell: Cell) -> TcpGoal:
+    """Where the TCP must be so that the held object, as the planner believes it, is at a pose."""
+    start = cell.planning_start()
+    tcp = cell.kinematics.link_pose(start, cell.description.tcp_link)
+    tcp_to_object = tcp.inverse() @ cell.scene.object_pose(name, start)
+    if arm_has_six_joints(cell.description, step.group):
+        return TcpGoal(world_pose_spec(target @ tcp_to_object.inverse()))
+    pitch = pitch_of(tcp.rotation)
+    x, y, z = _tcp_position(target.translation, tcp_to_object, pitch, step, cell)
+    return TcpGoal(Position(xyz=(float(x), float(y), float(z))), pitch)
+
+
+def _tcp_position(
+    point: FloatArray, tcp_to_object: SE3, pitch: float, step: Place, cell: Cell
+) -> FloatArray:
+    """TCP position at which the object's origin is at a point, for arms that choose their own yaw.
+
+    The yaw follows from the position, so the offset is corrected a few times from where the
+    solution puts the object.
+    """
+    group, start = group_of(cell, step.group), cell.planning_start()
+    link, position = cell.description.tcp_link, np.array(point)
+    for _ in range(REFINEMENTS):
+        goal = PositionGoal(link, position, pitch)
+        solutions = cell.kinematics.solve(group, goal, start, cell.current.options.seed)
+        if not solutions:
+            break  # the search for an approach explains it
+        state = np.array(start)
+        state[list(cell.description.group_indices(group))] = solutions[0]
+        tcp = cell.kinematics.link_pose(cell.description.with_mimics(state), link)
+        position = position + point - (tcp @ tcp_to_object).translation
+    return position

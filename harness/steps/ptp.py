@@ -1,0 +1,58 @@
+"""ptp: Pilz's synchronised joint motion."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from pydantic import Field
+
+from harness.cell.cell import Cell
+from harness.cell.goal_checks import check_goal
+from harness.cell.goals import group_of, resolve_goal
+from harness.cell.scope import At
+from harness.core.errors import PlanningFailed
+from harness.ports import JointGoal
+from harness.spec.base import PositiveDuration
+from harness.spec.goals import GoalFields
+from harness.spec.step import Step
+
+
+class Ptp(GoalFields, Step):
+    """Pilz PTP: all joints move together, straight in joint space."""
+
+    verb: ClassVar[str] = "ptp"
+    moves_arm: ClassVar[bool] = True
+
+    duration: PositiveDuration | None = Field(
+        default=None,
+        description="The motion takes exactly this time, as time_from_start of a JointTrajectory "
+        "point [s].",
+    )
+
+    def check(self, at: At) -> None:
+        check_goal(self, self.group, at)
+        if self.duration is not None:
+            at.scope.take_time(self.duration, at.key("duration"))
+            if not (self.joints or self.named_target):
+                at.scope.problems.add(
+                    at.key("duration"), "`duration` goes with `joints` or a named state"
+                )
+
+    def execute(self, cell: Cell) -> None:
+        """Move all joints together; a pose goal takes the nearest inverse kinematics solution."""
+        cell.sync_scene()
+        group = group_of(cell, self.group)
+        start = cell.planning_start()
+        goal = resolve_goal(self, group, cell)
+        if isinstance(goal, JointGoal):
+            positions = goal.positions
+        else:
+            cell.planner.check_goal(group, start, goal, cell.current.options)
+            solutions = cell.kinematics.solve(group, goal, start, cell.current.options.seed)
+            if not solutions:
+                raise PlanningFailed("NO_IK_SOLUTION", "no joint positions reach the goal")
+            positions = solutions[0]
+        plan = cell.planner.plan_joint_motion(
+            group, start, positions, cell.current.options, self.duration
+        )
+        cell.carry_out(plan)

@@ -1,0 +1,79 @@
+"""release: open, verify that nothing is held, detach in the planning scene."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from pydantic import Field
+
+from harness.cell.cell import Cell
+from harness.cell.scope import At
+from harness.core.errors import StepFailed
+from harness.spec.base import JointValue, Name
+from harness.spec.step import Step
+from harness.steps.gripper import DEFAULT_TIMEOUT, note_result
+
+
+class Release(Step):
+    """Open, verify that nothing is held, detach in the planning scene."""
+
+    short = "object"
+
+    verb: ClassVar[str] = "release"
+
+    object: Name | None = Field(
+        default=None,
+        description="The name of the object; the default is the one that was grasped last.",
+    )
+    named_target: Name | None = Field(
+        default=None,
+        description="The gripper opens to this SRDF group state; the default is its open position.",
+    )
+    position: JointValue | None = Field(
+        default=None,
+        description="The gripper's joint opens to this position, in place of `named_target`.",
+    )
+
+    def summary(self) -> str:
+        return self.object or ""
+
+    def check(self, at: At) -> None:
+        scope = at.scope
+        hand = scope.description.gripper
+        if scope.check_gripper(at.loc, "`release`") and hand and self.named_target:
+            scope.check_state(hand.group, self.named_target, at.key("named_target"))
+        if self.object is not None:
+            scope.check_object(self.object, at.key("object"))
+            scope.attached.pop(self.object, None)
+        elif scope.attached:
+            scope.attached.popitem()
+
+    def execute(self, cell: Cell) -> None:
+        """Open the gripper, detach the object, and verify that no finger touches it any more.
+
+        Raises:
+            StepFailed: INVALID_OBJECT_NAME, when nothing is held; CONTROL_FAILED, when a finger
+                still touches it.
+        """
+        hand = cell.gripper
+        name = self.object or (cell.held[-1] if cell.held else None)
+        if name is None:
+            message = "nothing was grasped, so nothing can be released"
+            raise StepFailed("INVALID_OBJECT_NAME", message)
+        target = hand.open_position
+        if self.named_target is not None:
+            target = cell.description.states_of(hand.group)[self.named_target].positions[hand.joint]
+        elif self.position is not None:
+            target = self.position
+        cell.simulator.unweld(name)
+        result = cell.simulator.command_gripper(
+            target, hand.max_effort, timeout=self.timeout or DEFAULT_TIMEOUT
+        )
+        note_result(cell, target, result)
+        touching = [side for side, names in result.contacts.items() if name in names]
+        if touching:
+            sides = " and ".join(f"the {side} finger" for side in touching)
+            message = f"{sides} still touches '{name}' with the gripper open"
+            raise StepFailed("CONTROL_FAILED", message)
+        cell.detach(name)
+        cell.notes.result["released"] = name

@@ -1,0 +1,39 @@
+"""repeat: the same steps several times."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, ClassVar
+
+from pydantic import Field
+
+from harness.cell.cell import Cell
+from harness.spec.base import Count
+from harness.spec.source import Loc
+from harness.spec.step import AnyStep, Block, Step
+
+
+class Repeat(Step):
+    """Run the same steps several times; an `id` inside gets `#1`, `#2` ... appended to it."""
+
+    verb: ClassVar[str] = "repeat"
+
+    times: Annotated[Count, Field(ge=1, le=1000)] = Field(
+        description="The steps run this many times."
+    )
+    steps: Annotated[tuple[AnyStep, ...], Field(min_length=1)] = Field(
+        description="The steps that are repeated."
+    )
+
+    def summary(self) -> str:
+        return f"{self.times} times" if self.times > 1 else ""
+
+    def blocks(self, loc: Loc, path: str) -> Iterator[Block]:
+        for index in range(self.times):
+            suffix = f"#{index + 1}" if self.times > 1 else ""
+            yield Block(self.steps, (*loc, "steps"), f"{path}.repeat[{index}]", suffix)
+
+    def execute(self, cell: Cell) -> None:
+        """Run every time through; each step has a seed and a record of its own."""
+        cell.notes.result["times"] = self.times
+        cell.run_children()
