@@ -1,4 +1,4 @@
-"""The fixture that runs scenarios from hand-written tests."""
+"""The fixture with which tests written by hand run scenarios."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def runner_of(request: pytest.FixtureRequest) -> Callable[..., ScenarioResult]:
-    """A function that runs scenarios for one test and gives each call its own report folder."""
+    """A function that runs scenarios for one test; each call has a report folder of its own."""
     config = request.config
     count = 0
 
@@ -55,8 +55,8 @@ def runner_of(request: pytest.FixtureRequest) -> Callable[..., ScenarioResult]:
 
 
 def _found(request: pytest.FixtureRequest, scenario: str | Path | Scenario) -> Any:
-    """The scenario next to the test's file where that file exists; otherwise the name as given."""
+    """A relative name beside the test's file, where there is one, else as it is."""
     if isinstance(scenario, str | Path):
-        sibling = request.path.parent / scenario
-        return shown(sibling) if sibling.is_file() else Path(scenario)
+        beside = request.path.parent / scenario
+        return shown(beside) if beside.is_file() else Path(scenario)
     return scenario

@@ -1,7 +1,7 @@
-"""pytest collects `*.scenario.yaml` files: one item per scenario, run in its own process.
+"""pytest collects `*.scenario.yaml`: one item a scenario, run in a process of its own.
 
-pytest loads this module in every run of an environment, so it imports nothing else of the harness
-until a scenario file is collected.
+Loaded in every pytest run of an environment, so it imports nothing of the harness until a
+scenario file is met.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from harness.pytest_plugin.session import RECORD, SessionResults
+from harness.pytest_plugin.session import TOLD, SessionResults
 
 if TYPE_CHECKING:
     from harness.pytest_plugin.item import ScenarioFile
@@ -29,22 +29,22 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--harness-report-dir",
         metavar="DIR",
         default=None,
-        help="folder for scenario reports (default: the ini key harness_report_dir, else reports)",
+        help="where reports of scenarios go (default: the ini key, or reports)",
     )
     group.addoption(
-        "--harness-no-report", action="store_true", default=False, help="do not write reports"
+        "--harness-no-report", action="store_true", default=False, help="write no reports"
     )
     group.addoption(
         "--harness-history",
         metavar="DIR",
         default=None,
-        help="folder of earlier results.json files; the suite page shows their margins",
+        help="a folder of earlier results.json files, whose margins the session's page shows",
     )
     group.addoption(
         "--harness-in-process",
         action="store_true",
         default=False,
-        help="run scenarios inside the pytest process, so that a debugger can attach",
+        help="run scenarios in pytest's own process, for debuggers",
     )
     group.addoption(
         "--harness-plugin",
@@ -56,16 +56,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addini("harness_plugins", "modules whose plug-ins scenarios may use", type="args")
     parser.addini(
         "harness_files",
-        "file name patterns of scenario files; an empty value collects none",
+        "names of scenario files; empty: none are collected",
         type="args",
         default=PATTERNS,
     )
-    parser.addini(
-        "harness_report_dir", "folder for reports, relative to the root folder", default="reports"
-    )
-    parser.addini(
-        "harness_hard_cap", "wall time [s] after which a scenario ends as an error", default=""
-    )
+    parser.addini("harness_report_dir", "where reports go, from the root folder", default="reports")
+    parser.addini("harness_hard_cap", "wall seconds after which a scenario is an error", default="")
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -91,20 +87,19 @@ def _load_plugins(modules: list[str]) -> None:
 def pytest_runtest_makereport(
     item: pytest.Item, call: pytest.CallInfo[None]
 ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Attach a scenario's record to the report of its test."""
+    """Send what a scenario came to with the report of its test."""
     report = yield
-    record = getattr(item, RECORD, None)
-    if record is not None and call.when == "call":
-        setattr(report, RECORD, record)
+    told = getattr(item, TOLD, None)
+    if told is not None and call.when == "call":
+        setattr(report, TOLD, told)
     return report
 
 
 @pytest.fixture
 def harness_scenario(request: pytest.FixtureRequest) -> Callable[..., ScenarioResult]:
-    """Run a scenario in its own process: `harness_scenario("pick.scenario.yaml")`.
+    """Runs a scenario in a process of its own: `harness_scenario("pick.scenario.yaml")`.
 
-    The function takes the arguments of `harness.run`. Reports go to the session's report folder,
-    under the test's name.
+    Takes what `harness.run` takes; reports go below the session's, under the test's name.
     """
     from harness.pytest_plugin.fixture import runner_of
 
