@@ -81,7 +81,12 @@ def test_a_number_that_is_none_is_a_defect(task, good, name):
 def test_efforts_and_constraints_are_part_of_it(task, good):
     dynamics = task.limits.dynamics
     weak = replace(dynamics, limits=np.full(6, 3.0))
-    assert broken(task, good, limits=replace(task.limits, dynamics=weak)) == "effort limit"
+    assert broken(task, good, limits=replace(task.limits, dynamics=weak)) == "standing effort"
+    at_rest = np.zeros_like(good.positions)
+    standing = np.abs(dynamics.efforts(good.positions, at_rest, at_rest)).max(axis=0)
+    enough_to_stand = replace(dynamics, limits=standing + 0.01)
+    limits = replace(task.limits, dynamics=enough_to_stand)
+    assert broken(task, good, limits=limits) == "effort limit"
     pan = task.space.joint_names[0]
     held = PathConstraints(joints=(JointBand(pan, START[0] - 0.1, START[0] + 0.4),))
     assert broken(task, good, held=HeldConstraints(held, task.space)) == "path constraints"
