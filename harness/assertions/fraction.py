@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
-from harness.assertions.window import NotReached, Window
+from harness.assertions.window import NotReached, Window, refuse_unrecorded_steps
 from harness.recording.run import Measure
 from harness.spec.checks import FractionCheck
 
@@ -29,6 +29,7 @@ def fraction(check: FractionCheck, window: Window) -> MarginSignal:
         and window.start <= max(step.end_index - 1, step.start_index) < window.stop
     ]
     if not reporters:
+        refuse_unrecorded_steps(run)
         raise NotReached("no step of it followed a Cartesian path")
     for step in reporters:
         last = max(step.end_index - 1, step.start_index)

@@ -13,7 +13,12 @@ import numpy as np
 from harness.assertions.contacts import finger_gap, gripper_of
 from harness.assertions.registry import MarginSignal, Part, all_of, signal
 from harness.assertions.text import amount
-from harness.assertions.window import NotObservable, NotReached, Window
+from harness.assertions.window import (
+    NotObservable,
+    NotReached,
+    Window,
+    refuse_unrecorded_steps,
+)
 from harness.recording.run import JointRecord, Measure, Run
 from harness.spec.checks import GripperState, Joints, NamedTarget
 
@@ -115,6 +120,7 @@ def _stalled(expected: bool, window: Window) -> MarginSignal:
             reported[max(step.end_index - 1, 0) :] = float(step.result["stalled"])
     reported = window.cut(reported)
     if np.isnan(reported).all():
+        refuse_unrecorded_steps(run)
         raise NotReached("no gripper step has reported yet")
     part = Part("stalled", reported, float(expected), "==", "1")
 

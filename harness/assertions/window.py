@@ -81,3 +81,13 @@ def object_record(run: Run, name: str) -> ObjectRecord:
         if record.name == name:
             return record
     raise NotObservable(f"there is no object '{name}' in this run")
+
+
+def refuse_unrecorded_steps(run: Run) -> None:
+    """Tell a run in which no step reported something from one whose steps are not known.
+
+    Raises:
+        NotObservable: The steps were not recorded.
+    """
+    if "steps" in run.unrecorded:
+        raise NotObservable("what the steps reported was not recorded")
