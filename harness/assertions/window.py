@@ -39,6 +39,11 @@ class Window:
         """Of the window's samples [s], shape (n,)."""
         return self.run.signals.times[self.start : self.stop]
 
+    @property
+    def tcp_position(self) -> FloatArray:
+        """Positions of the TCP in the world [m], shape (n, 3)."""
+        return self.cut(self.run.signals.tcp_pose)[:, :3]
+
     def cut(self, values: np.ndarray[Any, D]) -> np.ndarray[Any, D]:
         """The window's part of an array over the run's samples."""
         return values[self.start : self.stop]

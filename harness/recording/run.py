@@ -224,6 +224,7 @@ class Measure:
         detail: Which joint, link or pair it was.
         expected: Where in the world something was to be (xyz), where the value is a distance.
         actual: Where it was (xyz).
+        plot: The plot of the report that shows the quantity; empty where none does.
     """
 
     name: str
@@ -235,6 +236,7 @@ class Measure:
     detail: str = ""
     expected: Floats = ()
     actual: Floats = ()
+    plot: str = ""
 
     def __str__(self) -> str:
         where = f" ({self.detail})" if self.detail else ""

@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from harness.assertions.judge import EXECUTED
 from harness.cell.program import Program
 from harness.core.errors import Problem, RobotError, SpecError
 from harness.core.geometry import Mesh
@@ -106,7 +105,6 @@ def _prepared(loaded: LoadedScenario) -> Prepared:
         world_dir=world.path.parent,
         description=description,
         kinematics=kinematics,
-        judged=EXECUTED,
         check_planner=check_planner,
         checks_per_second=STATE_CHECKS_PER_SECOND,
         check_mesh=_check_mesh,

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from harness.assertions.judge import judge
-from harness.assertions.observations import observations
+from harness.assertions.observations import merged
 from harness.assertions.placed import PlacedExpectation
 from harness.cell.program import Program, ProgramStep
 from harness.core.errors import HarnessError, SpecError
@@ -158,7 +158,7 @@ def _execute(
     from harness.session.timed_simulator import TimedSimulator  # physics: no use to a check
 
     program = prepared.program
-    needed = observations(expectation.spec for expectation in program.expectations)
+    needed = merged(each.spec.observations() for each in _placed(program))
     links = set(program.description.link_names)
     with clock.part("compile"):
         simulator = TimedSimulator(
@@ -183,7 +183,7 @@ def _execute(
         signals = simulator.finish()
         believed = believed_poses(execution.beliefs, signals.joint_positions, prepared.kinematics)
         signals = replace(signals, object_poses={**signals.object_poses, **believed})
-        signals = _observe(prepared, signals, execution, needed.clearance_cutoff)
+        signals = _observe(prepared, signals, execution, needed.recorded_cutoff)
     # what is not physics in execution is planning
     executed = clock.seconds.pop("execute")
     clock.seconds["plan"] = max(0.0, executed - clock.seconds.get("simulate", 0.0))
@@ -259,7 +259,7 @@ def _step_teller(program: Program, on_progress: Notify, simulator: TimedSimulato
 
 
 def _placed(program: Program) -> list[PlacedExpectation]:
-    return [PlacedExpectation(item.spec, item.step, item.line) for item in program.expectations]
+    return [PlacedExpectation.of(item.spec, item.step, item.line) for item in program.expectations]
 
 
 def _outcome(run: Run, verdicts: tuple[Verdict, ...]) -> Outcome:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import types
 from typing import Annotated, Any, TypeGuard, Union, get_args, get_origin
 
+from pydantic import BeforeValidator
 from pydantic.fields import FieldInfo
 
 from harness.spec.base import SpecModel
@@ -39,9 +40,18 @@ def spelling(name: str, field: FieldInfo) -> str:
 
 
 def keys_of(model: type[SpecModel]) -> dict[str, FieldInfo]:
-    """A model's fields by their key in the file, its tag left out."""
-    return {
-        spelling(name, field): field
-        for name, field in model.model_fields.items()
-        if name != "check"
-    }
+    """A model's fields by their key in the file."""
+    return {spelling(name, field): field for name, field in model.model_fields.items()}
+
+
+def units_of(field: FieldInfo) -> tuple[str, ...]:
+    """The SI units in which a field's number may be written; empty where it has none."""
+    waiting: list[Any] = [*field.metadata, field.annotation]
+    for part in waiting:
+        if isinstance(part, BeforeValidator):
+            units: tuple[str, ...] | None = getattr(part.func, "units", None)
+            if units is not None:
+                return units
+        if get_origin(part) is Annotated or branches(part):
+            waiting += get_args(part)
+    return ()

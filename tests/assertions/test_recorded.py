@@ -1,13 +1,15 @@
 """What was not recorded is not observable, whichever way it is read."""
 
 import math
+import operator
 from dataclasses import replace
 
 import pytest
 
 from harness.assertions.recorded import guarded
 from harness.assertions.window import NotObservable
-from harness.spec.checks import FractionCheck, GripperState
+from harness.expectations.fraction import FractionCheck
+from harness.expectations.gripper import GripperState
 from tests.assertions.synthetic_run import lift_run, make_run, verdict
 
 READINGS = {
@@ -22,8 +24,8 @@ READINGS = {
     "difference": lambda records: records != (),
     "hash": hash,
     "sum": lambda records: (*(), *records),
-    "before": lambda records: records + (),
-    "after": lambda records: () + records,
+    "before": lambda records: operator.add(records, ()),
+    "after": lambda records: operator.add((), records),
     "count": lambda records: records.count(None),
     "index": lambda records: records.index(None),
     "sorting": sorted,

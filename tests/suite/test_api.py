@@ -8,7 +8,10 @@ import pytest
 
 import harness
 from harness.core.resources import data_folder
-from harness.spec.checks import Always, DurationCheck, NamedTarget, WithinLimits
+from harness.expectations.always import Always
+from harness.expectations.duration import DurationCheck
+from harness.expectations.named_target import NamedTarget
+from harness.expectations.within_limits import WithinLimits
 from harness.spec.load import load_scenario, parse_scenario
 from harness.spec.scenario import Scenario
 from harness.spec.written import scenario_text
