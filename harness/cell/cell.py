@@ -52,7 +52,7 @@ class Belief:
 
 @dataclass
 class StepNotes:
-    """What an executor leaves in its step's record."""
+    """What a step leaves in its record."""
 
     trajectory: Mapping[str, Any] | None = None
     planner: dict[str, Any] = field(default_factory=dict[str, Any])
@@ -66,7 +66,7 @@ def _cannot_nest(_: Sequence[ProgramStep]) -> None:
 
 @dataclass
 class Cell:
-    """What executors work with."""
+    """What steps work with."""
 
     description: RobotDescription
     scene: PlanningScene

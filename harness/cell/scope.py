@@ -188,7 +188,9 @@ class Scope:
         if state not in states and group in self.description.groups:
             self.problems.unknown(loc, f"named state of {group} called", state, states)
 
-    def check_joint(self, name: str, loc: Loc, group: str | None = None) -> None:
+    def check_joint(
+        self, name: str, loc: Loc, group: str | None = None, *, is_key: bool = True
+    ) -> None:
         """A movable joint, of a group if one is given."""
         names = self.description.joint_names
         where = "joint"
@@ -196,7 +198,7 @@ class Scope:
             names = self.description.groups[group].joint_names
             where = f"joint of '{group}'"
         if name not in names:
-            self.problems.unknown(loc, where, name, names, is_key=True)
+            self.problems.unknown(loc, where, name, names, is_key=is_key)
 
     def check_gripper(self, loc: Loc, what: str) -> bool:
         """Whether the robot has a gripper, which `what` needs."""

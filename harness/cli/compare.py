@@ -22,18 +22,22 @@ def _run(arguments: argparse.Namespace) -> int:
         if not (folder / "run.json").is_file():
             raise UsageError(f"'{folder}' is no run's folder: it has no run.json")
     from harness.recording.compare import compare
-    from harness.recording.store import read_run
+    from harness.recording.store import blames_changes, read_run
     from harness.reporting.comparison import comparison_lines
     from harness.reporting.terminal import Style
 
-    comparison = compare(*(read_run(folder) for folder in folders))
-    code = 0 if comparison.is_same else EXIT_CODES["failed"]
+    first, second = (read_run(folder) for folder in folders)
+    with blames_changes(folders[0], first), blames_changes(folders[1], second):
+        comparison = compare(first, second)
+        lines = list(comparison_lines(comparison, Style.of(sys.stdout)))
+    is_good = comparison.is_same and not comparison.warnings
+    code = 0 if is_good else EXIT_CODES["failed"]
     if arguments.json:
         with only_json_on_stdout() as write_json:
             write_json(
                 {"format": "armharness-comparison/1", "exit_code": code, "comparison": comparison}
             )
         return code
-    for line in comparison_lines(comparison, Style.of(sys.stdout)):
+    for line in lines:
         say(line)
     return code

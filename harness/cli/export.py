@@ -35,11 +35,18 @@ def _run(arguments: argparse.Namespace) -> int:
     targets = [Path(name) for name in (arguments.bag, arguments.urdf) if name]
     for target in targets:
         _refuse_taken(target, is_forced=arguments.force)
-    from harness.recording.store import read_run
+    from harness.recording.store import blames_changes, read_run
+
+    stored = read_run(folder)
+    with blames_changes(folder, stored):
+        _export(arguments, stored)
+    return 0
+
+
+def _export(arguments: argparse.Namespace, stored: StoredRun) -> None:
     from harness.reporting.rosbag.urdf import urdf_of
     from harness.reporting.rosbag.write import BagOptions
 
-    stored = read_run(folder)
     options = BagOptions(arguments.storage, arguments.rate, arguments.raw_images, arguments.meshes)
     if arguments.bag:
         bag = Path(arguments.bag)
@@ -49,7 +56,6 @@ def _run(arguments: argparse.Namespace) -> int:
     if arguments.urdf:
         _write_text(Path(arguments.urdf), urdf_of(stored.run, options.meshes))
         say(f"wrote {arguments.urdf}")
-    return 0
 
 
 def _refuse_taken(target: Path, *, is_forced: bool) -> None:

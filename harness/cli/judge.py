@@ -20,20 +20,23 @@ def _run(arguments: argparse.Namespace) -> int:
     folder = Path(arguments.folder)
     if not (folder / "run.json").is_file():
         raise UsageError(f"'{folder}' is no run's folder: it has no run.json")
-    from harness.recording.store import read_run
+    from harness.recording.store import RESOLVED, blames_changes, read_run
     from harness.reporting.contacts import contact_lines
     from harness.reporting.terminal import Style, measure_text, verdict_line
     from harness.session.contacts import contact_records
-    from harness.session.rejudge import judge_run
+    from harness.session.rejudge import judge_again
 
     with_file = Path(arguments.with_file) if arguments.with_file else None
     if with_file and not with_file.is_file():
         raise UsageError(f"no such file: '{with_file}'")
-    verdicts = judge_run(folder, with_file)
-    run = read_run(folder).run
-    ended_early, contacts = run.ended_early, contact_records(run)
+    stored = read_run(folder)
+    run, ended_early, changes = stored.run, stored.run.ended_early, stored.changes()
+    with blames_changes(folder, stored):
+        verdicts = judge_again(run, with_file or folder / RESOLVED)
+        contacts = contact_records(run)
     has_passed = bool(verdicts) and all(verdict.status == "passed" for verdict in verdicts)
-    has_passed = has_passed and not ended_early  # half a run is no run that passed
+    # half a run, and a run that is not as it was recorded, is no run that passed
+    has_passed = has_passed and not ended_early and not changes
     code = 0 if has_passed else EXIT_CODES["failed"]
     if arguments.json:
         with only_json_on_stdout() as write_json:
@@ -43,6 +46,7 @@ def _run(arguments: argparse.Namespace) -> int:
                     "exit_code": code,
                     "verdicts": verdicts,
                     "contacts": contacts,
+                    "changes": changes,
                 }
             )
         return code
@@ -59,6 +63,8 @@ def _run(arguments: argparse.Namespace) -> int:
             say(line)
     held = sum(verdict.status == "passed" for verdict in verdicts)
     say(f"{held} of {len(verdicts)} expectations hold")
+    for change in changes:
+        say(f"{style.bad('changed')}  {change}")
     if ended_early:
         say(f"the run ended early with {ended_early}: it has failed, whatever holds until then")
     return code

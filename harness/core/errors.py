@@ -110,7 +110,10 @@ class Problem:
         if len(beside) <= EXCERPT_WIDTH:
             below = [beside]
         else:
-            below = [caret, *textwrap.wrap(self.hint, EXCERPT_WIDTH, break_long_words=False)]
+            lines = textwrap.wrap(
+                self.hint, EXCERPT_WIDTH, break_long_words=False, break_on_hyphens=False
+            )
+            below = [caret, *lines]
         return [f"{self.line:>5} | {line}", *(margin + each for each in below)]
 
 

@@ -8,7 +8,7 @@ from typing import Any
 from harness.importers.notes import Notes
 from harness.importers.plain import pose_spec
 from harness.importers.sdf_bodies import Body, Link
-from harness.importers.sdf_values import number, numbers_of, pose_of, text_of
+from harness.importers.sdf_values import number, numbers_of, pose_of, text_of, validated
 from harness.importers.sdf_words import note_what_is_left
 from harness.spec.cameras import CameraSpec
 from harness.spec.xml_file import XmlElement
@@ -63,7 +63,7 @@ def _camera(
         words["pose"] = place.model_copy(update={"frame": body.name})
     else:
         words["pose"] = pose_spec(pose)
-    return CameraSpec.model_validate(words)
+    return validated(CameraSpec, words, sensor)
 
 
 def _optics(camera: XmlElement, notes: Notes) -> dict[str, Any]:

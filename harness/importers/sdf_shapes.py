@@ -19,6 +19,7 @@ from harness.importers.plain import facing, pose_spec, rounded
 from harness.importers.sdf_values import number, numbers_of, positive, text_of
 from harness.importers.sdf_words import WORDS, note_what_is_left
 from harness.robot.mesh_file import convex_hull
+from harness.spec.base import LARGEST_NUMBER, SMALLEST_SIZE
 from harness.spec.world import FrictionSpec, MeshSpec, ShapeSpec
 from harness.spec.xml_file import XmlElement
 
@@ -105,6 +106,8 @@ class ShapeReader:
                 values = numbers_of(size, 3)
                 if min(values) <= 0:
                     size.refuse(f"a box has sizes above 0, not {size.text.strip()}")
+                if min(values) < SMALLEST_SIZE:
+                    size.refuse(f"a box has sizes of at least {SMALLEST_SIZE:g} m")
                 words["box"] = {"size": values}
             case "sphere":
                 words["sphere"] = {"radius": positive(geometry, "radius")}
@@ -149,7 +152,7 @@ class ShapeReader:
         sliding, torsional = 1.0, DEFAULT_TORSIONAL
         ode, about_normal = friction.find("ode"), friction.find("torsional")
         if ode is not None:
-            sliding = _not_negative(ode, "mu", 1.0)
+            sliding = min(_not_negative(ode, "mu", 1.0), LARGEST_NUMBER)
             self._note_all_but_equal_mu2(ode, sliding)
         if about_normal is not None:
             note_what_is_left(about_normal, "friction/torsional", self.notes)

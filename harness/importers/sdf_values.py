@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from pydantic import ValidationError
 
 from harness.core.spatial import SE3, wxyz_from_xyzw
+from harness.spec.base import LARGEST_NUMBER, SMALLEST_SIZE, SpecModel
 from harness.spec.xml_file import XmlElement
 
+UNBOUNDED = ("mu", "mu2")
+"""Elements for which worlds write 1e16 and mean that nothing slips."""
+M = TypeVar("M", bound=SpecModel)
 TRUE, FALSE = ("true", "1"), ("false", "0")
 
 
@@ -41,6 +49,9 @@ def numbers_of(element: XmlElement, count: int) -> tuple[float, ...]:
         meant = "a finite number is" if count == 1 else f"{count} finite numbers are"
         found = f"`{text[:60]}`" if text else "nothing"
         element.refuse(f"<{element.tag}>: {meant} meant, not {found}")
+    for value in values:
+        if abs(value) > LARGEST_NUMBER and element.tag not in UNBOUNDED:
+            element.refuse(f"<{element.tag}>: {value:g} is too large; at most {LARGEST_NUMBER:g}")
     return values
 
 
@@ -62,7 +73,23 @@ def positive(parent: XmlElement, tag: str) -> float:
     (value,) = numbers_of(child, 1)
     if value <= 0:
         child.refuse(f"<{tag}> of a <{parent.tag}> is above 0, not {value:g}")
+    if value < SMALLEST_SIZE:
+        child.refuse(f"<{tag}> of a <{parent.tag}> is at least {SMALLEST_SIZE:g}, not {value:g}")
     return value
+
+
+def validated(model: type[M], words: Mapping[str, Any], element: XmlElement) -> M:
+    """A part of a world from its words.
+
+    Raises:
+        SpecError: A word has a value that the model refuses; at the element.
+    """
+    try:
+        return model.model_validate(words)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        key = ".".join(map(str, first["loc"]))
+        element.refuse(f"<{element.tag}>: {key}: {first['msg'].removeprefix('Value error, ')}")
 
 
 def is_flag(parent: XmlElement, tag: str, default: bool = False) -> bool:

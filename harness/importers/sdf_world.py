@@ -17,7 +17,7 @@ from harness.importers.sdf_cameras import cameras_of
 from harness.importers.sdf_object import LONGEST_NAME, object_of
 from harness.importers.sdf_shapes import ShapeReader
 from harness.importers.sdf_tree import Light, SdfTree
-from harness.importers.sdf_values import is_flag, is_true, numbers_of
+from harness.importers.sdf_values import is_flag, is_true, numbers_of, validated
 from harness.importers.sdf_words import note_what_is_left
 from harness.spec.cameras import CameraSpec
 from harness.spec.world import LightSpec, ObjectSpec, PhysicsSpec, WorldSpec
@@ -91,7 +91,7 @@ def _physics(root: XmlElement, notes: Notes) -> PhysicsSpec:
         gravity = gravity or physics.find("gravity")
     if gravity is not None:
         words["gravity"] = numbers_of(gravity, 3)
-    return PhysicsSpec.model_validate(words)
+    return validated(PhysicsSpec, words, root)
 
 
 def _light(light: Light, tree: SdfTree, notes: Notes) -> LightSpec | None:

@@ -29,6 +29,7 @@ BY_PAIR = (
     "clearance_links",
     "planned_clearances",
 )
+GROUPS = frozenset(entry.name for entry in fields(Signals)) - {"clearance_cutoff"}
 COMPRESSION = 1
 """Deflate level: 6 takes three times as long and saves a tenth on recorded doubles."""
 
@@ -45,6 +46,11 @@ def arrays_of(signals: Signals) -> dict[str, Array]:
         elif isinstance(value, np.ndarray):
             arrays[entry.name] = value
     return arrays
+
+
+def is_signal(name: str) -> bool:
+    """Whether an array under a flat name belongs to `Signals`."""
+    return name.partition("/")[0] in GROUPS
 
 
 def signals_from(arrays: Mapping[str, Array], clearance_cutoff: float) -> Signals:
@@ -80,12 +86,6 @@ def write_npz(path: Path | IO[bytes], arrays: Mapping[str, Array]) -> None:
             array = np.ascontiguousarray(arrays[name])
             np.lib.format.write_array(stream, array, version=(1, 0), allow_pickle=False)
             archive.writestr(entry, stream.getbuffer(), zipfile.ZIP_DEFLATED, COMPRESSION)
-
-
-def read_npz(path: Path) -> dict[str, Array]:
-    """Every array of a .npz file, read once each; nothing pickled is loaded."""
-    with np.load(path, allow_pickle=False) as archive:
-        return {name: archive[name] for name in archive.files}
 
 
 def _escaped(name: str) -> str:

@@ -61,11 +61,19 @@ class FirstDifference:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Two runs side by side; `is_same` when their digests are."""
+    """Two runs side by side.
+
+    Attributes:
+        is_same: Whether the digests of what both folders hold are equal.
+        changes: Everything that differs.
+        first_difference: Where the recordings part.
+        warnings: What was changed in either folder after its run was written.
+    """
 
     is_same: bool
     changes: tuple[Change, ...]
     first_difference: FirstDifference | None
+    warnings: tuple[str, ...] = ()
 
 
 def compare(first: StoredRun, second: StoredRun) -> Comparison:
@@ -81,7 +89,12 @@ def compare(first: StoredRun, second: StoredRun) -> Comparison:
         *_verdicts(first.verdicts, second.verdicts),
         *_findings(one, two),
     ]
-    return Comparison(first.digest == second.digest, tuple(changes), first_difference(one, two))
+    warnings = (
+        *(f"first run: {each}" for each in first.changes()),
+        *(f"second run: {each}" for each in second.changes()),
+    )
+    is_same = first.content_digest == second.content_digest
+    return Comparison(is_same, tuple(changes), first_difference(one, two), warnings)
 
 
 def first_difference(one: Run, two: Run) -> FirstDifference | None:

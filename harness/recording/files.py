@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
-from harness.core.errors import HarnessError
+from harness.core.errors import Problem, SpecError
 
 
 class FolderFiles(Mapping[str, bytes]):
@@ -20,11 +20,11 @@ class FolderFiles(Mapping[str, bytes]):
             raise KeyError(name)
         path = (self._folder / checked(name)).resolve()
         if not path.is_relative_to(self._folder.resolve()):
-            raise HarnessError(f"{self._folder / name} leads out of the run's folder")
+            raise _damaged(self._folder / name, "this file leads out of the run's folder")
         try:
             return path.read_bytes()
         except OSError as error:
-            raise HarnessError(f"{path} cannot be read: {error.strerror or error}") from error
+            raise _damaged(path, f"cannot be read: {error.strerror or error}") from error
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)
@@ -51,3 +51,7 @@ def checked(name: str) -> str:
     if not parts or name.startswith("/") or ".." in parts or "\\" in name or "\0" in name:
         raise ValueError(f"'{name}' is no path inside a run's folder")
     return name
+
+
+def _damaged(path: Path, reason: str) -> SpecError:
+    return SpecError([Problem(str(path), 0, 0, f"damaged run: {reason}")])

@@ -5,10 +5,11 @@ Floats that JSON lacks are the strings `NaN`, `Infinity` and `-Infinity`, everyw
 
 from __future__ import annotations
 
+import json
 import math
 import types
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import MISSING, fields, is_dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any, Literal, Union, cast, get_args, get_origin, get_type_hints
@@ -20,6 +21,9 @@ from harness.core.spatial import SE3
 
 GEOMETRIES = {kind.__name__.lower(): kind for kind in (Box, Capsule, Cylinder, Mesh, Plane, Sphere)}
 NOT_NUMBERS = {"NaN": math.nan, "Infinity": math.inf, "-Infinity": -math.inf}
+SCALARS = {float: "a number", int: "a whole number", bool: "true or false", str: "a text"}
+QUOTED = 60
+"""Characters of a value that an error quotes."""
 
 
 def to_plain(value: Any) -> Any:
@@ -56,41 +60,122 @@ def to_plain(value: Any) -> Any:
             raise TypeError(f"{type(value).__name__} has no plain form: {value!r}")
 
 
-def from_plain(plain: Any, kind: Any) -> Any:
+class PlainError(ValueError):
+    """Plain data does not fit its type.
+
+    Attributes:
+        key: Where it is: `robot.joints[2].lower`; empty for the whole.
+        expected: What should stand there.
+    """
+
+    def __init__(self, key: str, expected: str) -> None:
+        self.key, self.expected = key, expected
+        super().__init__(f"{key}: {expected}" if key else expected)
+
+
+def from_plain(plain: Any, kind: Any, key: str = "") -> Any:
     """A value of a type from its plain form; unknown keys are left out, defaults fill in.
 
+    Args:
+        plain: Plain data.
+        kind: The type.
+        key: Where the data is in its document.
+
     Raises:
-        TypeError, ValueError, KeyError: The data does not fit the type.
+        PlainError: The data does not fit the type.
     """
     if kind is Any:
         return _any(plain)
-    if kind is float:
-        return NOT_NUMBERS[plain] if isinstance(plain, str) else float(plain)
+    if kind in (float, int, bool, str):
+        return _scalar(plain, kind, key)
     if kind is SE3:
-        rotation = np.array(_any(plain["rotation"]), dtype=float)
-        return SE3(rotation, np.array(_any(plain["xyz"]), dtype=float))
+        return _pose(plain, key)
     if kind is Path:
-        return Path(plain)
+        return Path(_scalar(plain, str, key))
     origin, arguments = get_origin(kind), get_args(kind)
     if origin is Literal:
         if plain not in arguments:
-            raise ValueError(f"{plain!r} is none of {arguments}")
+            raise PlainError(
+                key, f"expected one of {', '.join(map(str, arguments))}, found {_short(plain)}"
+            )
         return plain
     if origin in (Union, types.UnionType):
-        return _one_of(plain, arguments)
+        return _one_of(plain, arguments, key)
     if origin is tuple:
-        items = arguments[:1] * len(plain) if arguments[1:] == (...,) else arguments
-        return tuple(from_plain(item, each) for item, each in zip(plain, items, strict=True))
+        return _tuple(plain, arguments, key)
     if origin is not None and issubclass(origin, Mapping):
-        return {key: from_plain(item, arguments[1]) for key, item in plain.items()}
-    if is_dataclass(kind):
-        hints = _hints(cast("type", kind))
-        return cast("type", kind)(
-            **{name: from_plain(plain[name], hint) for name, hint in hints.items() if name in plain}
-        )
-    if not isinstance(plain, kind):
-        raise TypeError(f"{plain!r} is no {kind.__name__}")
-    return plain
+        return {
+            name: from_plain(item, arguments[1], f"{key}.{name}")
+            for name, item in _mapping(plain, key).items()
+        }
+    return _record(plain, kind, key)
+
+
+def _scalar(plain: Any, kind: type, key: str) -> Any:
+    if kind is float and isinstance(plain, str) and plain in NOT_NUMBERS:
+        return NOT_NUMBERS[plain]
+    accepted = (int, float) if kind is float else kind
+    if not isinstance(plain, accepted) or (isinstance(plain, bool) and kind is not bool):
+        raise PlainError(key, f"expected {SCALARS[kind]}, found {_short(plain)}")
+    try:
+        return kind(plain)
+    except OverflowError:
+        raise PlainError(key, f"the number {_short(plain)} is too large") from None
+
+
+def _pose(plain: Any, key: str) -> SE3:
+    document = _mapping(plain, key)
+    row = tuple[float, float, float]
+    rotation = from_plain(document.get("rotation"), tuple[row, row, row], f"{key}.rotation")
+    return SE3(np.array(rotation), np.array(from_plain(document.get("xyz"), row, f"{key}.xyz")))
+
+
+def _tuple(plain: Any, kinds: tuple[Any, ...], key: str) -> tuple[Any, ...]:
+    if not isinstance(plain, list | tuple):
+        raise PlainError(key, f"expected a list, found {_short(plain)}")
+    items = cast("list[Any]", plain)
+    if kinds[1:] == (...,):
+        kinds = kinds[:1] * len(items)
+    if len(items) != len(kinds):
+        raise PlainError(key, f"expected {len(kinds)} items, found {len(items)}")
+    return tuple(
+        from_plain(item, kind, f"{key}[{index}]")
+        for index, (item, kind) in enumerate(zip(items, kinds, strict=True))
+    )
+
+
+def _record(plain: Any, kind: type, key: str) -> Any:
+    """A dataclass from a mapping of its fields."""
+    document, hints = _mapping(plain, key), _hints(kind)
+    for entry in fields(kind):
+        has_default = entry.default is not MISSING or entry.default_factory is not MISSING
+        if entry.name not in document and not has_default:
+            raise PlainError(f"{key}.{entry.name}".lstrip("."), "this key is missing")
+    return kind(
+        **{
+            name: from_plain(document[name], hint, f"{key}.{name}".lstrip("."))
+            for name, hint in hints.items()
+            if name in document
+        }
+    )
+
+
+def _mapping(plain: Any, key: str) -> dict[str, Any]:
+    if not isinstance(plain, dict):
+        raise PlainError(key, f"expected a mapping, found {_short(plain)}")
+    return cast("dict[str, Any]", plain)
+
+
+def _short(plain: Any) -> str:
+    """A value as an error quotes it."""
+    match plain:
+        case dict():
+            return "a mapping"
+        case list():
+            return "a list"
+        case _:
+            text = json.dumps(plain)
+            return text if len(text) <= QUOTED else f"{text[:QUOTED]}..."
 
 
 @cache
@@ -98,13 +183,18 @@ def _hints(kind: type) -> dict[str, Any]:
     return get_type_hints(kind)
 
 
-def _one_of(plain: Any, kinds: tuple[Any, ...]) -> Any:
+def _one_of(plain: Any, kinds: tuple[Any, ...], key: str) -> Any:
+    """One of the geometries, by its `kind`, or a value that may be None."""
     if plain is None and type(None) in kinds:
         return None
-    if isinstance(plain, dict) and "kind" in plain:
-        return from_plain(plain, GEOMETRIES[cast("dict[str, str]", plain)["kind"]])
-    (kind,) = (kind for kind in kinds if kind is not type(None))
-    return from_plain(plain, kind)
+    others = [kind for kind in kinds if kind is not type(None)]
+    if len(others) == 1:
+        return from_plain(plain, others[0], key)
+    name = _mapping(plain, key).get("kind")
+    if not isinstance(name, str) or name not in GEOMETRIES:
+        known = ", ".join(GEOMETRIES)
+        raise PlainError(f"{key}.kind", f"expected one of {known}, found {_short(name)}")
+    return _record(plain, GEOMETRIES[name], key)
 
 
 def _plain_float(value: float) -> float | str:

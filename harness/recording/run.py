@@ -127,6 +127,11 @@ class RobotRecord:
     )
     placements: tuple[LinkPlacement, ...] = ()
 
+    @property
+    def arm_joints(self) -> tuple[str, ...]:
+        """Joints of the arm; every movable joint where the robot is a gripper alone."""
+        return self.groups.get(self.arm_group) or tuple(joint.name for joint in self.joints)
+
 
 @dataclass(frozen=True)
 class ObjectRecord:

@@ -2,29 +2,54 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import shutil
-import zipfile
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import MISSING, dataclass, fields, replace
+from functools import cached_property
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Any, cast, get_type_hints
 
 import numpy as np
 
-from harness.core.errors import HarnessError
+from harness.core.errors import HarnessError, Problem, SpecError
 from harness.core.geometry import Rgba
-from harness.recording.arrays import arrays_of, read_npz, signals_from, write_npz
+from harness.recording.arrays import arrays_of, is_signal, signals_from, write_npz
+from harness.recording.consistency import (
+    Flaw,
+    mesh_flaws,
+    mesh_header_flaws,
+    run_flaws,
+    signal_flaws,
+)
+from harness.recording.digest import digest as digest_of
 from harness.recording.files import FolderFiles, checked, write_files
-from harness.recording.plain import from_plain, to_plain
-from harness.recording.run import MeshRecord, Outcome, Run, StepRecord, Verdict
+from harness.recording.npz_file import NpzError, NpzFile
+from harness.recording.plain import PlainError, from_plain, to_plain
+from harness.recording.run import MeshRecord, Outcome, Run, Signals, StepRecord, Verdict
 
 FORMAT = "armharness-run/1"
 RUN, SIGNALS, RESOLVED = "run.json", "signals.npz", "scenario.resolved.yaml"
+CHECKSUM = "checksum"
+LONE_SURROGATE = "\\ud"
+"""How JSON writes half of a character, which no file or terminal can hold."""
 VISUALS, PAGE = "visuals.npz", "report.html"
 APART = ("seed", "steps", "findings", "versions", "signals", "resolved", "meshes", "files")
 """Fields of a run that have a place of their own in its folder."""
+NEEDED = tuple(
+    entry.name
+    for entry in fields(Run)
+    if entry.default is MISSING and entry.default_factory is MISSING and entry.name != "signals"
+)
+"""Keys without which run.json holds no run."""
+_NOTHING = np.zeros(0)
+NO_SIGNALS = Signals(_NOTHING, _NOTHING, _NOTHING, _NOTHING, _NOTHING, _NOTHING, tcp_pose=_NOTHING)
+"""Until the arrays are read."""
+MOST_FLAWS = 20
+"""Problems of a damaged run that are listed."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +57,9 @@ class StoredRun:
     """What a run's folder holds.
 
     Attributes:
+        digest: As run.json states it.
         wall_times: Seconds of each part; never judged.
+        is_edited: Whether run.json or the resolved scenario was changed after it was written.
     """
 
     run: Run
@@ -40,6 +67,26 @@ class StoredRun:
     outcome: Outcome
     digest: str
     wall_times: Mapping[str, float]
+    is_edited: bool = False
+
+    @cached_property
+    def content_digest(self) -> str:
+        """The digest of signals, trajectories and verdicts as they are in the folder."""
+        return digest_of(self.run, self.verdicts)
+
+    def changes(self) -> list[str]:
+        """What was changed in the folder after the run was written; one sentence each."""
+        told: list[str] = []
+        if self.content_digest != self.digest:
+            told.append(
+                "signals, trajectories or verdicts were changed after the run was written:"
+                f" their digest is {self.content_digest[:12]}, {RUN} states {self.digest[:12]}"
+            )
+        if self.is_edited:
+            told.append(
+                f"{RUN} or {RESOLVED} was changed after the run was written: the checksum differs"
+            )
+        return told
 
 
 def write_run(
@@ -75,6 +122,7 @@ def write_run(
         temporary = _fresh_sibling(folder, "writing")
         arrays = arrays_of(run.signals)
         document = _document(run, verdicts, outcome, digest, wall_times, arrays)
+        document[CHECKSUM] = _checksum(document, run.resolved)
         text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
         (temporary / RUN).write_text(text + "\n", encoding="utf-8")
         (temporary / RESOLVED).write_text(run.resolved, encoding="utf-8", newline="")
@@ -95,27 +143,195 @@ def write_run(
 
 
 def read_run(folder: Path) -> StoredRun:
-    """Read a run's folder back; nothing in it is executed.
+    """Read a run's folder back; nothing in it is executed, and nothing pickled is loaded.
 
     Raises:
-        HarnessError: There is no run, it is of another version, or it is damaged.
+        HarnessError: There is no run, or it is of another version.
+        SpecError: It is damaged; names the file and the key.
     """
     if not (folder / RUN).is_file():
         raise HarnessError(f"{folder} is no run: it has no {RUN}")
+    document = _read_document(folder / RUN)
+    run, trajectories = _run(folder / RUN, document)
+    run = replace(run, resolved=_read_text(folder / RESOLVED))
+    run = _with_arrays(folder / SIGNALS, run, document, trajectories)
+    _refuse(folder / RUN, run_flaws(run))
+    if run.meshes:
+        run = _with_meshes(folder / VISUALS, run)
+    expected = _checksum(document, run.resolved)
+    with _damaged(folder / RUN):
+        return StoredRun(
+            run=replace(run, files=_files(folder, run)),
+            verdicts=_field(document, "verdicts", tuple[Verdict, ...]),
+            outcome=_field(document, "outcome", Outcome),
+            digest=_field(document, "digest", str),
+            wall_times=_field(document, "wall_times", Mapping[str, float]),
+            is_edited=document.get(CHECKSUM, expected) != expected,
+        )
+
+
+def _read_text(path: Path) -> str:
+    with _damaged(path):
+        return path.read_bytes().decode("utf-8")
+
+
+def _read_document(path: Path) -> dict[str, Any]:
+    """The content of run.json, of this version."""
+    text = _read_text(path)
     try:
-        document: dict[str, Any] = json.loads((folder / RUN).read_text(encoding="utf-8"))
-        if document.get("format") != FORMAT:
-            raise HarnessError(
-                f"{folder / RUN} has the format {document.get('format')!r};"
-                f" this version reads {FORMAT!r}"
+        document: Any = json.loads(text)
+        if LONE_SURROGATE in text.lower():
+            json.dumps(document, ensure_ascii=False).encode()
+    except json.JSONDecodeError as error:
+        raise _damage(path, error.msg, error.lineno, error.colno) from error
+    except (ValueError, RecursionError) as error:
+        raise _damage(path, str(error)) from error
+    if not isinstance(document, dict):
+        raise _damage(path, "expected a mapping")
+    content = cast("dict[str, Any]", document)
+    if content.get("format") != FORMAT:
+        said = f"format: expected '{FORMAT}', found {content.get('format')!r}"
+        raise SpecError([Problem(str(path), 0, 0, said)])
+    return content
+
+
+def _run(path: Path, document: dict[str, Any]) -> tuple[Run, list[Any]]:
+    """The run without its arrays, and the trajectories of its steps as run.json has them."""
+    hints = get_type_hints(Run)
+    with _damaged(path):
+        steps = _mappings(document, "steps")
+        bare = [{**step, "summary": step.get("step"), "trajectory": None} for step in steps]
+        plain = {**document, "steps": bare}
+        known = {
+            name: from_plain(plain[name], hint, name)
+            for name, hint in hints.items()
+            if name in plain and name not in ("signals", "meshes")
+        }
+        for name in NEEDED:
+            _needed(known, name)
+        run = Run(**known, signals=NO_SIGNALS, meshes=_meshes(document))
+    return run, [step.get("trajectory") for step in steps]
+
+
+def _mappings(document: Mapping[str, Any], name: str) -> list[dict[str, Any]]:
+    """A list of mappings, as it is."""
+    items = _needed(document, name)
+    if not isinstance(items, list) or not all(isinstance(item, dict) for item in items):  # pyright: ignore[reportUnknownVariableType]
+        raise PlainError(name, "expected a list of mappings")
+    return cast("list[dict[str, Any]]", items)
+
+
+def _needed(document: Mapping[str, Any], name: str) -> Any:
+    if name not in document:
+        raise PlainError(name, "this key is missing")
+    return document[name]
+
+
+def _field(document: Mapping[str, Any], name: str, kind: Any, within: str = "") -> Any:
+    return from_plain(_needed(document, name), kind, f"{within}{name}")
+
+
+def _with_arrays(
+    path: Path, run: Run, document: Mapping[str, Any], trajectories: Sequence[Any]
+) -> Run:
+    """The run with its signals and trajectories."""
+    with _damaged(path.with_name(RUN)):
+        cutoff = _field(document, "clearance_cutoff", float)
+    with _damaged(path), NpzFile(path) as file:
+        _refuse(path, signal_flaws(file.headers, run.robot))
+        signals = signals_from(
+            {name: file.read(name) for name in file.headers if is_signal(name)}, cutoff
+        )
+        steps = tuple(
+            replace(step, trajectory=_trajectory(plain, f"steps[{index}].trajectory", file))
+            for index, (step, plain) in enumerate(zip(run.steps, trajectories, strict=True))
+        )
+    return replace(run, signals=signals, steps=steps)
+
+
+def _trajectory(plain: Any, key: str, file: NpzFile) -> dict[str, Any] | None:
+    if plain is None:
+        return None
+    content = from_plain(plain, Mapping[str, Any], key)
+    return {
+        name: value if name == "joint_names" else _array(file, value, f"{key}.{name}")
+        for name, value in content.items()
+    }
+
+
+def _array(file: NpzFile, plain: Any, key: str) -> np.ndarray[Any, Any]:
+    """The array that run.json names."""
+    name = from_plain(plain, Mapping[str, str], key).get("array", "")
+    if name not in file.headers:
+        raise NpzError(name, f"this array is missing, though {RUN} names it as {key}")
+    return file.read(name)
+
+
+def _with_meshes(path: Path, run: Run) -> Run:
+    """The run with the triangles of its meshes."""
+    with _damaged(path), NpzFile(path) as file:
+        _refuse(path, mesh_header_flaws(file.headers, len(run.meshes)))
+        meshes = tuple(
+            replace(
+                mesh,
+                vertices=file.read(f"meshes/{index}/vertices").astype(np.float64),
+                faces=file.read(f"meshes/{index}/faces").astype(np.int64),
             )
-        arrays = read_npz(folder / SIGNALS)
-        if (folder / VISUALS).is_file():
-            arrays |= read_npz(folder / VISUALS)
-        stored = _stored(document, arrays, (folder / RESOLVED).read_bytes().decode("utf-8"))
-        return replace(stored, run=replace(stored.run, files=_files(folder, stored.run)))
-    except (OSError, zipfile.BadZipFile, ValueError, TypeError, KeyError, AttributeError) as error:
-        raise HarnessError(f"{folder} holds a damaged run: {error!r}") from error
+            for index, mesh in enumerate(run.meshes)
+        )
+        _refuse(path, mesh_flaws(meshes))
+    return replace(run, meshes=meshes)
+
+
+@contextmanager
+def blames_changes(folder: Path, stored: StoredRun) -> Generator[None]:
+    """Report an error in processing a run as damage where the run was changed after writing.
+
+    An exception on a run that is as it was written is a defect of the program and passes through.
+
+    Raises:
+        SpecError: The run was changed, and cannot be processed because of that.
+    """
+    try:
+        yield
+    except (HarnessError, OSError):
+        raise
+    except Exception as error:
+        changes = stored.changes()
+        if not changes:
+            raise
+        raise _damage(folder, f"{changes[0]}; it cannot be processed: {error!r}") from error
+
+
+@contextmanager
+def _damaged(path: Path) -> Generator[None]:
+    """What is wrong with a file of a run, as an error with its name and the key."""
+    try:
+        yield
+    except PlainError as error:
+        _refuse(path.with_name(RUN), [(error.key, error.expected)])
+    except NpzError as error:
+        _refuse(path, [(error.key, error.reason)])
+    except FileNotFoundError as error:
+        raise _damage(path, "this file is missing") from error
+    except UnicodeDecodeError as error:
+        raise _damage(path, f"byte {error.start} is no UTF-8") from error
+    except OSError as error:
+        raise _damage(path, f"it cannot be read: {error.strerror or error}") from error
+
+
+def _damage(path: Path, reason: str, line: int = 0, column: int = 0) -> SpecError:
+    return SpecError([Problem(str(path), line, column, f"damaged run: {reason}")])
+
+
+def _refuse(path: Path, flaws: Iterable[Flaw]) -> None:
+    """Raise what is wrong, all of it at once."""
+    problems = [
+        Problem(str(path), 0, 0, ": ".join(filter(None, ["damaged run", key, reason])))
+        for key, reason in flaws
+    ]
+    if problems:
+        raise SpecError(problems[:MOST_FLAWS])
 
 
 def _document(
@@ -149,11 +365,20 @@ def _document(
     }
 
 
+def _checksum(document: Mapping[str, Any], resolved: str) -> str:
+    """SHA-256 over run.json, but for the checksum itself, and the resolved scenario, in hex."""
+    content = {key: value for key, value in document.items() if key != CHECKSUM}
+    text = json.dumps([content, resolved], sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
 def _files(folder: Path, run: Run) -> FolderFiles:
-    names = [checked(name) for capture in run.captures for name in capture.files.values()]
-    for video in run.videos:
-        names += [checked(name) for name in (video.file, video.frames) if name]
-    return FolderFiles(folder, names)
+    names = [name for capture in run.captures for name in capture.files.values()]
+    names += [name for video in run.videos for name in (video.file, video.frames) if name]
+    try:
+        return FolderFiles(folder, [checked(name) for name in names])
+    except ValueError as error:
+        raise PlainError("files", str(error)) from error
 
 
 def _mesh_arrays(run: Run) -> dict[str, np.ndarray[Any, Any]]:
@@ -164,14 +389,16 @@ def _mesh_arrays(run: Run) -> dict[str, np.ndarray[Any, Any]]:
     return arrays
 
 
-def _meshes(plain: Sequence[Any], arrays: Mapping[str, Any]) -> tuple[MeshRecord, ...]:
+def _meshes(document: Mapping[str, Any]) -> tuple[MeshRecord, ...]:
+    """The mesh files, without their triangles."""
+    plain = _mappings(document, "meshes") if "meshes" in document else []
     return tuple(
         MeshRecord(
-            path=Path(mesh["path"]),
-            scale=from_plain(mesh["scale"], tuple[float, float, float]),
-            vertices=arrays[f"meshes/{index}/vertices"].astype(np.float64),
-            faces=arrays[f"meshes/{index}/faces"].astype(np.int64),
-            rgba=from_plain(mesh["rgba"], Rgba | None),
+            path=_field(mesh, "path", Path, f"meshes[{index}]."),
+            scale=_field(mesh, "scale", tuple[float, float, float], f"meshes[{index}]."),
+            vertices=np.zeros((0, 3)),
+            faces=np.zeros((0, 3), dtype=np.int64),
+            rgba=_field(mesh, "rgba", Rgba | None, f"meshes[{index}]."),
         )
         for index, mesh in enumerate(plain)
     )
@@ -193,37 +420,6 @@ def _step(step: StepRecord, index: int, arrays: dict[str, np.ndarray[Any, Any]])
     head |= {"error_code": plain.pop("error_code"), "sim_time": step.end_time - step.start_time}
     plain["trajectory"] = None if step.trajectory is None else trajectory
     return head | plain
-
-
-def _stored(document: dict[str, Any], arrays: dict[str, Any], resolved: str) -> StoredRun:
-    for step in document["steps"]:
-        step["summary"] = step.pop("step")
-    signals = signals_from(arrays, float(document["clearance_cutoff"]))
-    hints = get_type_hints(Run)
-    known = {
-        name: from_plain(document[name], hints[name])
-        for name in hints
-        if name in document and name not in {"signals", "meshes"}
-    }
-    meshes = _meshes(document.get("meshes", ()), arrays)
-    run = Run(**known, signals=signals, resolved=resolved, meshes=meshes)
-    steps = tuple(replace(step, trajectory=_trajectory(step, arrays)) for step in run.steps)
-    return StoredRun(
-        run=replace(run, steps=steps),
-        verdicts=from_plain(document["verdicts"], tuple[Verdict, ...]),
-        outcome=from_plain(document["outcome"], Outcome),
-        digest=from_plain(document["digest"], str),
-        wall_times=from_plain(document["wall_times"], Mapping[str, float]),
-    )
-
-
-def _trajectory(step: StepRecord, arrays: dict[str, Any]) -> dict[str, Any] | None:
-    if step.trajectory is None:
-        return None
-    return {
-        key: arrays[value["array"]] if isinstance(value, dict) else value  # pyright: ignore[reportUnknownArgumentType]
-        for key, value in step.trajectory.items()
-    }
 
 
 def _refuse_foreign(folder: Path) -> None:

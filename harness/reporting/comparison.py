@@ -29,6 +29,8 @@ def comparison_lines(comparison: Comparison, style: Style = PLAIN) -> Iterator[s
         yield f"{style.good('same')}  equal digests: commands, signals and verdicts are the same"
     else:
         yield f"{style.bad('different')}  {_parting(comparison.first_difference)}"
+    for warning in comparison.warnings:
+        yield f"{style.bad('changed')}  {warning}"
     order = list(HEADINGS)
     changes = sorted(comparison.changes, key=lambda change: order.index(change.what))
     for what, group in groupby(changes, key=lambda change: change.what):

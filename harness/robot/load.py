@@ -18,16 +18,18 @@ from harness.robot.calibration import calibrated
 from harness.robot.compose import Part, compose
 from harness.robot.description import Joint, RobotDescription
 from harness.robot.find_file import find_file, find_folder
+from harness.robot.folder_names import refuse_incomplete_states, unknown_names
 from harness.robot.import_robot import read_robot
 from harness.robot.imported_part import names_own_gripper
 from harness.robot.options import with_moveit_files, with_options
 from harness.robot.packages import PackagePath
-from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml
+from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml, robot_yaml_error
 from harness.robot.srdf import parse_srdf
 from harness.robot.urdf import parse_urdf
 from harness.robot.xacro_file import arguments_of, render, render_bundled
 from harness.spec.scenario import RobotSpec
-from harness.spec.xml_file import read_xml
+from harness.spec.xml_file import LARGEST_FILE, read_xml
+from harness.spec.yaml_file import read_text
 
 OF_FILES = ("srdf", "packages", "group", "tcp_link", "flange_link")
 
@@ -165,18 +167,17 @@ def _read(
     packages = PackagePath.of_file(path, [find_folder(each, folder) for each in facts.packages])
     urdf = parse_urdf(text, folder, str(path), packages)
     urdf = replace(urdf, joints=tuple(_with_facts(joint, facts) for joint in urdf.joints))
-    for joint in facts.joints:
-        if joint not in {item.name for item in urdf.joints}:
-            raise RobotError(f"{folder / 'robot.yaml'}: joints.{joint}: the URDF has no such joint")
     srdf_path = folder / facts.srdf
-    return Part(name, facts, urdf, parse_srdf(_text(srdf_path), str(srdf_path)), str(folder))
+    srdf = parse_srdf(_text(srdf_path), str(srdf_path))
+    unknown = [*unknown_names(facts, urdf, srdf)]
+    if unknown:
+        raise robot_yaml_error(folder, unknown)
+    refuse_incomplete_states(srdf, urdf, facts)
+    return Part(name, facts, urdf, srdf, str(folder))
 
 
 def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise RobotError(f"{path}: cannot be read: {error.strerror}") from error
+    return read_text(path, kind="robot description", largest=LARGEST_FILE)
 
 
 def _rendered(

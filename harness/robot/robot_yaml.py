@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import yaml
 from pydantic import Field, ValidationError, model_validator
 
-from harness.core.errors import RobotError
+from harness.core.errors import Problem, SpecError
 from harness.robot.description import IkSolver
 from harness.spec.base import Length, Name, Rpy, SpecModel, Xyz
 from harness.spec.cameras import CameraFields
 from harness.spec.scenario import JointLimits, StartState
-from harness.spec.yaml_file import LOADER
+from harness.spec.source import Loc, Source, SourceMap
+from harness.spec.yaml_file import LOADER, parse_yaml, read_text
+
+FILE = "robot.yaml"
 
 
 class JointFacts(JointLimits):
@@ -151,21 +155,32 @@ def read_robot_yaml(folder: Path) -> RobotYaml:
     """The folder's robot.yaml.
 
     Raises:
-        RobotError: The file is not there, no YAML, or says something that cannot be meant; every
-            problem with file and key.
+        SpecError: The file is not there, no YAML, or says something that cannot be meant; every
+            problem at its place.
     """
-    path = folder / "robot.yaml"
+    text = read_text(folder / FILE)
     try:
-        content: Any = yaml.load(path.read_text(encoding="utf-8"), Loader=LOADER)
-    except OSError as error:
-        raise RobotError(f"{path}: cannot be read: {error.strerror}") from error
-    except yaml.YAMLError as error:
-        raise RobotError(f"{path}: not YAML: {error}") from error
-    try:
+        content: Any = yaml.load(text, Loader=LOADER)
         return RobotYaml.model_validate(content)
-    except ValidationError as error:
-        lines = [
-            f"{path}: {'.'.join(map(str, item['loc'])) or 'robot.yaml'}: {item['msg']}"
-            for item in error.errors(include_url=False)
-        ]
-        raise RobotError("\n".join(lines)) from error
+    except (yaml.YAMLError, RecursionError, ValueError) as error:
+        errors = error.errors(include_url=False) if isinstance(error, ValidationError) else []
+        problems = [(item["loc"], item["msg"]) for item in errors]
+        raise robot_yaml_error(folder, problems or [((), str(error))]) from error
+
+
+def robot_yaml_error(folder: Path, problems: Iterable[tuple[Loc, str]]) -> SpecError:
+    """Mistakes of a robot.yaml, each at its place.
+
+    Raises:
+        SpecError: The file is no YAML.
+    """
+    path = folder / FILE
+    text = read_text(path)
+    places = SourceMap(parse_yaml(text, Source.of_text(str(path), text)))
+    found: list[Problem] = []
+    for loc, message in problems:
+        value = places.find(loc)
+        key = ".".join(map(str, loc)) or FILE
+        place = value.item.place if value.is_whole else value.key or value.item.place
+        found.append(place.problem(f"{key}: {message}"))
+    return SpecError(found)

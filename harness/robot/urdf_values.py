@@ -6,6 +6,7 @@ import math
 
 from harness.core.geometry import Rgba
 from harness.core.spatial import SE3
+from harness.spec.base import LARGEST_NUMBER, SMALLEST_SIZE
 from harness.spec.xml_file import XmlElement
 
 Three = tuple[float, float, float]
@@ -38,6 +39,7 @@ def three(element: XmlElement, name: str, default: Three | None = None) -> Three
     values = _floats(text)
     if values is None or len(values) != 3:
         element.refuse(f"expected 3 finite numbers, found '{text}'", at=name)
+    _refuse_beyond(element, name, *values)
     return values[0], values[1], values[2]
 
 
@@ -46,7 +48,16 @@ def positive(element: XmlElement, name: str) -> float:
     value = number(element, name)
     if value <= 0:
         element.refuse(f"{name} is {value:g}; it has to be above zero", at=name)
+    if value < SMALLEST_SIZE:
+        element.refuse(f"{name} is {value:g}; at least {SMALLEST_SIZE:g} m", at=name)
+    _refuse_beyond(element, name, value)
     return value
+
+
+def _refuse_beyond(element: XmlElement, name: str, *values: float) -> None:
+    for value in values:
+        if abs(value) > LARGEST_NUMBER:
+            element.refuse(f"{value:g} is too large; at most {LARGEST_NUMBER:g}", at=name)
 
 
 def rgba(color: XmlElement) -> Rgba:

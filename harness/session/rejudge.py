@@ -7,8 +7,8 @@ from pathlib import Path
 
 from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
-from harness.recording.run import Verdict
-from harness.recording.store import read_run
+from harness.recording.run import Run, Verdict
+from harness.recording.store import RESOLVED, read_run
 from harness.spec.load import LoadedScenario, load_scenario
 from harness.spec.step import Block
 
@@ -24,9 +24,16 @@ def judge_run(run_dir: Path, with_file: Path | None = None) -> tuple[Verdict, ..
         HarnessError: The folder holds no run.
         SpecError: The scenario cannot be read.
     """
-    run = read_run(run_dir).run
-    loaded = load_scenario(with_file or run_dir / "scenario.resolved.yaml")
-    return judge(run, expectations_of(loaded))
+    return judge_again(read_run(run_dir).run, with_file or run_dir / RESOLVED)
+
+
+def judge_again(run: Run, scenario: Path) -> tuple[Verdict, ...]:
+    """Verdicts of a run by the expectations of a scenario file.
+
+    Raises:
+        SpecError: The scenario cannot be read.
+    """
+    return judge(run, expectations_of(load_scenario(scenario)))
 
 
 def expectations_of(loaded: LoadedScenario) -> list[PlacedExpectation]:

@@ -12,7 +12,7 @@ from harness.assertions.judge import judge
 from harness.assertions.observations import merged
 from harness.assertions.placed import PlacedExpectation
 from harness.cell.program import Program, ProgramStep
-from harness.core.errors import HarnessError, SpecError
+from harness.core.errors import HarnessError, Problem, RobotError, SpecError
 from harness.core.types import FloatArray
 from harness.engine.execute import Execution, execute_program
 from harness.recording.digest import digest
@@ -110,6 +110,11 @@ def run_case(
                     bag,
                 )
             on_progress(ProgressEvent("written", 0, 0, "", outcome, run_time(run), str(report_dir)))
+    except RobotError as error:
+        return CaseResult(
+            str(path), case, program.title, "invalid", seed=program.seed, message=str(error),
+            problems=(Problem(str(path), 0, 0, str(error)),), wall_times=clock.seconds,
+        )  # fmt: skip
     except HarnessError as error:
         return CaseResult(
             str(path), case, program.title, "error", seed=program.seed, message=str(error),

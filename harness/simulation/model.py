@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from harness.core.errors import RobotError
 from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
 from harness.robot.description import RobotDescription
@@ -121,7 +122,11 @@ def build_model(
                 objtype=mujoco.mjtObj.mjOBJ_ACTUATOR,
                 objname=joint.name,
             )
-    model = spec.compile()
+    try:
+        model = spec.compile()
+    except ValueError as error:
+        said = " ".join(str(error).removeprefix("Error: ").split())
+        raise RobotError(f"the physics cannot build this robot and world: {said}") from error
     physics = _places(model, description, servos, simulated, tuple(frames))
     for name, place in physics.objects.items():
         set_presence(model, place, present=name in present)

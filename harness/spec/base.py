@@ -2,15 +2,62 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, cast
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, Strict, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    Strict,
+    field_validator,
+    model_validator,
+)
 
+from harness.spec.mistakes import MistakeError
 from harness.spec.units import quantity
+
+LARGEST_NUMBER = 1e9
+"""No number with a fraction is larger in its SI unit: beyond it, squares and distances overflow."""
+
+
+SMALLEST_SIZE = 1e-9
+"""Of a length or mass that has to be above zero [m or kg]."""
+
+
+def refuse_beyond(value: Any) -> None:
+    """Refuse a field's value with a number beyond `LARGEST_NUMBER`.
+
+    Raises:
+        MistakeError: It has one.
+    """
+    match value:
+        case float() if abs(value) > LARGEST_NUMBER:
+            raise MistakeError(f"{value:g} is too large", f"at most {LARGEST_NUMBER:g} in SI units")
+        case tuple() | list():
+            for item in cast("list[Any]", value):
+                refuse_beyond(item)
+        case dict():
+            for item in cast("dict[Any, Any]", value).values():
+                refuse_beyond(item)
+        case _:
+            pass
+
+
+def refuse_tiny(value: float) -> float:
+    """A length or mass above zero that physics can work with.
+
+    Raises:
+        MistakeError: It is so small that volumes and inertias become zero.
+    """
+    if 0 < value < SMALLEST_SIZE:
+        raise MistakeError(f"{value:g} is too small", f"at least {SMALLEST_SIZE:g} m or kg")
+    return value
 
 
 class SpecModel(BaseModel):
-    """A part of a file: unknown keys refused, immutable, finite numbers only.
+    """A part of a file: unknown keys refused, immutable, numbers finite and bounded.
 
     Attributes:
         short: The field that a bare value stands for: `- gripper: open` is short for
@@ -24,6 +71,12 @@ class SpecModel(BaseModel):
     model_config = ConfigDict(
         extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True
     )
+
+    @field_validator("*")
+    @classmethod
+    def _bounded(cls, value: Any) -> Any:
+        refuse_beyond(value)
+        return value
 
     @model_validator(mode="before")
     @classmethod
@@ -44,7 +97,7 @@ Length = Annotated[float, BeforeValidator(quantity("m"))]
 Angle = Annotated[float, BeforeValidator(quantity("rad"))]
 Duration = Annotated[float, BeforeValidator(quantity("s")), Field(ge=0)]
 Force = Annotated[float, BeforeValidator(quantity("N"))]
-Mass = Annotated[float, BeforeValidator(quantity("kg")), Field(gt=0)]
+Mass = Annotated[float, BeforeValidator(quantity("kg")), Field(gt=0), AfterValidator(refuse_tiny)]
 LinearVelocity = Annotated[float, BeforeValidator(quantity("m/s"))]
 AngularVelocity = Annotated[float, BeforeValidator(quantity("rad/s"))]
 JointVelocity = Annotated[float, BeforeValidator(quantity("rad/s", "m/s"))]
@@ -54,7 +107,7 @@ LinearAcceleration = Annotated[float, BeforeValidator(quantity("m/s**2"))]
 JointValue = Annotated[float, BeforeValidator(quantity("rad", "m"))]
 JointEffort = Annotated[float, BeforeValidator(quantity("N*m", "N"))]
 
-PositiveLength = Annotated[Length, Field(gt=0)]
+PositiveLength = Annotated[Length, Field(gt=0), AfterValidator(refuse_tiny)]
 NonNegativeLength = Annotated[Length, Field(ge=0)]
 NonNegativeAngle = Annotated[Angle, Field(ge=0)]
 PositiveDuration = Annotated[Duration, Field(gt=0)]

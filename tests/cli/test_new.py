@@ -30,14 +30,14 @@ def runs(capsys):
 
 def test_an_arm_with_a_gripper_gets_a_pick_that_passes(capsys):
     scenario = new("ur3e", "--gripper", "rh_p12_rn_a")
-    assert scenario.steps[0].do == "pick"
+    assert scenario.steps[0].verb == "pick"
     assert "no steps were found" not in capsys.readouterr().out
     code, said = runs(capsys)
     assert code == 0, said
 
 
 def test_an_arm_of_four_joints_gets_one_too(capsys):
-    assert new("open_manipulator_x").steps[0].do == "pick"
+    assert new("open_manipulator_x").steps[0].verb == "pick"
     code, said = runs(capsys)
     assert code == 0, said
 
@@ -46,7 +46,7 @@ def test_an_arm_without_a_gripper_gets_a_motion_and_its_files_are_found_from_the
     scenario = new("arm.urdf", "--srdf", "arm.srdf", "--package-path", ".")
     assert (scenario.robot.urdf, scenario.robot.srdf) == ("../arm.urdf", "../arm.srdf")
     assert scenario.robot.packages == ("..",)
-    assert [step.do for step in scenario.steps] == ["move_to", "move_to"]
+    assert [step.verb for step in scenario.steps] == ["move_to", "move_to"]
     code, said = runs(capsys)
     assert code == 0, said
 

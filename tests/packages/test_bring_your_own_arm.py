@@ -82,7 +82,7 @@ def test_the_scenario_asks_for_the_robot_that_the_page_shows(walked):
     [robot] = [text for language, text in BLOCKS if language == "yaml"]
     written = (walked[0] / "panda/first.scenario.yaml").read_text(encoding="utf-8")
     assert robot in written
-    assert load_scenario(walked[0] / "panda/first.scenario.yaml").scenario.steps[0].do == "pick"
+    assert load_scenario(walked[0] / "panda/first.scenario.yaml").scenario.steps[0].verb == "pick"
 
 
 def test_the_folder_is_the_same_robot(walked):

@@ -31,7 +31,7 @@ def ros():
         try:
             return importlib.import_module("rclpy.serialization")
         except ImportError as error:
-            pytest.fail(f"-m ros wants the extra `ros` installed: pip install -e '.[ros]': {error}")
+            pytest.fail(f"-m ros needs the extra `ros`: pip install -e '.[test,ros]': {error}")
 
 
 def message_class(msgtype):

@@ -1,12 +1,13 @@
 """Options of a scenario's robot, and what it says when they do not fit."""
 
+import re
 import shutil
 import subprocess
 import sys
 
 import pytest
 
-from harness.core.errors import RobotError
+from harness.core.errors import RobotError, SpecError
 from harness.core.resources import data_folder
 from harness.robot.load import load_robot
 from harness.spec.scenario import RobotSpec
@@ -100,12 +101,18 @@ def test_a_folder_beside_the_scenario_is_a_robot(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("kind: arm", "kind: leg", ["robot.yaml: kind"]),
-        ("tcp_link: end_effector_link", "tcp_lnk: x", ["robot.yaml: tcp_lnk"]),
-        ("grip_effort: 10.0", "grip_effort: -1", ["robot.yaml: gripper.grip_effort"]),
-        ("gripper_right_joint: *finger", "thumb: *finger", ["joints.thumb", "no such joint"]),
-        ("robot: open_manipulator_x", "robot: [", ["not YAML"]),
-        ("srdf: open_manipulator_x.srdf", "srdf: gone.srdf", ["gone.srdf", "cannot be read"]),
+        ("kind: arm", "kind: leg", ["robot.yaml:3:7: kind"]),
+        ("tcp_link: end_effector_link", "tcp_lnk: x", ["robot.yaml:8:", "tcp_lnk: "]),
+        ("grip_effort: 10.0", "grip_effort: -1", ["robot.yaml:", "gripper.grip_effort"]),
+        ("gripper_right_joint: *finger", "thumb: *finger", ["joints.thumb", "no joint 'thumb'"]),
+        ("robot: open_manipulator_x", "robot: [", ["robot.yaml:2:8: not YAML"]),
+        ("srdf: open_manipulator_x.srdf", "srdf: gone.srdf", ["gone.srdf", "no such file"]),
+        ("arm_group: arm", "arm_group: arms", ["robot.yaml:7:12", "did you mean 'arm'?"]),
+        ("tcp_link: end_effector_link", "tcp_link: tool", ["tcp_link: the URDF has no link"]),
+        ("palm_link: link5", "palm_link: link55", ["gripper.palm_link: the URDF has no link"]),
+        ("group: gripper", "group: hand", ["gripper.group: the SRDF has no group 'hand'"]),
+        ("pad: gripper_left_link", "pad: link5", ["gripper.sides.left.pad: the side has no link"]),
+        ("friction: 1.0", "friction: 1e308", ["gripper.friction: ", "1e+308"]),
     ],
 )
 def test_a_mistake_in_robot_yaml_is_named_by_file_and_key(tmp_path, old, new, words):
@@ -114,10 +121,41 @@ def test_a_mistake_in_robot_yaml_is_named_by_file_and_key(tmp_path, old, new, wo
     text = path.read_text(encoding="utf-8")
     assert old in text
     path.write_text(text.replace(old, new), encoding="utf-8")
-    with pytest.raises(RobotError) as caught:
+    with pytest.raises(SpecError) as caught:
         load_robot(RobotSpec.model_validate({"model": "mine"}), tmp_path)
     for word in words:
         assert word in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["robot.yaml", "{}.srdf", "{}.urdf"])
+@pytest.mark.parametrize("model", ["open_manipulator_x", "rh_p12_rn_a"])
+def test_a_file_of_a_folder_that_is_not_utf8_is_named_with_its_place(tmp_path, model, name):
+    folder = shutil.copytree(data_folder("robots") / model, tmp_path / "mine")
+    path = folder / name.format(model)
+    path.write_bytes(path.read_bytes().replace(b"robot", b"rob\xfft", 1))
+    with pytest.raises(SpecError, match=rf"{path.name}:\d+:\d+: not UTF-8 text"):
+        load_robot(RobotSpec.model_validate({"model": "mine"}), tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("model", "state", "joint"),
+    [
+        ("open_manipulator_x", "open", "gripper_left_joint"),
+        ("open_manipulator_x", "close", "gripper_left_joint"),
+        ("rh_p12_rn_a", "open", "rh_r1_joint"),
+    ],
+)
+def test_a_gripper_state_without_the_grippers_joint_is_refused(tmp_path, model, state, joint):
+    folder = shutil.copytree(data_folder("robots") / model, tmp_path / "mine")
+    path = folder / f"{model}.srdf"
+    before, mark, after = path.read_text().partition(f'<group_state name="{state}"')
+    removed = re.sub(r"<joint .*/>", "", after, count=1)
+    path.write_text(before + mark + removed)
+    with pytest.raises(SpecError, match=rf"srdf:\d+:\d+: state '{state}' .* '{joint}'"):
+        load_robot(RobotSpec.model_validate({"model": "mine"}), tmp_path)
+    path.write_text(before + mark + after.replace(f'"{joint}"', '"thumb"', 1))
+    with pytest.raises(SpecError, match=r"srdf:\d+:\d+: state .* no joint 'thumb'"):
+        load_robot(RobotSpec.model_validate({"model": "mine"}), tmp_path)
 
 
 def test_without_the_mesh_package_arms_are_drawn_from_primitives(monkeypatch):

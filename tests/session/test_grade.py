@@ -17,9 +17,11 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 
 from harness.cli.main import main
 from harness.core.errors import SpecError
+from harness.core.pose_arrays import relative
 from harness.core.resources import data_folder
 from harness.importers.bag import reader, storage
 from harness.importers.bag.content import BagTopics
+from harness.recording.link_poses import link_poses
 from harness.recording.run import Signals, Verdict
 from harness.recording.store import read_run
 from harness.reporting.rosbag.write import BagOptions, write_bag
@@ -30,7 +32,9 @@ from tests.session.recordings import (
     POSES,
     STORE,
     WALL_CLOCK,
+    Recording,
     header,
+    joint_state,
     quaternion,
     students_recording,
     transform,
@@ -562,3 +566,77 @@ def test_a_recording_larger_than_what_is_kept_is_refused_while_it_is_read(whole,
     with pytest.raises(SpecError, match="holds more than 5000 numbers of joints and frames"):
         reader.read_bag(whole, GAZEBO)
     assert len(read) < 400
+
+
+LESSONS = sorted((data_folder("scenarios") / "lessons").glob("*.scenario.yaml"))
+
+
+@pytest.mark.parametrize("lesson", LESSONS, ids=lambda path: path.name.partition(".")[0])
+def test_a_lesson_loses_no_point_when_its_own_bag_is_graded(lesson, tmp_path):
+    """What the bag shows is judged as in the run; contacts alone cannot be seen in it."""
+    result = run_case(lesson, report_dir=tmp_path / "run", stills=False, page=False)
+    stored = read_run(tmp_path / "run")
+    for kind in ("mcap", "sqlite3"):
+        write_bag(tmp_path / kind, stored, BagOptions(storage=kind))
+        rows = grade_bag(lesson, tmp_path / kind).rows
+        judged = [(row.verdict.expectation, row.verdict.status) for row in rows]
+        expected = [(verdict.expectation, verdict.status) for verdict in result.verdicts]
+        for (name, status), (run_name, run_status) in zip(judged, expected, strict=True):
+            assert name == run_name
+            assert status in (run_status, "not observable"), name
+
+
+GRIPPER_ALONE = data_folder("scenarios") / "lessons/04_gripper_alone.scenario.yaml"
+
+
+def test_a_bag_of_another_robot_is_refused_for_a_gripper_alone(recording, tmp_path, capsys):
+    """The gripper's joints are in no message; the error names the joints that were expected."""
+    recording.messages = [
+        message
+        for message in recording.messages
+        if "rh_r1_joint" not in message.content.get("name", [])
+    ]
+    bag = recording.write(tmp_path / "arm.mcap")
+    for message, words in (
+        ("names none of the robot's joints, but elbow_joint", []),
+        ("has no /joints and no frames of this robot", ["--joint-states", "/joints"]),
+    ):
+        assert main(["grade", str(GRIPPER_ALONE), str(bag), *words]) == 2
+        said = capsys.readouterr().err
+        assert said.startswith(str(bag))
+        assert message in said
+
+
+@pytest.fixture(scope="module")
+def gripper_run(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("gripper") / "run"
+    assert run_case(GRIPPER_ALONE, report_dir=folder, stills=False, page=False).outcome == "passed"
+    return read_run(folder).run
+
+
+def test_a_gripper_alone_is_graded_from_joint_states_and_from_frames(gripper_run, tmp_path):
+    """A recorder of the gripper's joint alone, and one of the frames of its links."""
+    columns = {joint.name: i for i, joint in enumerate(gripper_run.robot.joints)}
+    hand = {gripper_run.robot.gripper.joint: columns[gripper_run.robot.gripper.joint]}
+    times = gripper_run.signals.times
+    poses = link_poses(gripper_run.robot, gripper_run.signals.joint_positions)
+    joints, frames = Recording(), Recording()
+    for row in range(0, len(times), 20):
+        state = joint_state(gripper_run.signals, row, hand)
+        joints.add("/joint_states", "sensor_msgs/msg/JointState", float(times[row]), state)
+        moved = [
+            transform(p.parent, p.link, relative(at(poses[p.parent], row), at(poses[p.link], row)))
+            for p in gripper_run.robot.placements
+        ]
+        frames.add("/tf", "tf2_msgs/msg/TFMessage", float(times[row]), {"transforms": moved})
+    file = tmp_path / "closed.scenario.yaml"
+    head = GRIPPER_ALONE.read_text().partition("\nexpect:")[0]
+    file.write_text(f"{head}\nexpect:\n  - eventually: {{gripper: {{named_target: closed}}}}\n")
+    for recording in (joints, frames):
+        grade = grade_bag(file, recording.write(tmp_path / "hand.mcap"))
+        assert grade.rows[-1].verdict.status == "passed"
+        assert {row.verdict.status for row in grade.rows[:-1]} == {"not observable"}
+
+
+def at(poses, row):
+    return poses[row if len(poses) > 1 else 0]

@@ -1,6 +1,9 @@
 """Scenarios from Python: what the documentation shows runs, and mistakes are told."""
 
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +38,25 @@ def test_the_examples_of_the_page_run(number, monkeypatch):
     monkeypatch.chdir(data_folder("scenarios").parent)
     blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
     exec(compile(blocks[number], str(PAGE), "exec"), {})
+
+
+def test_the_step_of_the_page_runs(tmp_path):
+    text = PAGE.read_text(encoding="utf-8")
+    (step,) = (
+        each for each in re.findall(r"```python\n(.*?)```", text, re.DOTALL) if "verb:" in each
+    )
+    (scenario,) = re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)
+    (tmp_path / "remarks.py").write_text(step, encoding="utf-8")
+    (tmp_path / "remarks.scenario.yaml").write_text(scenario, encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-m", "harness.cli", "run", "--plugin", "remarks.py", "--no-report", "."],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_a_model_runs_as_its_file_does(tmp_path):

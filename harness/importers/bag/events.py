@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, get_args
 
 import numpy as np
 
-from harness.core.types import FloatArray
+from harness.core.types import BoolArray, FloatArray
 from harness.importers.bag.clocks import Timeline
 from harness.importers.bag.content import BagContent
 from harness.recording.run import AttachmentRecord, StepRecord, StepStatus
@@ -16,6 +16,7 @@ RESOLUTION = 1e-6
 """Of times that are compared [s]; stamps are whole nanoseconds."""
 STATUSES: Mapping[str, StepStatus] = {status: status for status in get_args(StepStatus)}
 Timed = tuple[float, dict[str, Any]]
+Interval = tuple[float, float]
 
 
 def timed_events(content: BagContent, timeline: Timeline) -> list[Timed]:
@@ -47,6 +48,33 @@ def steps_of(
             status: StepStatus = STATUSES.get(said, "passed")
             steps.append(_step({**event, **told}, known, (begin, end), times, status))
     return tuple(steps)
+
+
+def presence_of(events: list[Timed], name: str, times: FloatArray) -> tuple[Interval, ...]:
+    """Intervals (from, to) in which an object was in the scene [s]; all of it without events."""
+    changes = [
+        (time, event["event"] == "object_added")
+        for time, event in events
+        if event.get("event") in ("object_added", "object_removed")
+        and str(event.get("object")) == name
+    ]
+    intervals: list[Interval] = []
+    begin = None if changes and changes[0][1] else float(times[0])
+    for time, is_added in changes:
+        if is_added and begin is None:
+            begin = time
+        elif not is_added and begin is not None:
+            intervals.append((begin, time))
+            begin = None
+    return (*intervals, *([] if begin is None else [(begin, float(times[-1]))]))
+
+
+def is_present(intervals: Sequence[Interval], times: FloatArray) -> BoolArray:
+    """At which samples one of the intervals holds, shape (N,)."""
+    inside: BoolArray = np.zeros(len(times), dtype=bool)
+    for begin, end in intervals:
+        inside |= (times >= begin - RESOLUTION) & (times <= end + RESOLUTION)
+    return inside
 
 
 def attachments_of(events: list[Timed]) -> tuple[AttachmentRecord, ...]:
@@ -110,6 +138,8 @@ def _step(
     name, path = str(event["step"]), _path(event)
     line, summary = known.get(name, known.get(path, (0, "")))
     begin, end = span
+    # a step without duration is judged on the first sample after it
+    start = min(int(np.searchsorted(times, begin - RESOLUTION)), len(times) - 1)
     return StepRecord(
         id=name,
         path=path,
@@ -119,8 +149,8 @@ def _step(
         status=status,
         start_time=begin,
         end_time=end,
-        start_index=int(np.searchsorted(times, begin - RESOLUTION)),
-        end_index=int(np.searchsorted(times, end + RESOLUTION)),
+        start_index=start,
+        end_index=max(int(np.searchsorted(times, end + RESOLUTION)), start + 1),
         error_code=str(event.get("error_code", "")),
         message=str(event.get("message", "")),
         result=event["result"] if isinstance(event.get("result"), dict) else {},

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,12 +25,19 @@ class JointRows:
     efforts: FloatArray
 
 
-def reference_track(content: BagContent, description: RobotDescription) -> Track | None:
+def reference_track(
+    content: BagContent, description: RobotDescription, arm_joints: Collection[str]
+) -> Track | None:
     """The messages that give the run its samples: those with most of the arm's joints.
 
-    Where there are no joint states, those of the frame that an arm's joint moves.
+    Where there are no joint states, those of the frame that one of these joints moves.
+
+    Args:
+        content: What the recording holds.
+        description: The robot.
+        arm_joints: Joints of the arm; every movable joint of a gripper alone.
     """
-    arm = set(description.groups[description.arm_group].joint_names)
+    arm = set(arm_joints)
     known = [
         (len(arm & set(names)), len(track.logged), names) for names, track in content.joints.items()
     ]

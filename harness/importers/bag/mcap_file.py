@@ -12,7 +12,7 @@ from typing import Any
 
 import zstandard
 from lz4.frame import LZ4FrameDecompressor
-from mcap.exceptions import EndOfFile, McapError
+from mcap.exceptions import EndOfFile
 from mcap.records import Channel, Chunk, Message, Schema
 from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 
@@ -58,19 +58,13 @@ def mcap_messages(file: Path, named: Path) -> Iterator[RawMessage]:
         except CRCValidationError as error:
             place = f"near byte {stream.tell()}"
             raise bag_error(named, f"is damaged {place}: a checksum is wrong", RECOVER) from error
-        except (
-            McapError,
-            KeyError,
-            ValueError,
-            IndexError,
-            OverflowError,
-            UnicodeDecodeError,
-        ) as error:
-            place = f"near byte {stream.tell()}"
-            raise bag_error(named, f"is damaged {place}, or no MCAP file: {error}") from error
         except (zstandard.ZstdError, RuntimeError, OSError) as error:
             place = f"near byte {stream.tell()}"
             raise bag_error(named, f"cannot be read {place}: {error}") from error
+        except Exception as error:
+            # whatever the reader raises on damaged bytes: struct.error, MemoryError, KeyError ...
+            place, said = f"near byte {stream.tell()}", str(error) or type(error).__name__
+            raise bag_error(named, f"is damaged {place}, or no MCAP file: {said}") from error
 
 
 def _mcap_records(stream: Any, named: Path) -> Iterator[Any]:

@@ -17,6 +17,9 @@ from harness.importers.bag.storage import bag_files, messages
 MOST_NUMBERS = 20_000_000
 """Kept of one recording: an hour of ten joints at 100 Hz is half of it; 160 MB."""
 
+LATEST = 2**63 - 1
+"""Time of a message that can be kept [ns]."""
+
 NEW_KEY = 200
 """What a new frame or set of joints costs of it, besides the characters of its names."""
 
@@ -72,6 +75,8 @@ class _Reader:
         if keep is None:
             return
         try:
+            if message.log_time > LATEST:
+                raise ValueError("a time beyond the year 2262")  # noqa: TRY301
             keep(TYPES.deserialize_cdr(message.data, message.msgtype), message)
         except Exception:  # noqa: BLE001 - whatever breaks in a message is that message's
             self._malformed[message.topic] = self._malformed.get(message.topic, 0) + 1
@@ -131,8 +136,10 @@ class _Reader:
             if len(values) not in (0, count):
                 raise ValueError("not one value a name")
             parts.append(values if len(values) else [math.nan] * count)
-        track = self._track(tracks, names, 3 * count)
-        self._put(track, content.header, message, [value for part in parts for value in part])
+        row = [float(value) for part in parts for value in part]
+        if any(map(math.isinf, row)):
+            raise ValueError("infinite numbers")
+        self._put(self._track(tracks, names, 3 * count), content.header, message, row)
 
     def _frames(self, content: Any, message: RawMessage) -> None:
         is_static = FRAMES[message.topic]

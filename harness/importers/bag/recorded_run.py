@@ -12,7 +12,15 @@ from harness.core.types import BoolArray, FloatArray
 from harness.core.world import WorldObject
 from harness.importers.bag.clocks import Timeline
 from harness.importers.bag.content import BagContent, BagTopics
-from harness.importers.bag.events import Timed, attachments_of, steps_of, timed_events
+from harness.importers.bag.events import (
+    Interval,
+    Timed,
+    attachments_of,
+    is_present,
+    presence_of,
+    steps_of,
+    timed_events,
+)
 from harness.importers.bag.frames import Frames
 from harness.importers.bag.joints import (
     foreign_links,
@@ -77,7 +85,7 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
         SpecError: It cannot be read, or holds no joints of this robot.
     """
     content = read_bag(path, topics)
-    reference = reference_track(content, known.description)
+    reference = reference_track(content, known.description, known.robot.arm_joints)
     if reference is None:
         raise _no_joints(path, topics, content, known)
     timeline = Timeline(reference)
@@ -95,7 +103,15 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
     commanded = joint_rows(content.commands, known.description, timeline, times, "/joint_commands")
     links = link_poses(known.robot, measured.positions, _links_needed(known, content))
     frames = Frames(content, links, timeline, times)
-    poses = {obj.name: frames.pose(obj.name) for obj in known.objects if frames.knows(obj.name)}
+    events = timed_events(content, timeline)
+    present = {obj.name: presence_of(events, obj.name, times) for obj in known.objects}
+    poses = {
+        obj.name: np.where(
+            is_present(present[obj.name], times)[:, None], frames.pose(obj.name), np.nan
+        )
+        for obj in known.objects
+        if frames.knows(obj.name)
+    }
     signals = Signals(
         times=times,
         joint_positions=measured.positions,
@@ -107,14 +123,13 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
         frames={name: _whole(links[name], times) for name in known.frames if name in links},
         object_poses=poses,
     )
-    events = timed_events(content, timeline)
     steps, attachments = steps_of(events, times, known.steps), attachments_of(events)
     notes = [
         *content.notes,
         *timeline.notes,
         *frames.notes,
         *foreign_links(content, placements),
-        *_gaps(known, signals),
+        *_gaps(known, signals, present),
     ]
     return Run(
         scenario=known.title,
@@ -122,7 +137,9 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
         case="",
         seed=0,
         robot=known.robot,
-        objects=tuple(_object_record(obj, known, poses, times) for obj in known.objects),
+        objects=tuple(
+            _object_record(obj, known, poses, present[obj.name]) for obj in known.objects
+        ),
         attachments=attachments,
         steps=steps,
         signals=signals,
@@ -150,7 +167,10 @@ def _unrecorded(signals: Signals, events: list[Timed], *, has_steps: bool) -> tu
 
 
 def _object_record(
-    obj: WorldObject, known: Recorded, poses: Mapping[str, FloatArray], times: FloatArray
+    obj: WorldObject,
+    known: Recorded,
+    poses: Mapping[str, FloatArray],
+    present: tuple[Interval, ...],
 ) -> ObjectRecord:
     """An object whose pose no topic gives is where the scenario puts it, if it cannot move."""
     is_known = obj.name not in poses and obj.is_static and obj.name in known.at_start
@@ -160,13 +180,15 @@ def _object_record(
         in_planning=obj.in_planning,
         in_simulation=obj.in_simulation,
         shapes=obj.visuals or obj.shapes,
-        present=((float(times[0]), float(times[-1])),),
+        present=present,
         pose=tuple(float(value) for value in obj.pose.as_vector()) if is_known else (),
         mass=obj.mass,
     )
 
 
-def _gaps(known: Recorded, signals: Signals) -> list[str]:
+def _gaps(
+    known: Recorded, signals: Signals, present: Mapping[str, tuple[Interval, ...]]
+) -> list[str]:
     """Joints and objects of which something is missing."""
     told: list[str] = []
     unknown: BoolArray = np.isnan(signals.joint_positions)
@@ -181,9 +203,10 @@ def _gaps(known: Recorded, signals: Signals) -> list[str]:
         if gone.any() and name not in without:
             told.append(f"{name} is not known from t={signals.times[gone][0]:.3f} s on for a while")
     for name, poses in sorted(signals.object_poses.items()):
-        gone = np.isnan(poses[:, 0])
+        there = is_present(present[name], signals.times)
+        gone = np.isnan(poses[:, 0]) & there
         if gone.any():
-            share = 100 * float(gone.mean())
+            share = 100 * float(gone.sum() / there.sum())
             first = signals.times[gone][0]
             told.append(f"{name}: no pose for {share:.0f} % of the time, first at t={first:.3f} s")
     dynamic = [obj.name for obj in known.objects if not obj.is_static]
@@ -198,13 +221,13 @@ def _whole(poses: FloatArray, times: FloatArray) -> FloatArray:
 
 
 def _no_joints(path: Path, topics: BagTopics, content: BagContent, known: Recorded) -> Exception:
-    wanted = known.robot.groups[known.robot.arm_group]
+    wanted = known.robot.arm_joints
     if content.joints:
         seen = sorted({name for names in content.joints for name in names})
         return bag_error(
             path,
-            f"{topics.joint_states} names none of the arm's joints, but {', '.join(seen[:12])}",
-            f"this robot's: {', '.join(wanted)}",
+            f"{topics.joint_states} names none of the robot's joints, but {', '.join(seen[:12])}",
+            f"expected: {', '.join(wanted)}",
         )
     others = [n for n, (kind, _) in sorted(content.topics.items()) if kind.endswith("/JointState")]
     if others:

@@ -26,6 +26,7 @@ def sqlite_messages(file: Path, named: Path) -> Iterator[RawMessage]:
         raise bag_error(named, "is empty")
     try:
         with closing(sqlite3.connect(f"{file.absolute().as_uri()}?mode=ro", uri=True)) as database:
+            database.text_factory = _text
             database.execute("PRAGMA trusted_schema = OFF")
             database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST_RECORD)
             kinds = dict(database.execute("SELECT name, type FROM sqlite_master"))
@@ -41,6 +42,12 @@ def sqlite_messages(file: Path, named: Path) -> Iterator[RawMessage]:
             for number, time, data in rows:
                 if number in topics and isinstance(data, bytes) and isinstance(time, int):
                     yield RawMessage(*topics[number], time, data)
-    except sqlite3.Error as error:
+    except (sqlite3.Error, MemoryError, OverflowError, UnicodeDecodeError) as error:
         hint = "`sqlite3 FILE .recover | sqlite3 WHOLE.db3` saves what is whole"
-        raise bag_error(named, f"cannot be read as a database: {error}", hint) from error
+        said = str(error) or type(error).__name__
+        raise bag_error(named, f"cannot be read as a database: {said}", hint) from error
+
+
+def _text(data: bytes) -> str:
+    """A text of the database; damaged bytes are replaced, as names they match nothing."""
+    return data.decode("utf-8", errors="replace")

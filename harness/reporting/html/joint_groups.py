@@ -14,7 +14,7 @@ from harness.reporting.html.group import MOST_SERIES, Group, Limit
 
 def _arm(run: Run) -> list[tuple[int, JointRecord]]:
     """Columns and records of the arm's joints; of all of them where no group is the arm's."""
-    names = run.robot.groups.get(run.robot.arm_group) or [j.name for j in run.robot.joints]
+    names = run.robot.arm_joints
     return [(i, joint) for i, joint in enumerate(run.robot.joints) if joint.name in names]
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import cv2
 
-from harness.recording.store import PAGE, StoredRun, read_run
+from harness.recording.store import PAGE, StoredRun, blames_changes, read_run
 from harness.reporting.html.page import page_html
 from harness.reporting.html.summary import Picture
 
@@ -28,7 +28,8 @@ def write_page(folder: Path, stored: StoredRun | None = None) -> Path:
     """
     stored = stored or read_run(folder)
     page = folder / PAGE
-    text = page_html(stored, _pictures(folder, stored))
+    with blames_changes(folder, stored):
+        text = page_html(stored, _pictures(folder, stored))
     page.write_text(text, encoding="utf-8", newline="")
     return page
 

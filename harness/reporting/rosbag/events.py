@@ -58,7 +58,7 @@ def events(stored: StoredRun) -> list[Event]:
     first, last = float(run.signals.times[0]), float(run.signals.times[-1])
     head = {"event": "run_started", "scenario": run.scenario, "case": run.case, "seed": run.seed}
     tail = {"event": "run_finished", "outcome": stored.outcome, "digest": stored.digest}
-    told = [*_steps(run), *_attachments(run), *_findings(run, last)]
+    told = [*_steps(run), *_presence(run), *_attachments(run), *_findings(run, last)]
     told += [_verdict(verdict, last) for verdict in stored.verdicts]
     return [
         Event(first, f"run: {run.scenario}", Log.INFO, head),
@@ -110,6 +110,21 @@ def _finished(step: StepRecord) -> Event:
 def _not_reached(step: StepRecord, end: float) -> Event:
     said = f"{step.id}: not reached"
     return Event(end, said, Log.WARN, _step("step_not_reached", step))
+
+
+def _presence(run: Run) -> list[Event]:
+    """Objects that were added or removed during the run."""
+    first, last = float(run.signals.times[0]), float(run.signals.times[-1])
+    told: list[Event] = []
+    for record in run.objects:
+        for number, (begin, end) in enumerate(record.present):
+            if number or begin > first:
+                content = {"event": "object_added", "object": record.name}
+                told.append(Event(begin, f"{record.name} added", Log.INFO, content))
+            if end < last:
+                content = {"event": "object_removed", "object": record.name}
+                told.append(Event(end, f"{record.name} removed", Log.INFO, content))
+    return told
 
 
 def _attachments(run: Run) -> list[Event]:

@@ -2,7 +2,6 @@
 
 import statistics
 from collections.abc import Callable, Sequence
-from importlib.util import find_spec
 
 import numpy as np
 import pytest
@@ -10,6 +9,7 @@ import pytest
 from tests.benchmarks.planning.contenders import Outcome, is_free, naive, ours
 from tests.benchmarks.planning.layouts import FAMILIES
 from tests.benchmarks.planning.problems import SCALE, Problem, make_problem
+from tests.installed import is_installed
 
 EACH = 5
 """Problems of each family for each arm: 70."""
@@ -22,7 +22,7 @@ CONTENDERS: dict[str, Callable[[Problem], Outcome]] = {
     "plain": lambda problem: ours(problem, "never"),
     "compiled": lambda problem: ours(problem, "always"),
 }
-if find_spec("roboplan"):
+if is_installed("roboplan"):
     from tests.benchmarks.planning.roboplan_contender import roboplan, roboplan_verified
 
     CONTENDERS |= {"roboplan": roboplan, "roboplan, verified": roboplan_verified}
@@ -73,7 +73,7 @@ def test_planning_on_meshes_against_naive_ompl(outcomes, tell):
 
 
 @pytest.mark.benchmark
-@pytest.mark.skipif(not find_spec("roboplan"), reason="roboplan is in the extra `benchmarks`")
+@pytest.mark.skipif(not is_installed("roboplan"), reason="roboplan is in the extra `benchmarks`")
 def test_verified_plans_come_before_those_of_roboplan(outcomes):
     """With both held to paths that are free; as it comes, roboplan does not check them so."""
     ours_total, theirs = (

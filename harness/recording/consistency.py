@@ -1,0 +1,199 @@
+"""Whether the parts of a saved run fit each other: shapes of arrays, indices, and names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, fields
+from typing import Any, cast
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.recording.arrays import BY_NAME, BY_PAIR
+from harness.recording.npz_file import Header
+from harness.recording.run import MeshRecord, RobotRecord, Run, Signals, StepRecord
+
+Flaw = tuple[str, str]
+"""Key, and what is wrong there."""
+COLUMNS = {"tcp_pose": 7, "frames": 7, "object_poses": 7, "presses": 6}
+"""Numbers per sample; the joint signals have one per joint, others one."""
+PER_SAMPLE = tuple(
+    entry.name
+    for entry in fields(Signals)
+    if entry.name not in (*BY_NAME, *BY_PAIR, "clearance_cutoff")
+)
+"""Signals that every run has."""
+MESH_ARRAYS = {"vertices": "float32", "faces": "int32"}
+TRAJECTORY = ("joint_names", "times", "positions")
+"""Keys that every trajectory has."""
+
+
+@dataclass(frozen=True)
+class Expected:
+    """What an array should be."""
+
+    shape: tuple[int, ...]
+    kind: str
+
+    def flaw(self, name: str, header: Header) -> Iterator[Flaw]:
+        """What a header has against it."""
+        if header.dtype != np.dtype(self.kind):
+            yield name, f"expected {np.dtype(self.kind)}, found {header.dtype}"
+        elif header.shape != self.shape:
+            yield name, f"expected the shape {self.shape}, found {header.shape}"
+
+
+def signal_flaws(headers: Mapping[str, Header], robot: RobotRecord) -> Iterator[Flaw]:
+    """What is wrong with the headers of a run's signals."""
+    for name in PER_SAMPLE:
+        if name not in headers:
+            yield name, "this array is missing"
+    times = headers.get("times")
+    if times is None:
+        return
+    if len(times.shape) != 1 or not times.shape[0]:
+        yield "times", f"expected the shape (samples,), found {times.shape}"
+        return
+    count = times.shape[0]
+    for name, header in headers.items():
+        group = name.partition("/")[0]
+        if group in (*PER_SAMPLE, *BY_NAME, *BY_PAIR):
+            yield from _expected(group, count, len(robot.joints)).flaw(name, header)
+
+
+def _expected(group: str, samples: int, joints: int) -> Expected:
+    if group == "clearance_links":
+        return Expected((samples,), "int64")
+    columns = joints if group.startswith("joint_") else COLUMNS.get(group)
+    return Expected((samples,) if columns is None else (samples, columns), "float64")
+
+
+def run_flaws(run: Run) -> Iterator[Flaw]:
+    """What in a run refers to something that is not there, or has a length of its own."""
+    times = run.signals.times
+    if not np.isfinite(times).all() or (np.diff(times) <= 0).any():
+        yield "times", "expected finite times that rise"
+    links = len(run.robot.link_names)
+    for (first, second), nearest in run.signals.clearance_links.items():
+        if nearest.size and (nearest.min() < -1 or nearest.max() >= links):
+            yield f"clearance_links/{first}|{second}", f"expected indices from -1 to {links - 1}"
+    yield from _robot_flaws(run.robot)
+    for index, record in enumerate(run.objects):
+        yield from _length(f"objects[{index}].pose", record.pose, 7, may_be_empty=True)
+    for index, record in enumerate(run.attachments):
+        yield from _length(f"attachments[{index}].pose_in_link", record.pose_in_link, 7)
+    for index, step in enumerate(run.steps):
+        yield from _step_flaws(f"steps[{index}]", step, len(times))
+    yield from _camera_flaws(run)
+
+
+def _robot_flaws(robot: RobotRecord) -> Iterator[Flaw]:
+    joints = {joint.name for joint in robot.joints}
+    for name, members in robot.groups.items():
+        yield from _unknown(f"robot.groups.{name}", members, joints, "joint")
+    if robot.arm_group:
+        yield from _unknown("robot.arm_group", [robot.arm_group], robot.groups, "group")
+    for name, pose in robot.static_link_poses.items():
+        yield from _length(f"robot.static_link_poses.{name}", pose, 7)
+    for index, placement in enumerate(robot.placements):
+        key = f"robot.placements[{index}]"
+        yield from _length(f"{key}.pose", placement.pose, 7)
+        yield from _length(f"{key}.axis", placement.axis, 3)
+        if placement.joint:
+            yield from _unknown(f"{key}.joint", [placement.joint], joints, "joint")
+    if robot.gripper is not None:
+        yield from _unknown("robot.gripper.joint", [robot.gripper.joint], joints, "joint")
+        yield from _unknown("robot.gripper.group", [robot.gripper.group], robot.groups, "group")
+
+
+def _step_flaws(key: str, step: StepRecord, samples: int) -> Iterator[Flaw]:
+    if not 0 <= step.start_index <= step.end_index <= samples:
+        span = f"{step.start_index} to {step.end_index}"
+        yield f"{key}.start_index", f"expected indices within 0 to {samples}, found {span}"
+    if not np.isfinite([step.start_time, step.end_time]).all():
+        yield f"{key}.start_time", "expected finite times"
+    if step.trajectory is not None:
+        yield from _trajectory_flaws(f"{key}.trajectory", step.trajectory)
+
+
+def _trajectory_flaws(key: str, trajectory: Mapping[str, Any]) -> Iterator[Flaw]:
+    missing = [name for name in TRAJECTORY if name not in trajectory]
+    if missing:
+        yield from ((f"{key}.{name}", "this key is missing") for name in missing)
+        return
+    names, times = trajectory["joint_names"], trajectory["times"]
+    if not _are_texts(names):
+        yield f"{key}.joint_names", "expected a list of names"
+    elif not isinstance(times, np.ndarray) or times.ndim != 1 or not times.size:  # pyright: ignore[reportUnknownMemberType]
+        yield f"{key}.times", "expected an array of one time per waypoint"
+    else:
+        shape = (times.size, len(names))  # pyright: ignore[reportUnknownMemberType]
+        for name, value in trajectory.items():
+            if name != "joint_names":
+                yield from _table_flaws(
+                    f"{key}.{name}", value, shape[:1] if name == "times" else shape
+                )
+
+
+def _are_texts(value: Any) -> bool:
+    return isinstance(value, list) and all(isinstance(item, str) for item in value)  # pyright: ignore[reportUnknownVariableType]
+
+
+def _table_flaws(key: str, value: Any, shape: tuple[int, ...]) -> Iterator[Flaw]:
+    if not isinstance(value, np.ndarray):
+        yield key, "expected the name of an array"
+    else:
+        array = cast("np.ndarray[Any, Any]", value)
+        yield from Expected(shape, "float64").flaw(key, Header(array.shape, array.dtype))
+        if array.dtype.kind == "f" and not np.isfinite(array).all():
+            yield key, "expected finite numbers"
+
+
+def _camera_flaws(run: Run) -> Iterator[Flaw]:
+    cameras, samples = {camera.name for camera in run.cameras}, len(run.signals.times)
+    for index, capture in enumerate(run.captures):
+        key = f"captures[{index}]"
+        yield from _unknown(f"{key}.camera", [capture.camera], cameras, "camera")
+        yield from _length(f"{key}.pose", capture.pose, 7, may_be_empty=True)
+        if not 0 <= capture.sample < samples:
+            yield f"{key}.sample", f"expected an index below {samples}, found {capture.sample}"
+    for index, video in enumerate(run.videos):
+        yield from _unknown(f"videos[{index}].camera", [video.camera], cameras, "camera")
+
+
+def mesh_header_flaws(headers: Mapping[str, Header], count: int) -> Iterator[Flaw]:
+    """What is wrong with the headers of the triangles of so many meshes."""
+    for index in range(count):
+        for name, kind in MESH_ARRAYS.items():
+            name = f"meshes/{index}/{name}"
+            header = headers.get(name)
+            if header is None:
+                yield name, "this array is missing"
+            else:
+                yield from Expected((*header.shape[:1], 3), kind).flaw(name, header)
+
+
+def mesh_flaws(meshes: Iterable[MeshRecord]) -> Iterator[Flaw]:
+    """Faces that name vertices which are not there."""
+    for index, mesh in enumerate(meshes):
+        if mesh.faces.size and not 0 <= mesh.faces.min() <= mesh.faces.max() < len(mesh.vertices):
+            yield f"meshes/{index}/faces", f"expected indices below {len(mesh.vertices)}"
+        if not np.isfinite(mesh.vertices).all():
+            yield f"meshes/{index}/vertices", "expected finite numbers"
+
+
+def _length(
+    key: str, numbers: Iterable[float], length: int, *, may_be_empty: bool = False
+) -> Iterator[Flaw]:
+    values: FloatArray = np.array(tuple(numbers), dtype=float)
+    if len(values) == length or (may_be_empty and not len(values)):
+        if not np.isfinite(values).all():
+            yield key, "expected finite numbers"
+    else:
+        yield key, f"expected {length} numbers, found {len(values)}"
+
+
+def _unknown(key: str, names: Iterable[str], known: Iterable[str], what: str) -> Iterator[Flaw]:
+    for name in names:
+        if name not in known:
+            yield key, f"there is no {what} '{name}' in this run"
