@@ -19,6 +19,7 @@ modules in the entry-point group `harness.plugins`:
 from harness.assertions.expectation import Expectation, ObjectPredicate, Predicate, TemporalWord
 from harness.assertions.margins import Evidence, Margin, MarginSignal, Part, all_of, measured
 from harness.assertions.observations import Observations, PictureRequest
+from harness.assertions.poses import frame_poses, object_poses
 from harness.assertions.window import NotObservable, NotReached, Window
 from harness.cell.scope import At
 from harness.spec.base import (
@@ -60,5 +61,7 @@ __all__ = [
     "TemporalWord",
     "Window",
     "all_of",
+    "frame_poses",
     "measured",
+    "object_poses",
 ]
