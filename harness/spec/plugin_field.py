@@ -17,7 +17,7 @@ MARK = "plugin"
 class PluginField:
     """Annotates a field of plug-in models: `Annotated[Step, PluginField("step", "do")]`.
 
-    The registry is asked when a value is validated, so that a model is built when a file uses it.
+    The lookup happens when a value is validated, so that a model is built when a file uses it.
     """
 
     def __init__(self, kind: str, tag: str) -> None:

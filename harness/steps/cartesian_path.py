@@ -37,7 +37,7 @@ class Waypoint(Pose):
 
 
 class CartesianPath(Step):
-    """MoveIt's computeCartesianPath: straight lines of the link through waypoints.
+    """Move the link on straight lines through waypoints: MoveIt's computeCartesianPath.
 
     Corners are rounded within the precision, so that the link need not stop there. The step reports
     the `fraction` of the path that was followed, the `largest_joint_step` from one pose to the

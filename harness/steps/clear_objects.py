@@ -13,7 +13,7 @@ from harness.spec.step import Step
 
 
 class ClearObjects(Step):
-    """Remove what steps added; with `world: true` the world's objects too."""
+    """Remove the objects that steps added; with `world: true` the world's objects too."""
 
     verb: ClassVar[str] = "clear_objects"
 

@@ -13,7 +13,7 @@ from harness.spec.step import Step
 
 
 class DetachObject(Step):
-    """Let go of an attached object, in the planning scene alone."""
+    """Detach an object from its link, in the planning scene alone."""
 
     short = "object"
 

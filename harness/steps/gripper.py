@@ -19,7 +19,7 @@ DEFAULT_TIMEOUT = 10.0  # [s] of simulation
 
 
 class Gripper(Step):
-    """GripperCommand: a named state, `position`, or `width`."""
+    """Move the gripper to a named state, a `position` or a `width`: ROS's GripperCommand."""
 
     short = "named_target"
 

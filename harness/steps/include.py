@@ -12,9 +12,9 @@ from harness.spec.step import Step
 
 
 class Include(Step):
-    """The steps of another file; with an `id`, theirs get it and a dot in front.
+    """Run the steps of another file; an `id` and a dot are put in front of the ids of its steps.
 
-    The file has `steps`, and `params` with their defaults; it knows no others.
+    The file has `steps`, and `params` with their defaults; it can use no other parameters.
     """
 
     short = "file"

@@ -16,9 +16,9 @@ PushForce = tuple[Force, Force, Force]
 
 
 class Inject(Step):
-    """A fault of the physics, with a receipt: `landed`, or `no_effect` and why.
+    """Begin a fault of the physics; its receipt says `landed`, or `no_effect` and why.
 
-    A push lasts `push_duration`; every other fault lasts until another `inject` sets it back.
+    A push lasts `push_duration`; every other fault lasts until another `inject` ends it.
     """
 
     verb: ClassVar[str] = "inject"

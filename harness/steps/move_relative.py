@@ -16,7 +16,7 @@ from harness.spec.step import Step
 
 
 class MoveRelative(Step):
-    """Task Constructor's MoveRelative: a straight move, or a turn, by a distance."""
+    """Move the link by a distance, or turn it by an angle: Task Constructor's MoveRelative."""
 
     verb: ClassVar[str] = "move_relative"
     moves_arm: ClassVar[bool] = True

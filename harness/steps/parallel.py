@@ -15,7 +15,7 @@ from harness.steps.gripper import Gripper
 
 
 class Parallel(Step):
-    """One motion of the arm and one `gripper` step at once; it ends when both have."""
+    """Run one motion of the arm and one `gripper` step at once, until both have ended."""
 
     short = "steps"
     short_is_list = True

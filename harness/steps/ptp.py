@@ -18,7 +18,7 @@ from harness.spec.step import Step
 
 
 class Ptp(GoalFields, Step):
-    """Pilz PTP: all joints together, straight in joint space."""
+    """Pilz PTP: all joints move together, straight in joint space."""
 
     verb: ClassVar[str] = "ptp"
     moves_arm: ClassVar[bool] = True

@@ -14,7 +14,7 @@ from harness.spec.step import AnyStep, Block, Step
 
 
 class Repeat(Step):
-    """The same steps several times; an `id` inside gets `#1`, `#2` ... appended to it."""
+    """Run the same steps several times; an `id` inside gets `#1`, `#2` ... appended to it."""
 
     verb: ClassVar[str] = "repeat"
 

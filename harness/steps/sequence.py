@@ -61,7 +61,7 @@ class SequenceItem(SpecModel):
 
 
 class Sequence(Step):
-    """Pilz's motion sequence: all motions or none, blended into each other.
+    """Run motions that blend into each other, all or none: Pilz's motion sequence.
 
     The blend radii of two motions that follow each other are together less than the distance
     between their goals.
