@@ -186,6 +186,12 @@ def test_one_module_is_loaded_with_an_option(tmp_path, scenario, form):
     assert [code for code, _ in answers] == [0, 0, 0], answers
     (row,) = [line for line in answers[-1][1].splitlines() if line.startswith("tcp_height ")]
     assert row.split()[1] == "heights"
+    scenario.write_text(FAILING, encoding="utf-8")
+    run = ("run", scenario, "--no-report", "--plugin", plugin)
+    ((code, said),) = harness(run, site=tmp_path)
+    (again,) = [line for line in said.splitlines() if "again:" in line]
+    assert code == 1
+    assert again.endswith(f"--plugin {plugin}")
 
 
 FORGETFUL = '''
