@@ -243,11 +243,19 @@ class MotionPlan:
 
 @dataclass(frozen=True)
 class Touch:
-    """Two bodies closer than allowed; `distance` is negative for penetration [m]."""
+    """Two bodies closer than allowed.
+
+    Attributes:
+        first: Name of a link or an object.
+        second: Name of another.
+        distance: Negative for penetration [m].
+        required: The smallest distance that is allowed [m].
+    """
 
     first: str
     second: str
     distance: float
+    required: float = 0.0
 
 
 class PlanningScene(Protocol):
@@ -280,6 +288,10 @@ class PlanningScene(Protocol):
 
     def set_allowed(self, pairs: Sequence[tuple[str, str]], *, allowed: bool) -> None:
         """Allow, or check again, collisions of pairs: links, objects, `robot` for all links."""
+        ...
+
+    def set_unpadded(self, pairs: Sequence[tuple[str, str]]) -> None:
+        """Apply no padding to these pairs of a link and an object, and to no others."""
         ...
 
     def object_names(self) -> tuple[str, ...]:

@@ -18,7 +18,33 @@ from harness.core.pose_arrays import (
 )
 from harness.core.symmetry import ANY, equal_turns
 from harness.core.types import BoolArray, FloatArray
-from harness.recording.run import Run
+from harness.recording.run import AttachmentRecord, Run, is_nested
+
+
+def released_at(run: Run, record: AttachmentRecord) -> float:
+    """When the gripper began to release an attached object: inf where it did not [s].
+
+    `release` opens the gripper and then detaches the object; `gripper` and `detach_object` one
+    after the other do the same. In between the object leaves the hand as it should.
+    """
+    leaves = [
+        step
+        for step in run.steps
+        if not any(is_nested(other.path, step.path) for other in run.steps)
+    ]
+    ends = [
+        place
+        for place, step in enumerate(leaves)
+        if step.verb in ("release", "detach_object")
+        and step.start_time <= record.end_time <= step.end_time
+    ]
+    if not ends:
+        return record.end_time
+    place = ends[0]
+    if leaves[place].verb == "detach_object":
+        while place > 0 and leaves[place - 1].verb == "gripper":
+            place -= 1
+    return leaves[place].start_time
 
 
 def drift_in_hand(run: Run, name: str) -> tuple[str, FloatArray, FloatArray, BoolArray]:
@@ -42,7 +68,9 @@ def drift_in_hand(run: Run, name: str) -> tuple[str, FloatArray, FloatArray, Boo
         if len(gripped) == 0:
             continue
         zero = error[gripped[0]]
-        held = during & (np.arange(count) >= gripped[0])
+        first = int(gripped[0])
+        held = during & (np.arange(count) >= first) & (times < released_at(run, record))
+        held[first] = True
         speaks |= held
         drift[held] = np.linalg.norm(error[held, :3] - zero[:3], axis=1)
         if equal_turns(object_record(run, record.represents).shapes, np.eye(3)) == ANY:

@@ -52,6 +52,10 @@ class Expectation(ExpectationFields):
             at: The robot, the objects and the place in the file.
         """
 
+    def needs_step(self) -> str:
+        """Why it can be judged over a step alone; empty where it can be judged over a whole run."""
+        return ""
+
     def predicates(self) -> Mapping[str, Predicate]:
         """The predicates inside it, by their keys."""
         return {}
@@ -178,6 +182,10 @@ class TemporalWord(Expectation, TemporalFields):
     word: ClassVar[str] = ""
 
     predicate: InnerPredicate = Field(description="The predicate that is judged.")
+
+    def needs_step(self) -> str:
+        """Why it can be judged over a step alone; empty where it can be judged over a whole run."""
+        return ""
 
     def predicates(self) -> Mapping[str, Predicate]:
         return {"predicate": self.predicate}

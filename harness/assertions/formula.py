@@ -30,7 +30,7 @@ import numpy as np
 
 from harness.assertions.formula_signals import values_of
 from harness.assertions.temporal import TIME_RESOLUTION, range_min
-from harness.assertions.text import amount
+from harness.assertions.text import amounts
 from harness.assertions.window import NotObservable, NotReached, Window
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.recording.run import Measure, Verdict, VerdictStatus
@@ -80,6 +80,9 @@ def formula_verdict(text: str, window: Window) -> Verdict:
             raise NotObservable(missing)
         raise NotReached("the time it is judged over ended before it was decided")
     holds = low > 0
+    is_open = bool(window.cut_short) and not holds
+    if is_open and Evaluation(window, is_open=True).bounds(root).high[0] > 0:
+        raise NotReached(window.cut_short)
     value = low if holds else high
     comparison, index, sign = evaluation.decider(root, 0, at_least=holds)
     time = window.time(index)
@@ -90,7 +93,7 @@ def formula_verdict(text: str, window: Window) -> Verdict:
     unit = left.unit or right.unit or "1"
     said, limit = float(left.values[index]), float(right.values[index])
     way = "holds" if holds == (sign > 0) else "does not hold"
-    reason = f"{comparison.text} {way}: {amount(said, unit)} against {amount(limit, unit)}"
+    reason = f"{comparison.text} {way}: {' against '.join(amounts(said, limit, unit))}"
     above = comparison.operator.startswith(">") == (sign > 0)
     measure = Measure(
         str(comparison.left) if isinstance(comparison.left, Signal) else comparison.text,
@@ -114,10 +117,16 @@ def formula_verdict(text: str, window: Window) -> Verdict:
 
 
 class Evaluation:
-    """The bounds of every part of a formula over one window, each calculated once."""
+    """The bounds of every part of a formula over one window, each calculated once.
 
-    def __init__(self, window: Window) -> None:
+    Args:
+        window: The samples.
+        is_open: Whether the window goes on after its last sample in a way that is not known.
+    """
+
+    def __init__(self, window: Window, *, is_open: bool = False) -> None:
         self.window = window
+        self.is_open = is_open
         self.times = window.times
         self._known: dict[int, tuple[Node, Bounds]] = {}
 
@@ -163,7 +172,7 @@ class Evaluation:
         times, end = self.times, len(self.times) - 1
         first = np.searchsorted(times, times + interval.first - TIME_RESOLUTION)
         if math.isinf(interval.last):
-            return first, np.full(len(times), end), first > end
+            return first, np.full(len(times), end), (first > end) | self.is_open
         later = times + interval.last
         if is_always:
             last = np.searchsorted(times, later - TIME_RESOLUTION)
@@ -200,7 +209,7 @@ class Evaluation:
         reached = np.minimum(begin, count - 1)
         at_low = np.where(begin < count, low[reached], -np.inf)
         at_high = np.where(begin <= last, high[reached], np.inf)
-        if not math.isinf(interval.last):
+        if self.is_open or not math.isinf(interval.last):
             at_pending = np.where(begin < count, pending[reached], np.inf)
             at_high = np.where(beyond, at_pending, at_high)
         held_low = _minima(first.low, before, begin - 1)

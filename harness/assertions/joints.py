@@ -11,7 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from harness.assertions.margins import MarginSignal, Part, all_of
-from harness.assertions.text import amount
+from harness.assertions.text import amounts
 from harness.assertions.window import NotObservable, Window
 from harness.core.types import FloatArray
 from harness.recording.run import JointRecord, Measure, Run
@@ -104,7 +104,7 @@ def near(
         parts.append(Part(POSITION_ERROR, off, limit, "<=", detail=name, measured_unit=unit))
 
     def text(_: int, measure: Measure) -> str:
-        off, limit = amount(measure.value, measure.unit), amount(measure.limit, measure.unit)
+        off, limit = amounts(measure.value, measure.limit, measure.unit)
         return f"{measure.detail} is off its target by {off} of {limit}"
 
     return all_of(window, parts, text)

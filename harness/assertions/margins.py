@@ -72,6 +72,8 @@ class Part:
         detail: Which joint, link or pair.
         points: Of a distance in the world, where something was to be and where it was, shape
             (n, 3) each.
+        ceiling: The largest value that can be measured, in `unit`; inf where there is none. The
+            margin of a value that must be large is a share of what lies between limit and ceiling.
         measured_name: The name of the measure where it holds more than the quantity's.
         measured_unit: The unit where the quantity has several.
     """
@@ -84,6 +86,7 @@ class Part:
     relevant: BoolArray | None = None
     detail: str = ""
     points: tuple[FloatArray, FloatArray] | None = None
+    ceiling: float = math.inf
     measured_name: str = ""
     measured_unit: str = ""
 
@@ -103,7 +106,8 @@ class Part:
         measure = measured(
             self.quantity, value, self.limit, self.comparison, time, self.detail, self.name
         )
-        return replace(measure, unit=self.unit, expected=expected, actual=actual)
+        points = {"expected": expected, "actual": actual}
+        return replace(measure, unit=self.unit, ceiling=self.ceiling, **points)
 
     def points_at(self, index: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Expected and actual point of a sample; empty where the part has none."""
@@ -124,8 +128,12 @@ class Part:
 
     def shares(self) -> FloatArray:
         """Margins as shares of the scale; inf where the part does not count, shape (n,)."""
+        margins = self.margins()
         scale = abs(self.limit) if self.scale is None else self.scale
-        shares = self.margins() / (scale if scale > 0 and self.comparison != "==" else 1.0)
+        shares = margins / (scale if scale > 0 and self.comparison != "==" else 1.0)
+        if math.isfinite(self.ceiling):
+            room = self.ceiling - self.limit
+            shares = np.where(margins >= 0, margins / room if room > 0 else 1.0, shares)
         return shares if self.relevant is None else np.where(self.relevant, shares, np.inf)
 
 

@@ -49,6 +49,20 @@ def check_expectation(spec: Expectation, loc: Loc, scope: Scope) -> None:
     """Report what is wrong with an expectation; names may be of steps and objects further down."""
     if spec.during is not None and spec.during not in scope.step_ids:
         scope.problems.unknown((*loc, "during"), "step with the id", spec.during, scope.step_ids)
+    if loc[0] == "expect" and len(loc) == 2:
+        _check_step_is_named(spec, loc, scope)
     for key, inner in spec.predicates().items():
         check_expectation(inner, (*loc, key), scope)
     spec.check(At(scope, loc))
+
+
+def _check_step_is_named(spec: Expectation, loc: Loc, scope: Scope) -> None:
+    """Report what can be judged over a step alone and is expected of the whole run."""
+    parts = (spec, *spec.predicates().values())
+    why = next((part.needs_step() for part in parts if part.needs_step()), "")
+    if why and not any(part.during for part in parts):
+        scope.problems.add(
+            loc,
+            f"{why}; this is expected of the whole run",
+            "write it under the step's `expect`, or name the step with `during`",
+        )

@@ -17,6 +17,10 @@ TIME_RESOLUTION = 1e-9
 """Times nearer than this are the same [s]."""
 
 
+FOREVER = 1e9
+"""Longer than any time that an expectation names [s]."""
+
+
 @dataclass(frozen=True)
 class Decision:
     """What a reduction came to.
@@ -34,6 +38,16 @@ class Decision:
 
 class TooShort(Exception):
     """No sample of the window leaves room for the time that is asked for."""
+
+
+def later(times: FloatArray) -> FloatArray:
+    """The times of a window that was cut short, and two after them: the next, and the last."""
+    return np.append(times, [times[-1] + 2 * TIME_RESOLUTION, times[-1] + FOREVER])
+
+
+def with_future(values: FloatArray, value: float) -> FloatArray:
+    """Values of a window that was cut short, and what they would be from there on."""
+    return np.append(values, [value, value])
 
 
 def range_min(values: FloatArray, first: IntArray, last: IntArray) -> FloatArray:

@@ -4,27 +4,41 @@ from __future__ import annotations
 
 import math
 
+from harness.core.quantity import distinct
 
-def amount(value: float, unit: str) -> str:
+
+def amount(value: float, unit: str, more_digits: int = 0) -> str:
     """A quantity for people: below a metre in mm, angles in degrees."""
     match unit:
         case "m" if abs(value) < 1:
-            return f"{_short(value * 1e3)} mm"
+            return f"{_short(value * 1e3, more_digits)} mm"
         case "rad":
-            return f"{_short(math.degrees(value))} deg"
+            return f"{_short(math.degrees(value), more_digits)} deg"
         case "rad/s":
-            return f"{_short(math.degrees(value))} deg/s"
+            return f"{_short(math.degrees(value), more_digits)} deg/s"
         case "m/s" if abs(value) < 1:
-            return f"{_short(value * 1e3)} mm/s"
+            return f"{_short(value * 1e3, more_digits)} mm/s"
         case "1":
-            return _short(value)
+            return _short(value, more_digits)
         case _:
-            return f"{_short(value)} {unit}"
+            return f"{_short(value, more_digits)} {unit}"
 
 
-def _short(value: float) -> str:
+def amounts(value: float, limit: float, unit: str) -> tuple[str, str]:
+    """A quantity and what it is compared with, in digits that differ where the two do."""
+    return distinct(value, limit, lambda number, more: amount(number, unit, more))
+
+
+def percentages(value: float, limit: float) -> tuple[str, str]:
+    """The same of two shares, in percent."""
+    return distinct(value, limit, lambda share, more: f"{100 * share:.{1 + more}f} %")
+
+
+def _short(value: float, more_digits: int) -> str:
     if not math.isfinite(value):
         return str(value)
+    if more_digits:
+        return f"{value:#.{3 + more_digits}g}"
     if 1e-3 <= abs(value) < 0.05:
         return f"{value:.2g}"
     value = 0.0 if abs(value) < 1e-3 else value

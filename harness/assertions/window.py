@@ -52,6 +52,23 @@ class Window:
         """Of a sample of the window [s]."""
         return float(self.run.signals.times[self.start + index])
 
+    @property
+    def cut_short(self) -> str:
+        """Why the window ends before its time: a step failed unexpectedly. Empty where it does not.
+
+        A step that timed out has had all of its time, and so has one that was expected to fail.
+        """
+        if self.step is None and not self.run.ended_early:
+            return ""
+        failed = [step for step in self.run.steps if step.status == "failed" and step.error_code]
+        if self.step is None:
+            if not failed:
+                return f"the run ended before then: {self.run.ended_early}"
+        elif self.step not in failed or self.step.error_code == "TIMED_OUT":
+            return ""
+        root = failed[-1]  # steps nested in others are recorded after them
+        return f"step '{root.id}' failed before then: {root.error_code}"
+
 
 def window_of(run: Run, step_id: str) -> Window:
     """The samples of a step (by id, or by path), or of the whole run for an empty id.

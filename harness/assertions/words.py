@@ -11,8 +11,8 @@ import numpy as np
 from harness.assertions import temporal
 from harness.assertions.margins import MarginSignal
 from harness.assertions.orientation import against
-from harness.assertions.temporal import Decision, TooShort, longest_hold
-from harness.assertions.text import amount
+from harness.assertions.temporal import Decision, TooShort, later, longest_hold, with_future
+from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, NotReached, Window
 from harness.core.types import FloatArray
 from harness.recording.run import Verdict, VerdictStatus
@@ -92,10 +92,16 @@ def decide(terms: Terms, window: Window, margins: MarginSignal) -> Verdict:
     chosen = np.arange(len(values))
     if terms.word == "always":
         chosen = np.flatnonzero(applies)
+    arguments = values[chosen], times[chosen], applies[chosen], margins.progress
+    is_open = bool(window.cut_short) and _could_hold(terms, *arguments)
     try:
-        decision = _reduce(terms, values[chosen], times[chosen], applies[chosen], margins.progress)
+        decision = _reduce(terms, *arguments)
     except TooShort:
+        if is_open:
+            raise NotReached(window.cut_short) from None
         return _too_short(terms, times[chosen])
+    if is_open and (terms.word == "at_end" or not decision.holds):
+        raise NotReached(window.cut_short)
     index = int(chosen[decision.index])
     time = window.time(index)
     status: VerdictStatus = "passed" if decision.holds else "failed"
@@ -142,6 +148,21 @@ def _reduce(
             return temporal.at_end(low, times, hold, within, progress)
 
 
+def _could_hold(
+    terms: Terms,
+    values: FloatArray,
+    times: FloatArray,
+    applies: np.ndarray,
+    progress: FloatArray | None,
+) -> bool:
+    """Whether the expectation holds if a window that was cut short goes on in the best way."""
+    best = -np.inf if terms.word == "never" else np.inf
+    more = None if progress is None else with_future(progress, 0.0)
+    return _reduce(
+        terms, with_future(values, best), later(times), np.append(applies, [True, True]), more
+    ).holds
+
+
 def _nearest(values: FloatArray, times: FloatArray, progress: FloatArray | None) -> int:
     """The sample that came nearest to what never held at all: it says most about why."""
     known = np.where(np.isnan(values), -np.inf, values)
@@ -164,5 +185,6 @@ def _held(terms: Terms, values: FloatArray, times: FloatArray, decision: Decisio
         return ""
     longest = longest_hold(np.nan_to_num(values, nan=-1.0), times)
     if longest >= terms.hold:
-        return f"; it held for {amount(terms.hold, 's')}, but not when it was asked to"
-    return f"; held for {amount(longest, 's')} at most, {amount(terms.hold, 's')} asked for"
+        return f"; it held for {amount(terms.hold, 's')}, but not in the required time"
+    held, required = amounts(longest, terms.hold, "s")
+    return f"; held for {held} at most, {required} required"

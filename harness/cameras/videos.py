@@ -2,32 +2,22 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
 
-import cv2
 import numpy as np
 
 from harness.cameras.camera_scene import CameraScene
 from harness.cameras.captures import camera_folders
-from harness.cameras.encoding import jpeg
-from harness.cameras.quiet import quiet_stderr
 from harness.cameras.renderer import Renderer, make_renderer
 from harness.cameras.sensor import as_delivered
 from harness.core.camera import Camera
 from harness.core.world import WorldObject
+from harness.recording.film import encoded_film, film_size
 from harness.recording.run import Finding, Run, VideoRecord
 from harness.robot.description import RobotDescription
 
 MOST_FRAMES = 1500
 """Of one video: a minute at 25 Hz; a longer run is recorded at a lower rate, and says so."""
-
-WIDEST = 320
-"""Of the WebM [pixels], which is for reports; the JPEG stream has the camera's size."""
-
-TRACK_UID = b"\x73\xc5\x88"
-"""Matroska's element for it, and that its content has 8 bytes."""
 
 
 def record_videos(
@@ -83,48 +73,28 @@ def _record(
     renderer: Renderer,
     folder: str,
 ) -> tuple[VideoRecord | None, dict[str, bytes]]:
-    scale = min(1.0, WIDEST / camera.width)
-    size = 2 * round(scale * camera.width / 2), 2 * round(scale * camera.height / 2)
     times: list[float] = []
-    stream, offsets = bytearray(), [0]
-    with tempfile.TemporaryDirectory() as place:
-        film = Path(place) / "film.webm"
-        with quiet_stderr():
-            writer = cv2.VideoWriter(str(film), cv2.VideoWriter.fourcc(*"VP80"), rate, size)
+
+    def pictures() -> Iterator[np.ndarray]:
         for time, frame in _frames(scene, camera, run, rate, renderer):
             times.append(time)
-            stream += jpeg(frame, camera)
-            offsets.append(len(stream))
-            colours = frame if frame.ndim == 3 else cv2.cvtColor(frame, cv2.COLOR_GRAY2RGB)
-            small = cv2.resize(colours, size, interpolation=cv2.INTER_AREA)
-            writer.write(np.ascontiguousarray(small[:, :, ::-1]))
-        with quiet_stderr():
-            writer.release()
-        if not times:
-            return None, {}
-        content = _reproducible(film.read_bytes())
-    names = f"{folder}/video.webm", f"{folder}/video.mjpeg"
+            yield frame
+
+    size = film_size(camera.width, camera.height)
+    content = encoded_film(pictures(), rate, size)
+    if not times:
+        return None, {}
+    file = f"{folder}/video.webm"
     video = VideoRecord(
         camera=camera.name,
-        file=names[0],
+        file=file,
         times=tuple(times),
         rate=rate,
         width=size[0],
         height=size[1],
         backend=renderer.backend,
-        frames=names[1],
-        frame_offsets=tuple(offsets),
     )
-    return video, {names[0]: content, names[1]: bytes(stream)}
-
-
-def _reproducible(webm: bytes) -> bytes:
-    """The same video without the random number that names its track, in two places."""
-    place = webm.find(TRACK_UID)
-    if place < 0:
-        return webm
-    begin = place + len(TRACK_UID)
-    return webm.replace(webm[begin : begin + 8], (1).to_bytes(8, "big"))
+    return video, {file: content}
 
 
 def _frames(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -101,6 +102,22 @@ class Cell:
         if gripper is None:
             raise StepFailed("INVALID_GROUP_NAME", f"{self.description.name} has no gripper")
         return gripper
+
+    def with_open_gripper(self, joint_positions: FloatArray) -> FloatArray:
+        """Joint positions of the whole robot with the gripper open."""
+        opened = joint_positions.copy()
+        opened[self.description.joint_index[self.gripper.joint]] = self.gripper.open_position
+        return self.description.with_mimics(opened)
+
+    @contextmanager
+    def unpadded_gripper(self, name: str) -> Generator[None]:
+        """Apply no padding between the gripper and an object that it is about to grasp."""
+        links = (self.gripper.palm_link, *self.gripper.links)
+        self.scene.set_unpadded([(link, name) for link in links])
+        try:
+            yield
+        finally:
+            self.scene.set_unpadded([])
 
     # -- where things are ---------------------------------------------------------------------
 

@@ -23,6 +23,7 @@ from harness.ports import (
     PositionGoal,
 )
 from harness.ports import CartesianLimits as LinkLimits
+from harness.robot.description import RobotDescription
 from harness.spec.goals import ArcFields, CartesianLimits, GoalFields, GoalTolerance
 from harness.spec.planning import PathConstraints as ConstraintsSpec
 from harness.spec.poses import Pose, Position
@@ -48,6 +49,12 @@ class TcpGoal:
 def group_of(cell: Cell, group: str | None) -> str:
     """The step's planning group: its own, else the robot's default."""
     return cell.description.default_group if group is None else group
+
+
+def arm_has_six_joints(description: RobotDescription, group: str | None) -> bool:
+    """Whether the arm can reach any pose near it, not only positions at a pitch."""
+    name = description.default_group if group is None else group
+    return len(description.groups[name].joint_names) >= 6
 
 
 def resolve_goal(goal: GoalFields, group: str, cell: Cell) -> Goal:

@@ -1,9 +1,9 @@
-"""Which of several equally good ways is taken: the first that the arm can approach."""
+"""Which of several equally good approaches is taken: the first that the arm can follow."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,58 +18,125 @@ MOST_BRANCHES = 2
 """Free solutions of inverse kinematics before the approach from which it is tried."""
 
 
-def first_that_goes(
-    ways: Sequence[tuple[TcpGoal, TcpGoal]],
-    group: str,
-    cell: Cell,
-    *,
-    padding: float | None = None,
-    may_end: Callable[[FloatArray], bool] | None = None,
-) -> int:
-    """Index of the first way whose straight approach the arm can follow; 0 when it can none.
+@dataclass(frozen=True)
+class Approach:
+    """A straight motion of the TCP to where something is grasped or put down.
 
-    Args:
-        ways: Where each approach begins, and where it ends.
-        group: The planning group.
-        cell: The robot and its surroundings now.
-        padding: Of the straight approach [m]; by default the step's.
-        may_end: Whether it may end at these positions of the whole robot; by default at any.
+    Attributes:
+        before: Where it begins.
+        at: Where it ends.
+        number: Of the grasp or turn, from 0; approaches of several lengths share it.
     """
-    if len(ways) < 2:
-        return 0
+
+    before: TcpGoal
+    at: TcpGoal
+    number: int
+
+
+@dataclass(frozen=True)
+class Search:
+    """How approaches are tried.
+
+    Attributes:
+        group: The planning group.
+        start: The whole robot before, description order.
+        options: Of the straight approach.
+        may_end: Whether it may end at these positions of the whole robot.
+        then: Whether what follows can be carried out from there; preferred, not required.
+    """
+
+    group: str
+    start: FloatArray
+    options: PlanningOptions
+    may_end: Callable[[FloatArray], bool] = lambda _: True
+    then: Callable[[FloatArray], bool] = lambda _: True
+
+
+def choose_approach(approaches: Sequence[Approach], search: Search, cell: Cell) -> Approach:
+    """The first approach that the arm can follow, if possible one after which it can go on.
+
+    Raises:
+        PlanningFailed: No approach has ends that the arm can reach free of collisions; the
+            explanation is that of the end which comes nearest to being possible.
+    """
     cell.sync_scene()
-    options = replace(cell.current.options, path_only=True)
-    if padding is not None:
-        options = replace(options, padding=padding)
-    for index, (before, at) in enumerate(ways):
-        ends = _ends(before, at, group, cell, options)
-        if any(may_end is None or may_end(state) for state in ends):
-            return index
-    return 0
+    followed: Approach | None = None
+    for approach in approaches:
+        ends = list(_ends(approach, search, cell))
+        if any(search.then(end) for end in ends):
+            return approach
+        if ends and followed is None:
+            followed = approach
+    return followed or _most_promising(approaches, search, cell)
 
 
-def _ends(
-    before: TcpGoal, at: TcpGoal, group: str, cell: Cell, options: PlanningOptions
-) -> Iterator[FloatArray]:
-    """The whole robot at the end of each straight approach that it can follow."""
-    goal = resolve_goal(GoalFields(**at.keys), group, cell)
-    for state in _free_states(before, group, cell)[:MOST_BRANCHES]:
+def _most_promising(approaches: Sequence[Approach], search: Search, cell: Cell) -> Approach:
+    """The approach of which most is possible.
+
+    Raises:
+        PlanningFailed: One of its ends is not.
+    """
+    progress = [_progress(approach, search, cell) for approach in approaches]
+    best = approaches[int(np.argmax(progress))]
+    for goal, options in ((best.at, search.options), (best.before, cell.current.options)):
+        wanted = resolve_goal(GoalFields(**goal.keys), search.group, cell)
         try:
-            plan = cell.planner.plan_linear(group, state, goal, options)
+            cell.planner.check_goal(search.group, search.start, wanted, options)
+        except PlanningFailed as failure:
+            failure.facts["is_start_of_approach"] = goal is best.before
+            raise
+    return best
+
+
+def _progress(approach: Approach, search: Search, cell: Cell) -> float:
+    """How many of these hold: the end is reachable, it is free; then the same of the beginning.
+
+    Of two ends in collision the one with less penetration counts more.
+    """
+    count = 0
+    paddings = search.options.padding, cell.current.options.padding
+    for goal, padding in zip((approach.at, approach.before), paddings, strict=True):
+        solutions = _solutions(goal, search, cell)
+        if not solutions:
+            return count
+        depths = [_depth(state, padding, cell) for state in solutions]
+        if min(depths) > 0:
+            return count + 1 - min(min(depths), 0.5)
+        count += 2
+    return count
+
+
+def _depth(state: FloatArray, padding: float, cell: Cell) -> float:
+    """How much nearer than allowed the nearest pair is [m]; 0 where the state is free."""
+    touches = cell.scene.touches(state, padding)
+    return max((touch.required - touch.distance for touch in touches), default=0.0)
+
+
+def _ends(approach: Approach, search: Search, cell: Cell) -> Iterator[FloatArray]:
+    """The whole robot at the end of each straight approach that it can follow."""
+    goal = resolve_goal(GoalFields(**approach.at.keys), search.group, cell)
+    states = _solutions(approach.before, search, cell)
+    padding = cell.current.options.padding
+    free = [state for state in states if not cell.scene.touches(state, padding)]
+    for state in free[:MOST_BRANCHES]:
+        try:
+            plan = cell.planner.plan_linear(
+                search.group, state, goal, replace(search.options, path_only=True)
+            )
         except PlanningFailed:
             continue
-        yield _with_arm(plan.trajectory.positions[-1], state, group, cell)
+        end = _with_arm(plan.trajectory.positions[-1], state, search.group, cell)
+        if search.may_end(end):
+            yield end
 
 
-def _free_states(goal: TcpGoal, group: str, cell: Cell) -> list[FloatArray]:
-    """The whole robot at a goal, free of collisions, nearest first."""
-    wanted = resolve_goal(GoalFields(**goal.keys), group, cell)
+def _solutions(goal: TcpGoal, search: Search, cell: Cell) -> list[FloatArray]:
+    """The whole robot at a goal, nearest to the start first."""
+    wanted = resolve_goal(GoalFields(**goal.keys), search.group, cell)
     if isinstance(wanted, JointGoal):
-        raise TypeError("a way leads to a pose or a position")
-    start, options = cell.planning_start(), cell.current.options
-    solutions = cell.kinematics.solve(group, wanted, start, options.seed)
-    states = (_with_arm(positions, start, group, cell) for positions in solutions)
-    return [state for state in states if not cell.scene.touches(state, options.padding)]
+        raise TypeError("an approach leads to a pose or a position")
+    solutions = cell.kinematics.solve(search.group, wanted, search.start, search.options.seed)
+    return [_with_arm(positions, search.start, search.group, cell) for positions in solutions]
 
 
 def _with_arm(positions: FloatArray, state: FloatArray, group: str, cell: Cell) -> FloatArray:

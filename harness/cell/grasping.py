@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Shape, Sphere
+from harness.core.quantity import distinct
 from harness.core.spatial import SE3, rotation_from_quat_wxyz
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
@@ -16,6 +18,8 @@ from harness.core.world import WorldObject
 GRASP_DEPTH = 0.02  # [m] below the top of a tall object
 MAX_LEAN = 10.0  # [degrees]
 UP = np.array([0.0, 0.0, 1.0])
+EIGHTHS = [eighth * math.pi / 4 for eighth in (0, 4, 1, -1, 2, -2, 3, -3)]
+"""Turns about the vertical, least first, half a turn being as good as none [rad]."""
 
 
 def gripper_axes(cell: Cell) -> tuple[FloatArray, FloatArray]:
@@ -47,8 +51,88 @@ def top_grasps(obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:
     the vertical, at every eighth of a turn.
 
     Raises:
-        StepFailed: INVALID_OBJECT_NAME, when the object is too wide, leans, or its shape says too
-            little.
+        StepFailed: INVALID_OBJECT_NAME, when the object leans, or its shape says too little;
+            GOAL_STATE_INVALID, when the gripper does not open wide enough.
+    """
+    shape, at, size, vertical, level = _standing(obj, object_pose)
+    check_opening(obj, object_pose, cell)
+    side = at.rotation[:, level[0]].copy()
+    side[2] = 0.0
+    side /= np.linalg.norm(side)
+    height = size[vertical]
+    point = at.translation + np.array([0.0, 0.0, height / 2 - min(GRASP_DEPTH, height / 2)])
+    fits_across = size[level[1]] <= _opening(cell)
+    turns = _equal_turns(shape.geometry, vertical, fits_across=fits_across)
+    return _from_above(point, side, turns, cell)
+
+
+def top_grasps_at(point: FloatArray, obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:
+    """The same with the TCP at a stated point, shape (3,).
+
+    Where the object leans or its shape says too little, at every eighth of a turn.
+    """
+    try:
+        grasps = top_grasps(obj, object_pose, cell)
+    except StepFailed as failure:
+        if failure.code != "INVALID_OBJECT_NAME":
+            raise
+        return _from_above(point, np.array([1.0, 0.0, 0.0]), EIGHTHS, cell)
+    return [SE3(grasp.rotation, point) for grasp in grasps]
+
+
+def _from_above(
+    point: FloatArray, side: FloatArray, turns: Sequence[float], cell: Cell
+) -> list[SE3]:
+    """The gripper pointing down, its pads along a level direction, then turned [rad]."""
+    approach, closing = gripper_axes(cell)
+    rotation = _align(approach, closing, np.array([0.0, 0.0, -1.0]), side)
+    return [SE3(turn_about(UP, turn) @ rotation, point) for turn in turns]
+
+
+def check_opening(obj: WorldObject, object_pose: SE3, cell: Cell) -> None:
+    """Compare the narrow one of an object's level sides with the gripper's opening.
+
+    Raises:
+        StepFailed: GOAL_STATE_INVALID, when the shape tells that the gripper does not open so wide.
+    """
+    try:
+        _, _, size, vertical, level = _standing(obj, object_pose)
+    except StepFailed:
+        return
+    width, opening = size[level[0]], _opening(cell)
+    if width <= opening:
+        return
+    stated, most = distinct(width, opening, lambda value, more: f"{value * 1e3:.{1 + more}f} mm")
+    height = f"{size[vertical] * 1e3:.1f} mm"
+    raise StepFailed(
+        "GOAL_STATE_INVALID",
+        f"'{obj.name}' is too wide for the gripper: {stated} across its narrowest level side, and"
+        f" the gripper opens to {most}",
+        {
+            "width": width,
+            "opening": opening,
+            "height": size[vertical],
+            "advice": (
+                f"its height of {height} fits: give a `grasp_pose` that takes it from the side"
+                if size[vertical] <= opening
+                else "take a narrower object, or a gripper that opens wider: no side of it fits"
+            ),
+        },
+    )
+
+
+def _opening(cell: Cell) -> float:
+    """Largest gap between the pads [m]."""
+    return float(cell.gripper.widths[:, 1].max())
+
+
+def _standing(
+    obj: WorldObject, object_pose: SE3
+) -> tuple[Shape, SE3, tuple[float, float, float], int, list[int]]:
+    """An upright object's shape, T_world_shape, size, vertical axis and level axes, narrow first.
+
+    Raises:
+        StepFailed: INVALID_OBJECT_NAME, when it leans, or its shape says too little.
     """
     shape = _only_shape(obj)
     at = object_pose @ shape.pose
@@ -58,43 +142,38 @@ def top_grasps(obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:
     if lean > MAX_LEAN and not isinstance(shape.geometry, Sphere):
         raise StepFailed(
             "INVALID_OBJECT_NAME",
-            f"'{obj.name}' leans by {lean:.0f} degrees, which is no way to take it from above:"
+            f"'{obj.name}' leans by {lean:.0f} degrees, so it cannot be taken from above as it is:"
             " give a `grasp_pose`",
         )
     level = sorted((axis for axis in (1, 0, 2) if axis != vertical), key=lambda axis: size[axis])
-    opening = float(cell.gripper.widths[:, 1].max())
-    if size[level[0]] > opening:
-        raise StepFailed(
-            "INVALID_OBJECT_NAME",
-            f"'{obj.name}' is {size[level[0]] * 1e3:.0f} mm wide, the gripper opens"
-            f" {opening * 1e3:.0f} mm: give a `grasp_pose`",
-        )
-    approach, closing = gripper_axes(cell)
-    side = at.rotation[:, level[0]].copy()
-    side[2] = 0.0
-    side /= np.linalg.norm(side)
-    rotation = _align(approach, closing, np.array([0.0, 0.0, -1.0]), side)
-    height = size[vertical]
-    point = at.translation + np.array([0.0, 0.0, height / 2 - min(GRASP_DEPTH, height / 2)])
-    turns = _equal_turns(shape.geometry, vertical, fits_across=size[level[1]] <= opening)
-    return [SE3(turn_about(UP, turn) @ rotation, point) for turn in turns]
+    return shape, at, size, vertical, level
 
 
 def _equal_turns(geometry: Geometry, vertical: int, *, fits_across: bool) -> list[float]:
     """Turns about the vertical after which a grasp is as good as before, least first [rad]."""
     upright = isinstance(geometry, Cylinder | Capsule) and vertical == 2
     if upright or isinstance(geometry, Sphere):
-        eighths = [0, 4, 1, -1, 2, -2, 3, -3]
-    else:
-        eighths = [0, 4, 2, -2] if fits_across else [0, 4]
-    return [eighth * math.pi / 4 for eighth in eighths]
+        return EIGHTHS
+    quarters = [0, 2, 1, -1] if fits_across else [0, 2]
+    return [quarter * math.pi / 2 for quarter in quarters]
 
 
-def grasp_point(obj: WorldObject, object_pose: SE3) -> FloatArray:
-    """Point of an object that a gripper from the side closes on: its shape's middle, shape (3,)."""
+def grasp_points(obj: WorldObject, object_pose: SE3) -> list[FloatArray]:
+    """Points of an object that an inclined gripper closes on, shape (3,) each.
+
+    Its shape's middle; of one that stands upright also the point that grasps from above use and the
+    top, since the fingertips reach beyond the TCP and must stay above what the object stands on.
+    """
     if len(obj.shapes) != 1:
-        return object_pose.translation
-    return (object_pose @ obj.shapes[0].pose).translation
+        return [object_pose.translation]
+    middle = (object_pose @ obj.shapes[0].pose).translation
+    try:
+        _, _, size, vertical, _ = _standing(obj, object_pose)
+    except StepFailed:
+        return [middle]
+    top = size[vertical] / 2
+    rises = dict.fromkeys((0.0, max(0.0, top - GRASP_DEPTH), top))
+    return [middle + rise * UP for rise in rises]
 
 
 def _only_shape(obj: WorldObject) -> Shape:

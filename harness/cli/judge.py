@@ -20,11 +20,11 @@ def _run(arguments: argparse.Namespace) -> int:
     folder = Path(arguments.folder)
     if not (folder / "run.json").is_file():
         raise UsageError(f"'{folder}' is no run's folder: it has no run.json")
-    from harness.recording.store import RESOLVED, blames_changes, read_run
+    from harness.recording.store import blames_changes, read_run
     from harness.reporting.contacts import contact_lines
     from harness.reporting.terminal import Style, measure_text, verdict_line
     from harness.session.contacts import contact_records
-    from harness.session.rejudge import judge_again
+    from harness.session.rejudge import judge_stored
 
     with_file = Path(arguments.with_file) if arguments.with_file else None
     if with_file and not with_file.is_file():
@@ -32,7 +32,7 @@ def _run(arguments: argparse.Namespace) -> int:
     stored = read_run(folder)
     run, ended_early, changes = stored.run, stored.run.ended_early, stored.changes()
     with blames_changes(folder, stored):
-        verdicts = judge_again(run, with_file or folder / RESOLVED)
+        verdicts = judge_stored(stored, folder, with_file)
         contacts = contact_records(run)
     has_passed = bool(verdicts) and all(verdict.status == "passed" for verdict in verdicts)
     # half a run, and a run that is not as it was recorded, is no run that passed

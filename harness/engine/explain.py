@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
 
 from harness.cell.program import Program
+from harness.core.spatial import SE3, xyzw_from_wxyz
 from harness.core.world import World
 from harness.ports import PlanningOptions
 from harness.recording.run import StepRecord
@@ -14,16 +17,22 @@ from harness.spec.expectation import ExpectationFields
 Describe = Callable[[ExpectationFields], str]
 
 
-def explain(program: Program, predicted: Sequence[StepRecord], describe: Describe) -> str:
-    """Robot, world, steps with their seeds and expansion, expectations.
+def explain(
+    program: Program,
+    predicted: Sequence[StepRecord],
+    tcp_poses: Mapping[str, tuple[SE3, SE3]],
+    describe: Describe,
+) -> str:
+    """Robot, world, steps with their seeds, TCP poses and expansion, expectations.
 
     Args:
         program: What will be executed.
         predicted: Step records of a dry run; composite steps come with what they expand to.
+        tcp_poses: T_world_tcp at the start and end of each step, by its path.
         describe: An expectation in one line.
     """
     lines = [program.title, "", *_robot(program.description), *_world(program.world), "steps"]
-    lines += _steps(program, predicted, describe)
+    lines += _steps(program, predicted, tcp_poses, describe)
     whole = [item for item in program.expectations if not item.step]
     if whole:
         lines.append("expected of the whole run")
@@ -53,13 +62,19 @@ def _world(world: World) -> list[str]:
     return [*lines, ""]
 
 
-def _steps(program: Program, predicted: Sequence[StepRecord], describe: Describe) -> list[str]:
+def _steps(
+    program: Program,
+    predicted: Sequence[StepRecord],
+    tcp_poses: Mapping[str, tuple[SE3, SE3]],
+    describe: Describe,
+) -> list[str]:
     options = {step.path: step.options for step in program.all_steps()}
     expected = [record.path for record in predicted if record.status == "expected_error"]
     lines: list[str] = []
     for record in predicted:
         indent = "  " * (1 + record.path.count("."))
         lines.append(f"{indent}{record.line:>4}  {record.summary}{_seed(record, options)}")
+        lines += [f"{indent}        {line}" for line in _tcp(tcp_poses.get(record.path))]
         if record.error_code:
             is_known = any(f"{record.path}.".startswith(f"{path}.") for path in expected)
             known = "as expected" if is_known else "NOT EXPECTED"
@@ -75,3 +90,21 @@ def _steps(program: Program, predicted: Sequence[StepRecord], describe: Describe
 def _seed(record: StepRecord, options: dict[str, PlanningOptions]) -> str:
     step = options.get(record.path)
     return "" if step is None else f"  [seed {step.seed}]"
+
+
+def _tcp(poses: tuple[SE3, SE3] | None) -> list[str]:
+    """Where the TCP is at the start and the end of a step, as a file has poses."""
+    if poses is None:
+        return []
+    start, end = (_pose(pose) for pose in poses)
+    return [f"TCP at {start}"] if start == end else [f"TCP from {start}", f"TCP to   {end}"]
+
+
+def _pose(pose: SE3) -> str:
+    quat = xyzw_from_wxyz(pose.as_vector()[3:])
+    quat = quat * np.sign(quat[np.argmax(np.abs(quat))])  # of two signs of one rotation always one
+    xyz, quat_xyzw = (
+        ", ".join(f"{round(float(value), 5) + 0.0:g}" for value in part)  # no minus before zero
+        for part in (pose.translation, quat)
+    )
+    return f"{{xyz: [{xyz}], quat_xyzw: [{quat_xyzw}]}}"

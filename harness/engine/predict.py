@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Literal
 
-from harness.cell.program import Program
+from harness.cell.program import Program, ProgramStep
+from harness.core.spatial import SE3
 from harness.engine.dry_run import DryPlanner, DrySimulator
 from harness.engine.execute import execute_program
 from harness.ports import Kinematics, MotionPlanner, PlanningScene, Touch
@@ -15,17 +17,39 @@ def predict(
     program: Program, scene: PlanningScene, kinematics: Kinematics, planner: MotionPlanner
 ) -> tuple[StepRecord, ...]:
     """Step records of a run in which every command comes true; a failed step does not end it."""
+    return predict_with_poses(program, scene, kinematics, planner)[0]
+
+
+def predict_with_poses(
+    program: Program, scene: PlanningScene, kinematics: Kinematics, planner: MotionPlanner
+) -> tuple[tuple[StepRecord, ...], Mapping[str, tuple[SE3, SE3]]]:
+    """The records that `predict` returns, and T_world_tcp at the start and end of each step.
+
+    Returns:
+        The records, and by the path of a step its two poses; a step that is not reached has none.
+    """
     simulator = DrySimulator(program)
+    poses: dict[str, tuple[SE3, SE3]] = {}
+
+    def watch(
+        kind: Literal["step_started", "step_finished"],
+        step: ProgramStep,
+        record: StepRecord | None,
+    ) -> None:
+        simulator.watch(kind, step, record)
+        pose = kinematics.link_pose(simulator.joint_positions(), program.description.tcp_link)
+        poses[step.path] = (poses.get(step.path, (pose, pose))[0], pose)
+
     execution = execute_program(
         program,
         scene,
         kinematics,
         DryPlanner(planner, program.description),
         simulator,
-        simulator.watch,
+        watch,
         keep_going=True,
     )
-    return execution.steps
+    return execution.steps, poses
 
 
 def touches_at_start(program: Program, scene: PlanningScene) -> tuple[Touch, ...]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -12,7 +13,7 @@ from harness.assertions.distances import Key, recorded_distances
 from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import Evidence, MarginSignal, measured
 from harness.assertions.observations import CLEARANCE_ROOM, Observations
-from harness.assertions.text import amount
+from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, NotReached, Window
 from harness.cell.scope import At
 from harness.core.types import FloatArray, IntArray
@@ -134,9 +135,9 @@ def _smallest(window: Window, rows: dict[Key, FloatArray]) -> _Worst:
 def _refuse_beyond_cutoff(run: Run, at_least: float, distance: _Worst) -> None:
     cutoff = run.signals.clearance_cutoff
     if at_least > cutoff and float(distance.values.min()) >= cutoff:
+        recorded, required = amounts(cutoff, at_least, "m")
         raise NotObservable(
-            f"distances were recorded up to {amount(cutoff, 'm')} only;"
-            f" {amount(at_least, 'm')} are asked for"
+            f"distances were recorded up to {recorded} only; {required} are required"
         )
 
 
@@ -144,11 +145,13 @@ def _least(limit: float, window: Window, distance: _Worst) -> Callable[[int], Ev
     def evidence(index: int) -> Evidence:
         key, value = distance.keys[int(distance.which[index])], float(distance.values[index])
         who = _nearest_link(window, key, index) or key[0]
-        about = "at least " if value >= window.run.signals.clearance_cutoff else ""
+        is_capped = value >= window.run.signals.clearance_cutoff
+        about = "at least " if is_capped else ""
         pair = f"{who} and {_itself(key)}"
-        text = f"{about}{amount(value, 'm')} between {pair}, {amount(limit, 'm')} asked for"
+        actual, required = amounts(value, limit, "m")
+        text = f"{about}{actual} between {pair}, {required} required"
         measure = measured(DISTANCE, value, limit, ">=", window.time(index), pair)
-        return Evidence(text, (measure,))
+        return Evidence(text, (replace(measure, ceiling=value if is_capped else math.inf),))
 
     return evidence
 
@@ -160,9 +163,10 @@ def _below(limit: float, window: Window, loss: _Worst) -> Callable[[int], Eviden
         actual = float(window.run.signals.clearances[key][sample])
         planned = float(window.run.signals.planned_clearances[key][sample])
         pair = f"{key[0]} and {_itself(key)}"
+        lost, allowed = amounts(value, limit, "m")
         text = (
-            f"{amount(actual, 'm')} between {pair}, planned {amount(planned, 'm')};"
-            f" {amount(limit, 'm')} less allowed"
+            f"{amount(actual, 'm')} between {pair}, planned {amount(planned, 'm')}:"
+            f" {lost} less, {allowed} allowed"
         )
         measure = measured(LOSS, value, limit, "<=", window.time(index), pair)
         return Evidence(text, (measure,))

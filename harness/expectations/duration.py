@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 from harness.assertions.expectation import Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.window import NotReached, Window
+from harness.core.quantity import distinct
 from harness.recording.run import Measure
 from harness.spec.base import Duration
 from harness.spec.expectation import Quantity
@@ -60,6 +61,9 @@ class DurationCheck(Predicate):
 
         def text(_: int, measure: Measure) -> str:
             bound = "at most" if measure.comparison == "<=" else "at least"
-            return f"took {measure.value:.3f} s, {bound} {measure.limit:.3f} s"
+            took, limit = distinct(
+                measure.value, measure.limit, lambda seconds, more: f"{seconds:.{3 + more}f} s"
+            )
+            return f"took {took}, {bound} {limit}"
 
         return all_of(window, parts, text, is_moment=False)

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from harness.assertions.expectation import Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
+from harness.assertions.text import percentages
 from harness.assertions.window import NotReached, Window, refuse_unrecorded_steps
 from harness.recording.run import Measure
 from harness.spec.base import Number
@@ -53,12 +54,12 @@ class FractionCheck(Predicate):
             last = max(step.end_index - 1, step.start_index)
             least[last:] = np.minimum(least[last:], _share(step.result["fraction"]))
         reported = window.cut(least)
-        part = Part(FRACTION, reported, self.at_least, ">=")
+        part = Part(FRACTION, reported, self.at_least, ">=", ceiling=1.0)
 
         def text(_: int, measure: Measure) -> str:
             worst = min(reporters, key=lambda step: _share(step.result["fraction"]))
-            followed = f"{100 * measure.value:.1f} % of the path of {worst.id} followed"
-            return f"{followed}, {100 * self.at_least:.1f} % asked for"
+            followed, required = percentages(measure.value, self.at_least)
+            return f"{followed} of the path of {worst.id} followed, {required} required"
 
         return all_of(window, [part], text, present=np.isfinite(reported))
 

@@ -11,7 +11,7 @@ from harness.assertions.contacts import finger_gap, gripper_of
 from harness.assertions.expectation import Predicate
 from harness.assertions.joints import POSITION_ERROR, SLIDING_TOLERANCE, near
 from harness.assertions.margins import MarginSignal, Part, all_of
-from harness.assertions.text import amount
+from harness.assertions.text import amounts
 from harness.assertions.window import (
     NotObservable,
     NotReached,
@@ -89,7 +89,8 @@ class GripperState(Predicate):
         part = Part(GAP, np.abs(gap - width), limit, "<=")
 
         def text(index: int, _: Measure) -> str:
-            return f"the gap is {amount(float(gap[index]), 'm')}, {amount(width, 'm')} asked for"
+            actual, required = amounts(float(gap[index]), width, "m")
+            return f"the gap is {actual}, {required} required"
 
         return all_of(window, [part], text)
 

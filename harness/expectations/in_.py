@@ -10,7 +10,7 @@ from pydantic import Field
 from harness.assertions.expectation import ObjectPredicate
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.poses import UP, object_poses, physical_poses, present
-from harness.assertions.text import amount
+from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, Window, object_record
 from harness.cell.scope import At
 from harness.core.geometry import Box, Capsule, Cylinder, Shape, Sphere
@@ -63,10 +63,10 @@ class In(ObjectPredicate):
         def text(index: int, _: Measure) -> str:
             deep = float(depth[index])
             where = "inside" if deep >= 0 else "outside"
-            leans = amount(float(lean[index]), "rad")
+            leans, allowed = amounts(float(lean[index]), self.max_lean, "rad")
             return (
                 f"{self.object} is {amount(abs(deep), 'm')} {where} {self.container},"
-                f" which leans by {leans} of {amount(self.max_lean, 'rad')}"
+                f" which leans by {leans} of {allowed}"
             )
 
         return all_of(window, parts, text, present=there)

@@ -18,7 +18,7 @@ from harness.assertions.expectation import ObjectPredicate
 from harness.assertions.margins import Evidence, MarginSignal, measured
 from harness.assertions.poses import object_poses, present, start_poses
 from harness.assertions.support import rides_on
-from harness.assertions.text import amount
+from harness.assertions.text import amount, amounts
 from harness.assertions.window import Window, object_record
 from harness.cell.scope import At
 from harness.spec.base import PositiveLength
@@ -76,7 +76,7 @@ class Lifted(ObjectPredicate):
         def evidence(index: int) -> Evidence:
             sample, time = window.start + index, window.time(index)
             height = float(rise[sample])
-            text = f"lifted {amount(height, 'm')} of {amount(self.above, 'm')}"
+            text = f"lifted {' of '.join(amounts(height, self.above, 'm'))}"
             text += ": " + ", ".join(
                 f"{side} finger {amount(float(force[sample]), 'N')}"
                 for side, force in sides.items()

@@ -10,7 +10,7 @@ from harness.assertions.expectation import ObjectPredicate
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.poses import present
 from harness.assertions.support import supports
-from harness.assertions.text import amount
+from harness.assertions.text import amounts
 from harness.assertions.window import Window, object_record
 from harness.cell.scope import At
 from harness.recording.run import Measure
@@ -41,7 +41,7 @@ class On(ObjectPredicate):
         part = Part(SUPPORT, window.cut(force), limit, ">=", detail=self.support)
 
         def text(_: int, measure: Measure) -> str:
-            least = amount(limit, "N")
-            return f"{self.support} carries {name} with {amount(measure.value, 'N')} of {least}"
+            force, required = amounts(measure.value, limit, "N")
+            return f"{self.support} carries {name} with {force} of {required}"
 
         return all_of(window, [part], text, present=window.cut(present(run, name)))

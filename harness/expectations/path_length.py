@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from harness.assertions.expectation import Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
-from harness.assertions.text import amount
+from harness.assertions.text import amounts
 from harness.assertions.window import Window
 from harness.recording.run import Measure
 from harness.spec.base import PositiveLength
@@ -47,7 +47,7 @@ class PathLength(Predicate):
 
         def text(_: int, measure: Measure) -> str:
             bound = "at most" if measure.comparison == "<=" else "at least"
-            limit = amount(measure.limit, "m")
-            return f"the TCP travelled {amount(measure.value, 'm')}, {bound} {limit} asked for"
+            travelled, limit = amounts(measure.value, measure.limit, "m")
+            return f"the TCP travelled {travelled}, {bound} {limit} required"
 
         return all_of(window, parts, text)

@@ -13,7 +13,7 @@ from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.observations import Observations
 from harness.assertions.poses import UP, calm, frame_poses, object_poses, present, speeds
 from harness.assertions.support import supports
-from harness.assertions.text import amount
+from harness.assertions.text import amounts
 from harness.assertions.window import Window, object_record
 from harness.cell.scope import At
 from harness.core.pose_arrays import (
@@ -176,6 +176,6 @@ def _turned(target: FloatArray, actual: FloatArray, turns: int) -> FloatArray:
 def _against(measure: Measure) -> str:
     if measure.comparison == "==":
         return measure.name
-    value, limit = amount(measure.value, measure.unit), amount(measure.limit, measure.unit)
+    value, limit = amounts(measure.value, measure.limit, measure.unit)
     detail = f" of {measure.detail}" if measure.detail else ""
     return f"{measure.name}{detail} {value} against {limit}"

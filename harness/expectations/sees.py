@@ -228,4 +228,6 @@ def _part(
     limit: float,
 ) -> Part:
     values = np.asarray(by_picture, dtype=float)[spoken_by]
-    return Part(quantity, values, limit, ">=", measured_name=f"{quantity.name} of {subject}")
+    ceiling = 1.0 if quantity is SHARE else math.inf
+    name = f"{quantity.name} of {subject}"
+    return Part(quantity, values, limit, ">=", ceiling=ceiling, measured_name=name)

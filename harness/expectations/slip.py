@@ -41,10 +41,10 @@ class Slip(ObjectPredicate):
     def signal(self, window: Window) -> MarginSignal:
         """How far an object has drifted from where the planner carries it.
 
-        Speaks of the samples at which the planning scene has the object attached, from the first
-        one at which all finger sides touch it; what planner and physics differ by at that moment (a
-        planning object that `represents` another may stand a little off it) is the zero. Turns
-        about the axis of a round object do not count.
+        Judges the samples at which the planning scene has the object attached, from the first one
+        at which all finger sides touch it until the gripper is opened to release it. What planner
+        and physics differ by at the first (a planning object that `represents` another may be a
+        little next to it) is the zero. Turns about the axis of a round object do not count.
         """
         run = window.run
         name, drift, turn, held = drift_in_hand(run, self.object)

@@ -9,11 +9,12 @@ from harness.assertions.expectation import Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.observations import Observations
 from harness.assertions.poses import frame_poses, link_poses
-from harness.assertions.text import amount
-from harness.assertions.window import NotObservable, Window
+from harness.assertions.text import amounts, percentages
+from harness.assertions.window import NotObservable, NotReached, Window
 from harness.cell.scope import At
 from harness.core.pose_arrays import compose
 from harness.core.types import FloatArray
+from harness.recording.link_poses import link_poses as placed_links
 from harness.recording.run import Measure
 from harness.spec.base import Fraction, PositiveLength, SpecModel
 from harness.spec.expectation import Quantity
@@ -42,16 +43,20 @@ class Arc(SpecModel):
 
 
 class TcpPath(Predicate):
-    """The TCP follows a line or an arc: it stays near it and travels it from start to end."""
+    """The TCP follows a line or an arc: it stays near it and travels it from start to end.
+
+    Without `line` and `arc` it is the line from where the step starts to its goal; of a `circ` step
+    the arc.
+    """
 
     judged = "always"
     quantities = (DEVIATION, SHARE)
 
     line: Line | None = Field(
-        default=None, description="The line that it follows; either this or `arc` is given."
+        default=None, description="The line that it follows, instead of the step's own path."
     )
     arc: Arc | None = Field(
-        default=None, description="The arc that it follows; either this or `line` is given."
+        default=None, description="The arc that it follows, instead of the step's own path."
     )
     max_deviation: PositiveLength = Field(
         default=0.001, description="The largest distance to the line or arc [m]."
@@ -63,8 +68,8 @@ class TcpPath(Predicate):
 
     @model_validator(mode="after")
     def _one(self) -> TcpPath:
-        if (self.line is None) == (self.arc is None):
-            raise ValueError("exactly one of line, arc")
+        if self.line is not None and self.arc is not None:
+            raise ValueError("`line`, or `arc`, or neither for the step's own path: not both")
         return self
 
     def corners(self) -> list[tuple[tuple[str, str], Pose]]:
@@ -81,6 +86,13 @@ class TcpPath(Predicate):
         for keys, pose in self.corners():
             at.scope.check_frame(pose.frame, at.key(*keys, "frame"))
 
+    def needs_step(self) -> str:
+        if self.corners():
+            return ""
+        return (
+            "`tcp_path` without `line` or `arc` is the way of one step from its start to its goal"
+        )
+
     def observations(self) -> Observations:
         return Observations(frozenset(pose.frame for _, pose in self.corners()))
 
@@ -90,31 +102,26 @@ class TcpPath(Predicate):
         The share is of the whole window, so a TCP that stands on the line has not followed it, and
         neither has one that goes from its end to its start.
         """
+        limit = self.max_deviation
         tcp = window.cut(link_poses(window.run, window.run.robot.tcp_link))[:, :3]
-        if self.line is not None:
-            curve = "line"
-            start, end = (_point(window, pose) for pose in (self.line.start, self.line.end))
-            deviation, places = along_line(tcp, start, end)
-        elif self.arc is not None:
-            curve, arc = "arc", self.arc
-            points = [_point(window, pose) for pose in (arc.start, arc.interim, arc.end)]
-            deviation, places = along_arc(tcp, *points)
-        else:
-            raise NotObservable("neither a line nor an arc is given")
+        points = [_point(window, pose) for _, pose in self.corners()] or _planned(window)
+        curve = "line" if len(points) == 2 else "arc"
+        deviation, places = along_line(tcp, *points) if curve == "line" else along_arc(tcp, *points)
         share = forward_share(places)
-        off = f"deviation from the {curve}"
+        if window.cut_short and share < self.min_fraction and not (deviation > limit).any():
+            raise NotReached(window.cut_short)
+        off, shares = f"deviation from the {curve}", np.full(len(tcp), share)
         parts = [
-            Part(DEVIATION, deviation, self.max_deviation, "<=", measured_name=off),
-            Part(SHARE, np.full(len(tcp), share), self.min_fraction, ">="),
+            Part(DEVIATION, deviation, limit, "<=", measured_name=off),
+            Part(SHARE, shares, self.min_fraction, ">=", ceiling=1.0),
         ]
 
         def text(_: int, measure: Measure) -> str:
             if measure.unit == "1":
-                asked = f"{100 * self.min_fraction:.1f} %"
-                travelled = f"{100 * share:.1f} % of the {curve} forwards"
-                return f"the TCP travelled {travelled}, {asked} asked for"
-            asked = amount(self.max_deviation, "m")
-            return f"the TCP is {amount(measure.value, 'm')} from the {curve}, {asked} allowed"
+                travelled, required = percentages(share, self.min_fraction)
+                return f"the TCP travelled {travelled} of the {curve} forwards, {required} required"
+            away, allowed = amounts(measure.value, limit, "m")
+            return f"the TCP is {away} from the {curve}, {allowed} allowed"
 
         return all_of(window, parts, text)
 
@@ -128,6 +135,38 @@ def _point(window: Window, pose: Pose) -> FloatArray:
     """A point in the world at each sample, shape (n, 3)."""
     frame = window.cut(frame_poses(window.run, pose.frame))
     return compose(frame, pose.se3().as_vector())[:, :3]
+
+
+def _planned(window: Window) -> list[FloatArray]:
+    """Start and goal of the window's step as it was planned, and of `circ` a point between them.
+
+    Only they are taken from the plan: what lies between is a line or a circle, however the arm was
+    commanded.
+
+    Returns:
+        Points in the world, one after the other, shape (n, 3) each.
+
+    Raises:
+        NotReached: The step failed before its path was planned.
+        NotObservable: The step, or the whole run, has no path of its own.
+    """
+    run, step = window.run, window.step
+    if step is None:
+        raise NotObservable("the whole run has no start and goal: name a step, a line or an arc")
+    if step.trajectory is None:
+        if window.cut_short:
+            raise NotReached(window.cut_short)
+        raise NotObservable(f"step '{step.id}' has no path of its own: give a line or an arc")
+    planned = np.asarray(step.trajectory["positions"], dtype=float)
+    rows = [0, len(planned) // 2, -1] if step.verb == "circ" else [0, -1]
+    columns = {joint.name: column for column, joint in enumerate(run.robot.joints)}
+    positions = np.repeat(window.cut(run.signals.joint_positions)[:1], len(rows), axis=0)
+    for joint, values in zip(step.trajectory["joint_names"], planned[rows].T, strict=True):
+        positions[:, columns[joint]] = values
+    tcp = placed_links(run.robot, positions, [run.robot.tcp_link]).get(run.robot.tcp_link)
+    if tcp is None or len(tcp) != len(rows):
+        raise NotObservable(f"how '{run.robot.tcp_link}' moves with the joints was not recorded")
+    return [np.broadcast_to(point, (len(window.times), 3)) for point in tcp[:, :3]]
 
 
 def along_line(

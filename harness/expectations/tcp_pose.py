@@ -11,7 +11,7 @@ from harness.assertions.expectation import Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.observations import Observations
 from harness.assertions.poses import frame_poses, link_poses
-from harness.assertions.text import amount
+from harness.assertions.text import amounts
 from harness.assertions.window import Window
 from harness.cell.scope import At
 from harness.core.pose_arrays import compose, conjugate, quat_product, rotation_vector
@@ -80,7 +80,7 @@ class TcpPose(Predicate):
 
         def text(index: int, _: Measure) -> str:
             errors = " and ".join(
-                f"{amount(float(part.values[index]), part.unit)} of {amount(part.limit, part.unit)}"
+                " of ".join(amounts(float(part.values[index]), part.limit, part.unit))
                 for part in parts
             )
             return f"{what} is off its target by {errors}"

@@ -52,14 +52,19 @@ class Until(TemporalWord):
         window = window_of(run, during)
         first, second = self.predicate.margins(window), self.until.margins(window)
         low = [_low(margins, skipped) for margins, skipped in ((first, np.inf), (second, -np.inf))]
+        is_open = bool(window.cut_short) and _could_hold(low[0], low[1], window.times, hold, within)
         try:
             decision, is_second = temporal.until(low[0], low[1], window.times, hold, within)
         except TooShort:
+            if is_open:
+                raise NotReached(window.cut_short) from None
             span = float(window.times[-1] - window.times[0])
             reason = f"judged over {span:.3f} s, which leaves no room for {hold or 0.0:.3f} s"
             return Verdict(
                 "", "failed", span - (hold or 0.0), "s", float(window.times[-1]), 0, "", reason
             )
+        if is_open and not decision.holds:
+            raise NotReached(window.cut_short)
         margins = second if is_second else first
         return self._worded(window, margins, decision, hold if is_second else None, is_second)
 
@@ -93,6 +98,19 @@ class Until(TemporalWord):
         reason = f"`{word}` {role}{lasting}: {evidence.text}{at}"
         measures = evidence.measures
         return Verdict("", status, margin + 0.0, unit, time, reason=reason, measures=measures)
+
+
+def _could_hold(
+    first: FloatArray,
+    second: FloatArray,
+    times: FloatArray,
+    hold: float | None,
+    within: float | None,
+) -> bool:
+    """Whether it holds if a window that was cut short goes on in the best way."""
+    best = [temporal.with_future(margins, np.inf) for margins in (first, second)]
+    decision, _ = temporal.until(best[0], best[1], temporal.later(times), hold, within)
+    return decision.holds
 
 
 def _low(margins: MarginSignal, skipped: float) -> FloatArray:

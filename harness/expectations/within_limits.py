@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from pydantic import Field
@@ -16,8 +17,9 @@ from harness.assertions.joints import (
     unit_of,
 )
 from harness.assertions.margins import MarginSignal, Part, all_of
-from harness.assertions.text import amount
+from harness.assertions.text import amounts
 from harness.assertions.window import NotObservable, Window
+from harness.core.types import FloatArray
 from harness.recording.run import JointRecord, Measure
 from harness.spec.base import Flag
 from harness.spec.expectation import Quantity
@@ -25,19 +27,46 @@ from harness.spec.expectation import Quantity
 STOP_SOFTNESS = 0.02
 """Share of its range by which a joint that rests on its stop may sink into it."""
 
-POSITION = Quantity("position", "rad or m", "between the joint's limits", "position")
-VELOCITY = Quantity("velocity", "rad/s or m/s", "at most the joint's limit", "velocity")
+POSITION_TOLERANCE = {"rad": 1e-3, "m": 1e-4}
+"""By which a measured position may exceed its limit [rad or m]: a controller that holds a joint
+at its limit deviates a little to either side."""
+VELOCITY_TOLERANCE = 1e-3
+"""Share of its limit by which a measured velocity may exceed it, for the same reason."""
+
+POSITION = Quantity(
+    "position",
+    "rad or m",
+    "between the joint's limits, with a tolerance of 0.001 rad or 0.1 mm",
+    "position",
+)
+COMMAND = Quantity(
+    "commanded position",
+    "rad or m",
+    "between the joint's limits, without a tolerance",
+    "position",
+)
+VELOCITY = Quantity(
+    "velocity", "rad/s or m/s", "at most the joint's limit, with a tolerance of 0.1 %", "velocity"
+)
 EFFORT = Quantity("effort", "N m or N", "at most the joint's limit", "effort")
 ACCELERATION = Quantity("acceleration", "rad/s^2 or m/s^2", "at most the joint's limit")
 
 
 class WithinLimits(Predicate):
-    """Joints stay within their limits."""
+    """Joints stay within their limits.
+
+    A controller that holds a joint at its limit deviates a little to either side: a measured
+    position may exceed the limit by 0.001 rad or 0.1 mm, a measured velocity by 0.1 %. Commands and
+    efforts have no tolerance. The gripper's joints and idle ones may sink into their stops by 2 %
+    of their range.
+    """
 
     judged = "always"
-    quantities = (POSITION, VELOCITY, EFFORT, ACCELERATION)
+    quantities = (POSITION, COMMAND, VELOCITY, EFFORT, ACCELERATION)
 
-    position: Flag = Field(default=True, description="Whether measured positions are judged.")
+    position: Flag = Field(
+        default=True, description="Whether measured and commanded positions are judged."
+    )
     velocity: Flag = Field(default=True, description="Whether measured velocities are judged.")
     acceleration: Flag = Field(
         default=False,
@@ -46,12 +75,13 @@ class WithinLimits(Predicate):
     effort: Flag = Field(default=True, description="Whether efforts of the motors are judged.")
 
     def signal(self, window: Window) -> MarginSignal:
-        """Measured positions, velocities, efforts and commanded accelerations, against limits."""
+        """Positions, velocities, efforts and commanded accelerations, as shares of their limits."""
         parts: list[Part] = []
         hand, resting = gripper_joints(window.run), resting_joints(window.run)
         for column, joint in enumerate(window.run.robot.joints):
             if self.position:
                 parts += _position_parts(window, column, joint, joint.name in resting)
+                parts += _command_parts(window, column, joint)
             if self.velocity:
                 parts += _rate_part(window, column, joint, VELOCITY)
             if self.effort:
@@ -62,8 +92,10 @@ class WithinLimits(Predicate):
             raise NotObservable("no limits of these kinds are known")
 
         def text(_: int, measure: Measure) -> str:
-            value, limit = amount(measure.value, measure.unit), amount(measure.limit, measure.unit)
-            return f"{measure.name} of {measure.detail} is {value}, limit {limit}"
+            value, limit = amounts(measure.value, measure.limit, measure.unit)
+            has_tolerance = measure.name in (POSITION.name, VELOCITY.name)
+            tolerance = " with its tolerance" if has_tolerance else ""
+            return f"{measure.name} of {measure.detail} is {value}, limit {limit}{tolerance}"
 
         return all_of(window, parts, text, shown=3)
 
@@ -76,12 +108,37 @@ def _position_parts(window: Window, column: int, joint: JointRecord, may_rest: b
         return []
     values = window.cut(recorded)
     softness = STOP_SOFTNESS * (joint.upper - joint.lower) if may_rest else 0.0
-    scale = 0.5 * (joint.upper - joint.lower) or 1.0
-    lower, upper = joint.lower - softness, joint.upper + softness
-    name, unit = joint.name, unit_of(joint)
+    return _between(POSITION, values, joint, max(softness, POSITION_TOLERANCE[unit_of(joint)]))
+
+
+def _command_parts(window: Window, column: int, joint: JointRecord) -> list[Part]:
+    """Commanded positions where they are beyond a limit, without a tolerance.
+
+    One inside the limits does not count: a command at the limit is as good as any other, and its
+    margin of zero would hide those of the measured signals.
+    """
+    if "joint_commands" in window.run.unrecorded:
+        return []
+    if not (math.isfinite(joint.lower) and math.isfinite(joint.upper)):
+        return []
+    recorded = window.run.signals.joint_commands[:, column]
+    if not is_measured(recorded, joint, "command"):
+        return []
+    commands, rounding = window.cut(recorded), ROUNDING * (joint.upper - joint.lower)
     return [
-        Part(POSITION, values, lower, ">=", scale, detail=name, measured_unit=unit),
-        Part(POSITION, values, upper, "<=", scale, detail=name, measured_unit=unit),
+        replace(part, relevant=~(part.margins() >= 0))
+        for part in _between(COMMAND, commands, joint, rounding)
+    ]
+
+
+def _between(
+    quantity: Quantity, values: FloatArray, joint: JointRecord, slack: float
+) -> list[Part]:
+    scale, unit = 0.5 * (joint.upper - joint.lower) or 1.0, unit_of(joint)
+    lower, upper = joint.lower - slack, joint.upper + slack
+    return [
+        Part(quantity, values, lower, ">=", scale, detail=joint.name, measured_unit=unit),
+        Part(quantity, values, upper, "<=", scale, detail=joint.name, measured_unit=unit),
     ]
 
 
@@ -101,5 +158,5 @@ def _rate_part(window: Window, column: int, joint: JointRecord, quantity: Quanti
     if not math.isfinite(limit) or not is_measured(values[:, column], joint, quantity.name):
         return []
     size = np.abs(window.cut(values)[:, column])
-    most = limit * (1 + ROUNDING)
+    most = limit * (1 + (VELOCITY_TOLERANCE if quantity is VELOCITY else ROUNDING))
     return [Part(quantity, size, most, "<=", limit, detail=joint.name, measured_unit=unit)]

@@ -11,7 +11,7 @@ from harness.planning.goal_study import GoalStudy
 from harness.planning.ik_numeric import LinkGoal
 from harness.planning.nearest_pose import NearestPose, nearest_free_shift
 from harness.planning.stage_request import Finding, StageRequest, nearest_facts
-from harness.planning.wording import count, joint_value, length, touches
+from harness.planning.wording import count, joint_value, length, padding_advice, touches
 from harness.recording.explanation import Stage
 
 MOST_DETAILS = 8
@@ -78,7 +78,9 @@ def _in_collision(
     }
     pair = branch.touches[0]
     otherwise = (
-        "where the contact is meant, plan inside `allow_collisions` with the pair "
+        padding_advice(pair.distance, request.options.padding)
+        if pair.distance >= 0
+        else "where the contact is intended, plan inside `allow_collisions` with the pair "
         f"[{pair.first}, {pair.second}]"
     )
     found = nearest_free_shift(

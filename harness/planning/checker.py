@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -14,6 +15,7 @@ import pinocchio as pin
 
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray, IntArray
+from harness.planning import wording
 from harness.planning.certificates import MotionArrays, motion_arrays
 from harness.planning.compiled import compiled_stage, count_states
 from harness.planning.robot_model import GroupSpace
@@ -98,7 +100,7 @@ class MotionChecker:
         if deep:
             raise PlanningFailed(
                 "START_STATE_IN_COLLISION",
-                f"the robot starts in collision: {describe_touches(deep)}",
+                f"the robot starts in collision: {wording.touches(deep)}",
                 {"touches": touch_facts(deep)},
             )
         for touch in near:
@@ -229,11 +231,11 @@ class MotionChecker:
 
     def touches(self, positions: FloatArray) -> list[Touch]:
         """Pairs nearer than their margin at group positions, nearest first."""
-        return [
-            touch
+        required = (
+            replace(touch, required=self._margins[pair.first, pair.second])
             for touch, pair in self.scene.distances(self.space.whole(positions))
-            if touch.distance <= self._margins[pair.first, pair.second]
-        ]
+        )
+        return [touch for touch in required if touch.distance <= touch.required]
 
     def first_block(
         self, first: FloatArray, second: FloatArray, resolution: float
@@ -243,21 +245,6 @@ class MotionChecker:
         states = first + (second - first) * (np.arange(1, count + 1) / count)[:, None]
         index = self.first_blocked(states)
         return None if index is None else ((index + 1) / count, self.touches(states[index]))
-
-
-def describe_touches(touches: list[Touch], most: int = 3) -> str:
-    """The nearest pairs in words: `forearm_link and Table (12.3 mm deep)`."""
-    parts = [
-        f"{touch.first} and {touch.second} "
-        + (
-            f"({-1000 * touch.distance:.1f} mm deep)"
-            if touch.distance < 0
-            else f"({1000 * touch.distance:.1f} mm apart)"
-        )
-        for touch in touches[:most]
-    ]
-    more = len(touches) - most
-    return ", ".join(parts) + (f" and {more} more" if more > 0 else "")
 
 
 def touch_facts(touches: list[Touch]) -> list[dict[str, Any]]:

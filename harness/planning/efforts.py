@@ -6,10 +6,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
+from harness.core.quantity import distinct
 from harness.core.types import FloatArray
 from harness.planning.robot_model import GroupSpace, pin_from_se3
 from harness.planning.scene import Payload
@@ -22,12 +24,14 @@ class InverseDynamics:
     Attributes:
         joint_names: Of the group.
         limits: Of its joints' efforts [N m or N], shape (dof,); inf where there is none.
+        payloads: What the robot holds.
     """
 
     joint_names: tuple[str, ...]
     limits: FloatArray
     _space: GroupSpace
     _model: pin.Model
+    payloads: tuple[Payload, ...] = ()
 
     @classmethod
     def of(cls, space: GroupSpace, payloads: Sequence[Payload]) -> InverseDynamics | None:
@@ -44,7 +48,7 @@ class InverseDynamics:
                 placement = space.robot.placement(payload.link) @ payload.pose
                 joint = space.robot.parent_joint(payload.link)
                 model.appendBodyToJoint(joint, inertia, pin_from_se3(placement))
-        return cls(space.joint_names, limits, space, model)
+        return cls(space.joint_names, limits, space, model, tuple(payloads))
 
     def efforts(
         self, positions: FloatArray, velocities: FloatArray, accelerations: FloatArray
@@ -61,3 +65,38 @@ class InverseDynamics:
             efforts = pin.rnea(model, data, configuration, velocity, acceleration)
             found[row] = space.matrix.T @ efforts[columns]
         return found
+
+    def standing_overload(self, positions: FloatArray) -> tuple[str, dict[str, Any]]:
+        """Message and facts of the joint that standing still at positions (dof,) overloads most.
+
+        `effort` and `limit` are its own, `unloaded` is its effort without what the robot holds,
+        and `most_mass` what the robot can hold there [kg].
+        """
+        still = np.zeros((1, len(positions)))
+        standing = self.efforts(positions[None], still, still)[0]
+        joint = int(np.argmax(np.abs(standing) / self.limits))
+        name, effort, limit = self.joint_names[joint], standing[joint], float(self.limits[joint])
+        unit = "N m" if self._space.wraps[joint] else "N"
+        needed, most = distinct(abs(effort), limit, lambda value, more: f"{value:.{1 + more}f}")
+        what = " and ".join(f"{load.name} ({load.mass:g} kg)" for load in self.payloads)
+        message = (
+            f"the arm cannot hold {what or 'itself'} still on the way: {name} needs {needed} {unit}"
+            f" and has at most {most} {unit}"
+        )
+        facts: dict[str, Any] = {
+            "broken": "standing effort",
+            "joint": name,
+            "effort": float(abs(effort)),
+            "limit": limit,
+        }
+        if self.payloads:
+            bare = InverseDynamics(
+                self.joint_names, self.limits, self._space, self._space.robot.model
+            )
+            unloaded = bare.efforts(positions[None], still, still)[0][joint]
+            message += f"; without the load it needs {abs(unloaded):.1f} {unit}"
+            share = (np.sign(effort) * limit - unloaded) / (effort - unloaded)
+            facts["held"] = [load.name for load in self.payloads]
+            facts["unloaded"] = float(abs(unloaded))
+            facts["most_mass"] = float(share * sum(load.mass for load in self.payloads))
+        return message, facts

@@ -12,7 +12,8 @@ import numpy as np
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.planning.checker import describe_touches, touch_facts
+from harness.planning import wording
+from harness.planning.checker import touch_facts
 from harness.planning.path_search import Effort, FoundPath, verified_paths
 from harness.planning.shortening import shorten
 from harness.planning.task import PlanningTask
@@ -212,8 +213,7 @@ def _not_found(
         share, touches = blocked
         facts["straight_way"] = {"free_share": share, "touches": touch_facts(touches)}
         message += (
-            f"; the straight way is blocked after {100 * share:.0f} % by "
-            f"{describe_touches(touches)}"
+            f"; the straight way is blocked after {100 * share:.0f} % by {wording.touches(touches)}"
         )
     return PlanningFailed("PLANNING_FAILED", message, facts)
 

@@ -13,7 +13,8 @@ import pinocchio as pin
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.planning.checker import MotionChecker, describe_touches, touch_facts
+from harness.planning import wording
+from harness.planning.checker import MotionChecker, touch_facts
 from harness.planning.ik_numeric import LinkTask
 from harness.planning.link_timing import LinkRates
 from harness.planning.splines import uniform_spline
@@ -181,7 +182,7 @@ def _follow(leg: Leg, pose: SE3, before: list[FloatArray], checker: MotionChecke
         touches = checker.touches(found)
         raise PlanningFailed(
             "INVALID_MOTION_PLAN",
-            f"in the blend after {leg.name} these come too near: {describe_touches(touches)}",
+            f"in the blend after {leg.name} these come too near: {wording.touches(touches)}",
             {"touches": touch_facts(touches)},
         )
     return found

@@ -68,7 +68,7 @@ def time_runs(runs: Sequence[LegRun], motions: LinkMotions) -> JointTrajectory:
     try:
         pieces = [_time_run(run, motions) for run in runs]
     except TimingError as problem:
-        raise PlanningFailed("INVALID_MOTION_PLAN", str(problem)) from problem
+        raise PlanningFailed("INVALID_MOTION_PLAN", str(problem), problem.facts) from problem
     return joined(pieces)
 
 

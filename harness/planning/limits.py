@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -17,7 +18,15 @@ _MOST_STRETCHES = 20
 
 
 class TimingError(Exception):
-    """A path cannot be given times under the limits."""
+    """A path cannot be given times under the limits.
+
+    Attributes:
+        facts: Plain data for the record; `broken` says which limit.
+    """
+
+    def __init__(self, message: str, facts: Mapping[str, Any] | None = None) -> None:
+        super().__init__(message)
+        self.facts: dict[str, Any] = {"broken": "timing", **(facts or {})}
 
 
 class Dynamics(Protocol):
@@ -30,6 +39,10 @@ class Dynamics(Protocol):
         self, positions: FloatArray, velocities: FloatArray, accelerations: FloatArray
     ) -> FloatArray:
         """Efforts of a motion, (N, dof) each."""
+        ...
+
+    def standing_overload(self, positions: FloatArray) -> tuple[str, dict[str, Any]]:
+        """Message and facts of a joint whose effort does not suffice to stand still, (dof,)."""
         ...
 
 
@@ -81,11 +94,8 @@ class Limits:
         standing = self.dynamics.efforts(positions, still, still)
         room = limits - np.sign(total - standing) * standing
         if np.any(room <= 0):
-            row, joint = np.unravel_index(int(np.argmin(room)), room.shape)
-            raise TimingError(
-                f"{self.dynamics.joint_names[joint]} would need {abs(standing[row, joint]):.1f} of "
-                f"at most {limits[joint]:.1f} N m (or N) to hold the arm still on the way"
-            )
+            row, _ = np.unravel_index(int(np.argmin(room)), room.shape)
+            raise TimingError(*self.dynamics.standing_overload(positions[row]))
         return float(np.sqrt(np.max(np.abs(total - standing) / room)))
 
 

@@ -158,9 +158,7 @@ class LinkMotions:
         try:
             return time_on_path(path, traced, names, self.task.limits, rates)
         except TimingError as problem:
-            raise PlanningFailed(
-                "INVALID_MOTION_PLAN", str(problem), {"broken": "timing"}
-            ) from problem
+            raise PlanningFailed("INVALID_MOTION_PLAN", str(problem), problem.facts) from problem
 
     def check_path(self, path: LinkPath, trajectory: JointTrajectory) -> dict[str, float]:
         """How far a trajectory's link leaves its way.

@@ -198,7 +198,7 @@ def _whole_limits(task: PlanningTask) -> Limits:
 
 
 def _untimed(problem: TimingError) -> PlanningFailed:
-    return PlanningFailed("INVALID_MOTION_PLAN", str(problem), {"broken": "timing"})
+    return PlanningFailed("INVALID_MOTION_PLAN", str(problem), problem.facts)
 
 
 def _timed_by_hand(task: PlanningTask, end: FloatArray, duration: float) -> JointTrajectory:

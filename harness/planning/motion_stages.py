@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
+
+import numpy as np
 
 from harness.core.types import FloatArray
 from harness.planning.checker import touch_facts
 from harness.planning.stage_request import Finding, StageRequest
 from harness.planning.verify import FINAL_RESOLUTION
-from harness.planning.wording import count, touch, touches
+from harness.planning.wording import count, padding_advice, touch, touches
 from harness.recording.explanation import Stage
 
 RESOLUTION = FINAL_RESOLUTION
@@ -25,6 +28,7 @@ _TIMING_DEFECTS = (
     "velocity limit",
     "acceleration limit",
     "effort limit",
+    "standing effort",
     "jerk limit",
     "stamps",
 )
@@ -83,10 +87,28 @@ def timing_finding(request: StageRequest) -> Finding:
     if not is_timing(request):
         return Finding(Stage("time parameterisation", "not reached", "there is no path"))
     advice = "lower the scaling factors in `planning`"
-    if "shortest_duration" in failure.facts:
+    if failure.facts.get("broken") == "standing effort":
+        advice = _overload_advice(failure.facts)
+    elif "shortest_duration" in failure.facts:
         advice = f"give it `duration: {failure.facts['shortest_duration']:.3f}` or more"
     stage = Stage("time parameterisation", "failed", failure.message, failure.code)
     return Finding(stage, advice=advice)
+
+
+def _overload_advice(facts: Mapping[str, Any]) -> str:
+    """What helps an arm that cannot hold itself or its load still; going slower does not."""
+    most = facts.get("most_mass", 0.0)
+    if most >= 0.01:
+        held = " and ".join(facts["held"])
+        mass = np.floor(100 * most) / 100
+        return (
+            f"no slower motion helps: give {held} a `mass` of at most {mass:g} kg, hold it nearer"
+            " to the robot's base, or use a stronger arm"
+        )
+    return (
+        "no slower motion helps: keep the arm nearer to its base, or compare the robot's effort"
+        " limits and masses with its data sheet (`harness robot check` prints them)"
+    )
 
 
 def is_timing(request: StageRequest) -> bool:
@@ -140,6 +162,9 @@ def _path_advice(request: StageRequest) -> str:
             "raise `max_state_checks` or `planning_attempts` in `planning`, put a `move_to` in "
             "between that leads around, or try another `planner_id` (`harness bench` compares them)"
         )
+    distances = [touch["distance"] for touch in failure.facts.get("touches", ())]
+    if distances and min(distances) >= 0:
+        return padding_advice(min(distances), request.options.padding)
     if failure.code == "INVALID_MOTION_PLAN":
         return "`move_to` goes around what is in the way; or put a step in between that leads past"
     if failure.facts.get("reason") in ("unreachable", "limit", "jump"):

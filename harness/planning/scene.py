@@ -51,6 +51,7 @@ class SceneObject:
 class Payload:
     """What an attached object adds to the link that carries it; as in SceneObject."""
 
+    name: str
     link: str
     pose: SE3
     mass: float
@@ -86,7 +87,8 @@ class BodyPair:
     Attributes:
         first: Name; the robot's link or the held object where there is one.
         second: Name.
-        keeps_padding: Between the robot (or what it holds) and an object of the world.
+        keeps_padding: Between the robot (or what it holds) and an object of the world that it is
+            not about to grasp.
         pairs: Rows of the geometry model's collision pairs.
     """
 
@@ -122,6 +124,7 @@ class CoalScene:
         }
         self._allowed |= {_sorted(joint.parent, joint.child) for joint in description.joints}
         self._extra: set[tuple[str, str]] = set()
+        self._unpadded: frozenset[tuple[str, str]] = frozenset()
         self._model: CollisionModel | None = None
 
     # Changes -------------------------------------------------------------------------------
@@ -189,6 +192,11 @@ class CoalScene:
                 self._extra.discard(key)
         self._model = None
 
+    def set_unpadded(self, pairs: Sequence[tuple[str, str]]) -> None:
+        """Apply no padding to these pairs of a link and an object, and to no others."""
+        self._unpadded = frozenset(_sorted(*pair) for pair in pairs)
+        self._model = None
+
     # Questions -----------------------------------------------------------------------------
 
     def object_names(self) -> tuple[str, ...]:
@@ -202,8 +210,8 @@ class CoalScene:
     def payloads(self) -> tuple[Payload, ...]:
         """Of attached objects that weigh something."""
         return tuple(
-            Payload(found.link, found.pose, found.mass, found.center_of_mass, found.inertia)
-            for found in self._objects.values()
+            Payload(name, found.link, found.pose, found.mass, found.center_of_mass, found.inertia)
+            for name, found in self._objects.items()
             if found.link is not None and found.mass > 0
         )
 
@@ -216,11 +224,11 @@ class CoalScene:
 
     def touches(self, joint_positions: FloatArray, padding: float = 0.0) -> Sequence[Touch]:
         """Pairs closer than allowed at a state, nearest first."""
-        return tuple(
-            touch
+        required = (
+            replace(touch, required=padding if pair.keeps_padding else 0.0)
             for touch, pair in self.distances(joint_positions)
-            if touch.distance <= (padding if pair.keeps_padding else 0.0)
         )
+        return tuple(touch for touch in required if touch.distance <= touch.required)
 
     def distances(self, joint_positions: FloatArray) -> list[tuple[Touch, BodyPair]]:
         """Signed distance of every checked pair of bodies [m], nearest first."""
@@ -269,7 +277,8 @@ class CoalScene:
         for later, second in enumerate(bodies):
             for first in bodies[:later]:
                 if self._is_checked(first, second):
-                    pairs.append(_add_pair(geometry, first, second))
+                    padded = _sorted(first.name, second.name) not in self._unpadded
+                    pairs.append(_add_pair(geometry, first, second, padded=padded))
         return CollisionModel(self.robot, geometry, tuple(bodies), tuple(pairs))
 
     def _add_body(
@@ -313,7 +322,7 @@ class CoalScene:
         return self._objects[name]
 
 
-def _add_pair(geometry: pin.GeometryModel, first: Body, second: Body) -> BodyPair:
+def _add_pair(geometry: pin.GeometryModel, first: Body, second: Body, *, padded: bool) -> BodyPair:
     start = len(geometry.collisionPairs)
     for a in first.geometries:
         for b in second.geometries:
@@ -323,7 +332,7 @@ def _add_pair(geometry: pin.GeometryModel, first: Body, second: Body) -> BodyPai
     # Links come before objects; a held object comes before what it could hit.
     if second.is_held and not first.is_link:
         first, second = second, first
-    return BodyPair(first.name, second.name, len(robot_side) == 1, rows)
+    return BodyPair(first.name, second.name, padded and len(robot_side) == 1, rows)
 
 
 def _sorted(first: str, second: str) -> tuple[str, str]:

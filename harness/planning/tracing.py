@@ -14,7 +14,8 @@ from harness.core.errors import ErrorCode
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.planning.checker import MotionChecker, describe_touches, touch_facts
+from harness.planning import wording
+from harness.planning.checker import MotionChecker, touch_facts
 from harness.planning.ik_numeric import LinkGoal, LinkTask, pitch_of
 from harness.planning.splines import uniform_spline
 from harness.ports import JumpThreshold, PoseGoal, PositionGoal
@@ -243,7 +244,7 @@ def _stopped(
         return "jump", message, {"joint": name, "jump": float(jump[fastest])}
     if not checker.state_free(found):
         touches = checker.touches(found)
-        message = f"then these come too near: {describe_touches(touches)}"
+        message = f"then these come too near: {wording.touches(touches)}"
         return "collision", message, {"touches": touch_facts(touches)}
     return None
 

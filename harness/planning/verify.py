@@ -11,7 +11,8 @@ import numpy as np
 
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.planning.checker import MotionChecker, describe_touches, touch_facts
+from harness.planning import wording
+from harness.planning.checker import MotionChecker, touch_facts
 from harness.planning.limits import Limits
 from harness.planning.path_constraints import HeldConstraints
 
@@ -182,6 +183,10 @@ def _efforts(trajectory: JointTrajectory, limits: Limits) -> Defect | None:
     if excess[row, joint] <= 0:
         return None
     name, time = dynamics.joint_names[joint], float(trajectory.times[row])
+    still = np.zeros((1, efforts.shape[1]))
+    standing = dynamics.efforts(trajectory.positions[row][None], still, still)[0]
+    if np.any(np.abs(standing) > dynamics.limits):
+        return Defect(*dynamics.standing_overload(trajectory.positions[row]))
     return Defect(
         f"{name} would need {abs(efforts[row, joint]):.1f} of at most "
         f"{dynamics.limits[joint]:.1f} N m (or N) at {time:.3f} s",
@@ -220,6 +225,6 @@ def _collision(trajectory: JointTrajectory, checker: MotionChecker) -> Defect | 
     touches = checker.touches(dense[index])
     time = float(np.interp(places[index], travelled[moving], trajectory.times[moving]))
     return Defect(
-        f"at {time:.2f} s it would come too near: {describe_touches(touches)}",
+        f"at {time:.2f} s it would come too near: {wording.touches(touches)}",
         {"broken": "collision", "time": time, "touches": touch_facts(touches)},
     )

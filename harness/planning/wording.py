@@ -6,6 +6,7 @@ from collections.abc import Sequence, Sized
 
 import numpy as np
 
+from harness.core.quantity import distinct
 from harness.core.types import FloatArray
 from harness.planning.robot_model import GroupSpace
 from harness.ports import Touch
@@ -14,9 +15,11 @@ MOST_TOUCHES = 3
 """Pairs that are named; of the rest only how many they are."""
 
 
-def length(metres: float) -> str:
+def length(metres: float, more_digits: int = 0) -> str:
     """`12.3 mm`, or `1.23 m`."""
-    return f"{1000 * metres:.1f} mm" if abs(metres) < 1.0 else f"{metres:.2f} m"
+    if abs(metres) < 1.0:
+        return f"{1000 * metres:.{1 + more_digits}f} mm"
+    return f"{metres:.{2 + more_digits}f} m"
 
 
 def angle(radians: float) -> str:
@@ -38,9 +41,17 @@ def joint_value(space: GroupSpace, joint: str, value: float) -> str:
 
 
 def touch(item: Touch) -> str:
-    """`forearm_link and Table (12.3 mm deep)`."""
-    how = "deep" if item.distance < 0 else "apart"
-    return f"{item.first} and {item.second} ({length(abs(item.distance))} {how})"
+    """`forearm_link and Table (12.3 mm deep)`, `rh_l2 and cube (13.5 mm apart, 25.0 mm required)`.
+
+    The digits show that the distance is smaller than the required one.
+    """
+    names = f"{item.first} and {item.second}"
+    if item.distance < 0:
+        return f"{names} ({length(-item.distance)} deep)"
+    if item.required <= item.distance:
+        return f"{names} ({length(item.distance)} apart)"
+    distance, required = distinct(item.distance, item.required, length)
+    return f"{names} ({distance} apart, {required} required)"
 
 
 def touches(items: Sequence[Touch], most: int = MOST_TOUCHES) -> str:
@@ -48,6 +59,15 @@ def touches(items: Sequence[Touch], most: int = MOST_TOUCHES) -> str:
     more = len(items) - most
     rest = f" and {count(more, 'more pair')}" if more > 0 else ""
     return ", ".join(map(touch, items[:most])) + rest
+
+
+def padding_advice(distance: float, padding: float) -> str:
+    """What to do where the padding alone is in the way."""
+    smaller, stated = distinct(distance, padding, length)
+    return (
+        f"nothing touches, only the `padding` of {stated} is not kept: give `planning` a `padding`"
+        f" of less than {smaller}"
+    )
 
 
 def count(things: Sized | int, noun: str) -> str:

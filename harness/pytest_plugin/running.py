@@ -11,7 +11,7 @@ from harness.pytest_plugin.item import ScenarioItem
 from harness.pytest_plugin.session import TOLD
 from harness.pytest_plugin.session_files import ItemRecord, as_plain
 from harness.reporting.result import CaseResult
-from harness.reporting.sampled import SampledRate, rate_line
+from harness.reporting.sampled import SampledRate, rate_text
 from harness.reporting.suite.junit import case_properties, sample_properties
 from harness.reporting.suite.record import SuiteCase
 from harness.reporting.terminal import causes
@@ -87,7 +87,7 @@ def _judge_samples(
         raise ScenarioNotPassed(broken[0])
     [group] = sampling.groups()
     rate = group.rate
-    line = rate_line(item.name, rate)
+    line = rate_text(item.name, rate)
     item.user_properties += [("passed", rate.passed), ("samples", rate.total)]
     item.add_report_section("call", "samples", line)
     if group.outcome != "passed":

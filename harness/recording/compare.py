@@ -244,7 +244,7 @@ def _verdicts(one: Sequence[Verdict], two: Sequence[Verdict]) -> list[Change]:
 def _margin(name: str, one: Verdict, two: Verdict) -> Change:
     if one.unit == two.unit:
         return _number("margin", name, one.margin, two.margin, one.unit)
-    before, after = (f"{verdict.margin:.6g} {verdict.unit}" for verdict in (one, two))
+    before, after = (_with_unit(f"{each.margin:.6g}", each.unit) for each in (one, two))
     return Change("margin", name, before, after)
 
 
@@ -265,12 +265,17 @@ def _judged(verdict: Verdict | None) -> str:
         return NONE
     if np.isnan(verdict.margin):
         return verdict.status
-    return f"{verdict.status} by {abs(verdict.margin):.4g} {verdict.unit}"
+    return f"{verdict.status} by {_with_unit(f'{abs(verdict.margin):.4g}', verdict.unit)}"
 
 
 def _number(what: str, name: str, before: float, after: float, unit: str) -> Change:
-    words = f"{before:.6g} {unit}", f"{after:.6g} {unit}"
-    return Change(what, name, *words, after - before, unit)
+    words = [_with_unit(f"{value:.6g}", unit) for value in (before, after)]
+    return Change(what, name, words[0], words[1], after - before, unit)
+
+
+def _with_unit(number: str, unit: str) -> str:
+    """A number and its unit; a plain number has none."""
+    return number if unit in ("", "1") else f"{number} {unit}"
 
 
 def _findings(one: Run, two: Run) -> list[Change]:

@@ -11,6 +11,7 @@ import numpy as np
 
 from harness.core.camera import Camera
 from harness.core.geometry import Rgba, Shape
+from harness.core.quantity import distinct
 from harness.core.types import FloatArray, IntArray
 
 StepStatus = Literal["passed", "failed", "expected_error", "not_reached"]
@@ -215,6 +216,11 @@ class StepRecord:
     result: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
 
+def is_nested(inner: str, outer: str) -> bool:
+    """Whether the step at one path is nested in the step at another."""
+    return inner.startswith((f"{outer}.", f"{outer}["))
+
+
 @dataclass(frozen=True)
 class Measure:
     """A measured quantity against its limit.
@@ -229,6 +235,8 @@ class Measure:
         detail: Which joint, link or pair it was.
         expected: Where in the world something was to be (xyz), where the value is a distance.
         actual: Where it was (xyz).
+        ceiling: The largest value that can be measured, in `unit`, as 1 is of a share; inf where
+            there is none.
         plot: The plot of the report that shows the quantity; empty where none does.
     """
 
@@ -241,13 +249,17 @@ class Measure:
     detail: str = ""
     expected: Floats = ()
     actual: Floats = ()
+    ceiling: float = float("inf")
     plot: str = ""
 
     def __str__(self) -> str:
         where = f" ({self.detail})" if self.detail else ""
         sign = self.comparison
         unit = "" if self.unit == "1" else f" {self.unit}"
-        said = f"{self.name}: {self.value:.6g}{unit} (must be {sign} {self.limit:.6g})"
+        value, limit = distinct(
+            self.value, self.limit, lambda number, more: f"{number:.{6 + more}g}"
+        )
+        said = f"{self.name}: {value}{unit} (must be {sign} {limit})"
         return f"{said} at t={self.time:.3f} s{where}"
 
 
@@ -347,15 +359,13 @@ class VideoRecord:
 
     Attributes:
         camera: Name of one of `Run.cameras`.
-        file: VP8 WebM in `Run.files`; frame i is shown at i / `rate` of the video's own clock.
+        file: VP8 WebM in `Run.files`, of the camera's size; frame i is shown at i / `rate` of the
+            video's own clock.
         times: Simulation time of every frame [s], rising evenly by 1 / `rate`.
         rate: Frames a second of simulated time.
-        width: In pixels.
-        height: In pixels.
+        width: In pixels: the camera's, made even.
+        height: In pixels: the camera's, made even.
         backend: Who drew it: `egl`, `osmesa` or `rays`.
-        frames: In `Run.files`: the same frames as JPEG of the camera's quality and size, one behind
-            the other (a Motion JPEG stream); empty when not kept.
-        frame_offsets: Where each JPEG begins in `frames`, and where the last ends.
     """
 
     camera: str
@@ -365,8 +375,6 @@ class VideoRecord:
     width: int
     height: int
     backend: str
-    frames: str = ""
-    frame_offsets: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

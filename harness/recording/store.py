@@ -374,7 +374,7 @@ def _checksum(document: Mapping[str, Any], resolved: str) -> str:
 
 def _files(folder: Path, run: Run) -> FolderFiles:
     names = [name for capture in run.captures for name in capture.files.values()]
-    names += [name for video in run.videos for name in (video.file, video.frames) if name]
+    names += [video.file for video in run.videos]
     try:
         return FolderFiles(folder, [checked(name) for name in names])
     except ValueError as error:

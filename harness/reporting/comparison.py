@@ -59,5 +59,6 @@ def _line(change: Change) -> str:
     if change.what == "trajectory" and change.unit:
         return f"{line}, up to {change.amount:.3g} {change.unit}"
     if change.unit:
-        return f"{line} ({change.amount:+.3g} {change.unit})"
+        unit = "" if change.unit == "1" else f" {change.unit}"
+        return f"{line} ({change.amount:+.3g}{unit})"
     return line

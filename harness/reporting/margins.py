@@ -10,16 +10,21 @@ from harness.recording.run import Measure, Verdict
 SMALL = 0.05
 """A margin that is a smaller share than this is worth a look before it is gone."""
 
+MOST_USED = 100.0
+"""A value that misses its limit by more uses no more of the allowance."""
+
 
 def margin_share(verdict: Verdict) -> float:
-    """The margin as a share of what its limit, or the value beside it, is worth.
+    """The margin as a share of its limit, or of the value where that is larger.
 
-    1 is as far as it goes where the limit is 0; negative where the expectation failed; NaN where
-    the verdict has no margin.
+    A margin below a ceiling is a share of what lies between limit and ceiling. 1 is the largest
+    share, also where the limit is 0; it is negative where the expectation failed, and NaN where the
+    verdict has no margin.
     """
     if math.isnan(verdict.margin):
         return math.nan
-    scale = max((_scale(each) for each in _deciding(verdict)), default=0.0)
+    deciding = _deciding(verdict)
+    scale = max((_scale(each, verdict.margin >= 0) for each in deciding), default=0.0)
     share = verdict.margin / scale if scale > 0 else math.copysign(1.0, verdict.margin)
     return max(-1.0, min(1.0, share))
 
@@ -41,5 +46,25 @@ def _deciding(verdict: Verdict) -> list[Measure]:
     return near or limited
 
 
-def _scale(measure: Measure) -> float:
+def _scale(measure: Measure, is_passed: bool) -> float:
+    if is_passed and measure.comparison == ">=" and math.isfinite(measure.ceiling):
+        return measure.ceiling - measure.limit
     return max(abs(measure.limit), abs(measure.value)) if math.isfinite(measure.value) else 0.0
+
+
+def allowance_used(measure: Measure) -> float | None:
+    """Share of the allowance that was used: 0 is best, 1 at the limit; None where it has no limit.
+
+    It is the rest of `margin_share` where the expectation passed, and above 1 where it failed.
+    """
+    value, limit = measure.value, measure.limit
+    if not (math.isfinite(value) and math.isfinite(limit)) or measure.comparison == "==":
+        return None
+    if measure.comparison == "<=":
+        return max(0.0, value) / limit if limit > 0 else None
+    if value >= limit and math.isfinite(measure.ceiling):
+        room = measure.ceiling - limit
+        return (measure.ceiling - value) / room if room > 0 else 0.0
+    if limit <= 0:
+        return None
+    return limit / value if value > limit / MOST_USED else MOST_USED

@@ -43,6 +43,7 @@ class StepLine:
         sim_time: Its duration in simulation time [s].
         line: In the scenario file, from 1; 0 if unknown.
         explanation: Why it failed, a line each: what became of every stage, what to do.
+        path: Place in the expanded file: `steps[1].reach` is nested in `steps[1]`.
     """
 
     id: str
@@ -54,6 +55,7 @@ class StepLine:
     sim_time: float = 0.0
     line: int = 0
     explanation: tuple[str, ...] = ()
+    path: str = ""
 
 
 @dataclass(frozen=True)

@@ -52,7 +52,7 @@ class SampledRate:
         file: As the user named it.
         group: Name of the parametrised case; empty when there is one.
         rate: Of its samples.
-        outcome: `passed` when the rate is shown.
+        outcome: `passed` when the rate is confirmed.
     """
 
     file: str
@@ -62,29 +62,37 @@ class SampledRate:
 
 
 def missed(rates: Sequence[SampledRate]) -> str:
-    """`1 of 4 rates not shown`; empty where all are. It fails a suite all of whose cases pass."""
+    """`1 of 4 success rates not confirmed`; empty where all are.
+
+    It fails a suite all of whose cases pass.
+    """
     count = sum(each.outcome != "passed" for each in rates)
-    return f"{count} of {len(rates)} rates not shown" if count else ""
+    return f"{count} of {len(rates)} success rates not confirmed" if count else ""
 
 
 def rate_line(name: str, rate: Rate, style: Style = PLAIN) -> str:
-    """`pick: 187 of 200 samples passed, 93.5% (89.2% to 96.2% at 95%): at least 90% is shown`."""
+    """A mark and the text of a rate under its name."""
+    return f"{style.mark(rate.verdict == 'shown')} {rate_text(name, rate)}"
+
+
+def rate_text(name: str, rate: Rate) -> str:
+    """`pick: 187 of 200 samples passed, 93.5% (...): at least 90% is confirmed`."""
     share = f"{rate.passed / rate.total:.1%}" if rate.total else "no rate"
     line = f"{name}: {rate.passed} of {rate.total} samples passed, {share}"
     line += f" ({rate.low:.1%} to {rate.high:.1%} at {rate.confidence:.0%} confidence)"
     if rate.at_least is None:
         is_shown = rate.verdict == "shown"
-        line += "" if is_shown else "; every one must pass, as no `expect_rate` is asked"
+        line += "" if is_shown else "; every one must pass, as the file has no `expect_rate`"
     else:
         asked = f"at least {rate.at_least:.1%}"
         line += {
-            "shown": f": {asked} is shown",
+            "shown": f": {asked} is confirmed",
             "refuted": f": {asked} is refuted",
-            "open": f": {asked} is not shown: take more samples, or ask for less",
+            "open": f": {asked} is not confirmed: take more samples, or require less",
         }[rate.verdict]
     if rate.stopped_early:
         line += "; the sequential test needed no more"
-    return f"{style.mark(rate.verdict == 'shown')} {line}"
+    return line
 
 
 def table_lines(

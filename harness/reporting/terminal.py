@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
-from harness.recording.run import Measure, Verdict
+from harness.recording.run import Measure, Verdict, is_nested
 from harness.reporting.result import CaseResult, ProgressEvent, StepLine
 
 OUTCOMES = ("error", "invalid", "failed", "passed")
@@ -153,9 +153,12 @@ def report_link(result: CaseResult, style: Style = PLAIN) -> str:
 
 
 def failure_place(result: CaseResult) -> str:
-    """The deep link of the first failure: `#t=10.10&expect=4`; empty when there is none."""
+    """The deep link of the first failure: `#t=10.10&expect=4`; empty when there is none.
+
+    A step that failed is explained in the page's tab `planner`.
+    """
     if any(step.status == "failed" for step in result.steps):
-        return f"#t={result.sim_time:.2f}"
+        return f"#t={result.sim_time:.2f}&tab=planner"
     for number, verdict in enumerate(result.verdicts, start=1):
         if verdict.status != "passed":
             time = "" if math.isnan(verdict.time) else f"t={verdict.time:.2f}&"
@@ -171,7 +174,7 @@ def causes(result: CaseResult, source: Sequence[str] = ()) -> list[str]:
         source: Lines of the scenario file, to show those that are spoken of.
     """
     found = [str(problem) for problem in result.problems]
-    found += [step_failure(result.file, step, source) for step in _innermost_failures(result.steps)]
+    found += [step_failure(result.file, step, source) for step in root_failures(result.steps)]
     found += [
         verdict_failure(result.file, verdict, source)
         for verdict in result.verdicts
@@ -182,11 +185,14 @@ def causes(result: CaseResult, source: Sequence[str] = ()) -> list[str]:
     return found
 
 
-def _innermost_failures(steps: Sequence[StepLine]) -> Iterable[StepLine]:
-    """Failed steps without those that failed only because a step nested in them did."""
-    failures = [step for step in steps if step.status == "failed"]
-    innermost = {(step.line, step.error_code, step.message): step for step in failures}
-    return innermost.values()
+def root_failures(steps: Sequence[StepLine]) -> list[StepLine]:
+    """Failed steps without those that failed because a step nested in them did."""
+    failed = [step for step in steps if step.status == "failed"]
+    return [
+        step
+        for step in failed
+        if not (step.path and any(is_nested(other.path, step.path) for other in failed))
+    ]
 
 
 def step_failure(file: str, step: StepLine, source: Sequence[str] = ()) -> str:

@@ -37,7 +37,7 @@ def plan_against_physics(run: Run, planned: Signals, distances: Distances) -> tu
         planned: The run's signals `as_commanded`.
         distances: Measures clearances at every sample it is given.
     """
-    held = [found for record in run.attachments if (found := _held(run, record)) is not None]
+    held = [found for record in run.attachments if (found := held_finding(run, record)) is not None]
     near = _clearances(run, planned, distances)
     return (*held, *_tracking(run), *near, *_allowed_contacts(run))
 
@@ -62,7 +62,7 @@ def as_commanded(run: Run, kinematics: Kinematics) -> Signals:
     return replace(signals, joint_positions=positions, object_poses=poses)
 
 
-def _held(run: Run, record: AttachmentRecord) -> Finding | None:
+def held_finding(run: Run, record: AttachmentRecord) -> Finding | None:
     """Where an attached object is believed to be, against where it is."""
     name = record.represents
     times = run.signals.times

@@ -10,7 +10,7 @@ from harness.assertions.wording import describe
 from harness.cell.program import Program
 from harness.core.errors import Problem, SpecError
 from harness.engine.explain import explain
-from harness.engine.predict import predict, touches_at_start, unexpected
+from harness.engine.predict import predict, predict_with_poses, touches_at_start, unexpected
 from harness.ports import Touch
 from harness.reporting.explanation import explanation_lines
 from harness.session.prepare import prepare
@@ -85,5 +85,7 @@ def explain_file(
     """
     prepared = prepare(path, overrides, seed)
     program = prepared.program
-    records = predict(program, prepared.scene, prepared.kinematics, prepared.planner)
-    return explain(program, records, describe)
+    records, poses = predict_with_poses(
+        program, prepared.scene, prepared.kinematics, prepared.planner
+    )
+    return explain(program, records, poses, describe)

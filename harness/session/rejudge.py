@@ -2,38 +2,62 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
-from harness.recording.run import Run, Verdict
-from harness.recording.store import RESOLVED, read_run
+from harness.assertions.wording import describe
+from harness.recording.run import Verdict
+from harness.recording.store import RESOLVED, StoredRun, read_run
 from harness.spec.load import LoadedScenario, load_scenario
 from harness.spec.step import Block
 
 
 def judge_run(run_dir: Path, with_file: Path | None = None) -> tuple[Verdict, ...]:
-    """Verdicts of a saved run; needs neither planner nor physics.
+    """Verdicts of a saved run.
 
     Args:
-        run_dir: A report folder.
-        with_file: A scenario file whose expectations are judged instead of the run's own.
+        run_dir: The run's folder.
+        with_file: A scenario whose expectations are judged instead of the run's own.
 
     Raises:
         HarnessError: The folder holds no run.
         SpecError: The scenario cannot be read.
     """
-    return judge_again(read_run(run_dir).run, with_file or run_dir / RESOLVED)
+    return judge_stored(read_run(run_dir), run_dir, with_file)
 
 
-def judge_again(run: Run, scenario: Path) -> tuple[Verdict, ...]:
-    """Verdicts of a run by the expectations of a scenario file.
+def judge_stored(
+    stored: StoredRun, run_dir: Path, with_file: Path | None = None
+) -> tuple[Verdict, ...]:
+    """As `judge_run`, of a run that has been read; its own expectations keep their lines.
 
     Raises:
         SpecError: The scenario cannot be read.
     """
-    return judge(run, expectations_of(load_scenario(scenario)))
+    placed = expectations_of(load_scenario(with_file or run_dir / RESOLVED))
+    if with_file is None:
+        placed = _at_lines_of(stored.verdicts, placed)
+    return judge(stored.run, placed)
+
+
+def _at_lines_of(
+    verdicts: Sequence[Verdict], placed: Sequence[PlacedExpectation]
+) -> list[PlacedExpectation]:
+    """Expectations of the resolved file, which is written out, at the lines of the file that ran.
+
+    An expectation that has no verdict has no line there.
+    """
+    lines: dict[tuple[str, str], list[int]] = {}
+    for verdict in verdicts:
+        lines.setdefault((verdict.expectation, verdict.step), []).append(verdict.line)
+    return [
+        replace(each, line=found.pop(0) if found else 0)
+        for each in placed
+        for found in [lines.get((describe(each.spec), each.step), [])]
+    ]
 
 
 def expectations_of(loaded: LoadedScenario) -> list[PlacedExpectation]:

@@ -154,6 +154,7 @@ def step_line(step: StepRecord) -> StepLine:
         sim_time=step.end_time - step.start_time,
         line=step.line,
         explanation=explanation_lines(step.explanation, step.message),
+        path=step.path,
     )
 
 

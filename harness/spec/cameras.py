@@ -121,7 +121,7 @@ class CameraSpec(CameraFields):
 
 
 class VideoSpec(SpecModel):
-    """A camera that is recorded all through the run."""
+    """A camera that is recorded all through the run, as a video of its own size."""
 
     short = "camera"
 

@@ -36,10 +36,14 @@ expect:
 
 Every verdict is read from the recording alone and names its numbers, the sample that decided and a
 margin: how far that was from the limit, in its unit, positive where it holds. A predicate of
-several quantities holds where all of them do. They are compared as shares of their limits; the
-tightest decides, and the margin is its own. What was never observed does not pass: a step that was
-not reached, or an object that was not there, is `not reached`, and what nobody recorded is
-`not observable`.
+several quantities holds where all of them do. They are compared as shares of their limits (a share
+that cannot exceed 1, as a part of what lies between its limit and 1); the tightest decides, and the
+margin is its own. What was never observed does not pass: a step that was not reached, or an object
+that was not there, is `not reached`, and what nobody recorded is `not observable`.
+
+A step that fails unexpectedly ends the run. What could still have come true then is `not reached`,
+and names that step: `lifted` and `eventually`, and everything that is judged at the end. What no
+continuation could make good has failed: an `always` that was violated, a deadline that has passed.
 
 The pictures are real runs: what the deciding quantity measured, its limit, green where the
 predicate holds, and the sample that decided; on the left an expectation that passes, on the right

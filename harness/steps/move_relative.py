@@ -10,6 +10,8 @@ from pydantic import Field, model_validator
 from harness.cell.cell import Cell
 from harness.cell.goals import group_of
 from harness.cell.scope import At
+from harness.core.types import FloatArray
+from harness.ports import MotionPlan, PlanningOptions
 from harness.spec.base import Angle, Length, Name, PositiveLength
 from harness.spec.poses import Direction
 from harness.spec.step import Step
@@ -78,6 +80,14 @@ class MoveRelative(Step):
     def execute(self, cell: Cell) -> None:
         """Move the link along the direction, or turn it about the axis, by the given amount."""
         cell.sync_scene()
+        cell.carry_out(self.plan(cell.planning_start(), cell.current.options, cell))
+
+    def plan(self, start: FloatArray, options: PlanningOptions, cell: Cell) -> MotionPlan:
+        """Plan the motion from joint positions in description order.
+
+        Raises:
+            PlanningFailed: The arm cannot make it.
+        """
         twist = np.zeros(6)
         if self.direction is not None:
             twist[:3] = cell.world_direction(self.direction)
@@ -88,12 +98,11 @@ class MoveRelative(Step):
             least = most = self.angle
         else:
             raise ValueError("the model has a direction or a rotation")
-        plan = cell.planner.plan_relative(
+        return cell.planner.plan_relative(
             group_of(cell, self.group),
-            cell.planning_start(),
+            start,
             self.link or cell.description.tcp_link,
             twist,
             (least, most),
-            cell.current.options,
+            options,
         )
-        cell.carry_out(plan)

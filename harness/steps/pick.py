@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Annotated, ClassVar
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from harness.cell.cell import Cell
-from harness.cell.goals import TcpGoal, group_of
-from harness.cell.grasp_choice import first_that_goes
-from harness.cell.grasping import grasp_point, gripper_axes, top_grasps
+from harness.cell.goals import TcpGoal, arm_has_six_joints, group_of
+from harness.cell.grasp_choice import Approach, Search, choose_approach
+from harness.cell.grasping import (
+    check_opening,
+    grasp_points,
+    gripper_axes,
+    top_grasps,
+    top_grasps_at,
+)
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
+from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.spec.base import Angle, JointEffort, Name, PositiveLength, SpecModel
@@ -26,6 +34,11 @@ from harness.steps.move_relative import MoveRelative
 from harness.steps.move_to import MoveTo
 
 DEFAULT_TRAVEL = 0.1  # [m]
+SHORTEST_TRAVEL = 0.03  # [m]
+TRAVELS = 3
+"""Lengths of an approach that are tried where the file leaves a choice."""
+PITCHES = [math.radians(degrees) for degrees in (0, 15, 30, 45, 60, 75, 90)]
+"""Of the gripper of an arm of fewer than six joints, in the order in which they are tried."""
 
 
 class Travel(SpecModel):
@@ -50,8 +63,15 @@ class Pick(Step):
 
     Without a `grasp_pose` the object's shape gives the grasps from above that are as good as each
     other: half a turn of the gripper, a box's other side if it fits, eight turns about what is
-    round. The first that the arm can approach is taken; the step reports which `grasp` of how many
-    `grasps`.
+    round. With a `grasp_pose` that has no rotation the same rotations are tried at its point. The
+    first grasp that the arm can approach, and lift from, is taken; the step reports which `grasp`
+    of how many `grasps`.
+
+    An arm of fewer than six joints turns to the object by itself: it grasps the middle of the
+    object, or its upper part, with the first pitch of the gripper that works, from level (0) to
+    straight down (90 deg); `pitch` states one.
+
+    The planner's `padding` does not apply between the gripper and the object to grasp.
     """
 
     short = "object"
@@ -61,14 +81,18 @@ class Pick(Step):
     object: Name = Field(description="The name of the object.")
     grasp_pose: Pose | None = Field(
         default=None,
-        description="The pose of the TCP at the grasp; the default follows from the object's "
-        "shape.",
+        description="The pose of the TCP at the grasp, or its position alone; the default follows "
+        "from the object's shape.",
     )
     pitch: Angle | None = Field(
-        default=None, description="The pitch of the gripper, for arms of fewer than six joints."
+        default=None,
+        description="The angle of the gripper below the horizontal, for arms of fewer than six "
+        "joints; the default is the first of 0 to 90 deg that works.",
     )
     approach: Travel | None = Field(
-        default=None, description="The approach; the default is 10 cm along the gripper."
+        default=None,
+        description="The approach; the default is along the gripper, 10 cm or as much as the arm "
+        "can follow, at least 3 cm.",
     )
     lift: Travel | None = Field(
         default=None, description="The lift after the grasp; the default is 10 cm up."
@@ -83,6 +107,14 @@ class Pick(Step):
         "robot's.",
     )
 
+    @model_validator(mode="after")
+    def _one_rotation(self) -> Pick:
+        if self.pitch is not None and self.grasp_pose is not None and self.grasp_pose.has_rotation:
+            raise ValueError(
+                "`pitch` goes with a `grasp_pose` without rotation; this one has its own rotation"
+            )
+        return self
+
     def summary(self) -> str:
         return self.object
 
@@ -91,6 +123,14 @@ class Pick(Step):
         check_graspable(self.object, at)
         if self.grasp_pose is not None:
             at.check_pose(self.grasp_pose, "grasp_pose")
+        group = at.scope.check_group(self.group, at.key("group"))
+        known = group in at.scope.description.groups
+        if self.pitch is not None and known and arm_has_six_joints(at.scope.description, group):
+            at.scope.problems.add(
+                at.key("pitch"),
+                "`pitch` is for arms of fewer than six joints, and this one reaches any rotation",
+                "give a `grasp_pose` with a rotation: `rpy`, `quat_xyzw` or `quat_wxyz`",
+            )
         check_travel(self.approach, at, "approach")
         check_travel(self.lift, at, "lift")
         at.scope.attached[self.object] = None
@@ -100,13 +140,14 @@ class Pick(Step):
         open_hand = Gripper(position=cell.gripper.open_position, max_effort=cell.gripper.max_effort)
         grasp = Grasp(object=self.object, mode=self.mode, max_effort=self.max_effort)
         lift = relative_step(self.lift, Direction(xyz=(0, 0, 1)), self.group)
-        children = [
-            cell.child("open", open_hand, "gripper open"),
-            *_approach(self, cell),
-            cell.child("grasp", grasp, f"grasp {self.object}"),
-            cell.child("lift", lift, f"move_relative lift {self.object}"),
-        ]
-        cell.run_children(children)
+        with cell.unpadded_gripper(self.object):
+            children = [
+                cell.child("open", open_hand, "gripper open"),
+                *_approach(self, lift, cell),
+                cell.child("grasp", grasp, f"grasp {self.object}"),
+                cell.child("lift", lift, f"move_relative lift {self.object}"),
+            ]
+            cell.run_children(children)
 
 
 def check_travel(travel: Travel | None, at: At, key: str) -> None:
@@ -115,32 +156,130 @@ def check_travel(travel: Travel | None, at: At, key: str) -> None:
         at.scope.check_frame(travel.direction.frame, at.key(key, "direction", "frame"))
 
 
-def _approach(step: Pick, cell: Cell) -> list[ProgramStep]:
+def _approach(step: Pick, lift: MoveRelative, cell: Cell) -> list[ProgramStep]:
     """The free motion to where the approach begins, and the straight one to the grasp."""
-    distance = travel_distance(step.approach)
-    ways = [(back_off(target, distance, step, cell), target) for target in grasp_goals(step, cell)]
-    chosen = first_that_goes(ways, group_of(cell, step.group), cell)
-    cell.notes.result.update(grasps=len(ways), grasp=chosen + 1)
-    before, target = ways[chosen]
+    goals = grasp_goals(step, cell)
+    approaches = [
+        Approach(back_off(goal, length, step, cell), goal, number)
+        for length in travel_lengths(step.approach)
+        for number, goal in enumerate(goals)
+    ]
+    cell.notes.result.update(grasps=len(goals), grasp=1)
+    search = Search(
+        group_of(cell, step.group),
+        cell.with_open_gripper(cell.planning_start()),
+        cell.current.options,
+        then=lambda state: _can_lift(lift, state, cell),
+    )
+    try:
+        chosen = choose_approach(approaches, search, cell)
+    except PlanningFailed as failure:
+        raise with_advice(failure, pick_advice(step, failure, len(goals), cell)) from failure
+    cell.notes.result.update(grasp=chosen.number + 1)
     return [
         cell.child(
-            "reach", MoveTo(**before.keys, group=step.group), f"move_to before {step.object}"
+            "reach", MoveTo(**chosen.before.keys, group=step.group), f"move_to before {step.object}"
         ),
-        cell.child("approach", Lin(**target.keys, group=step.group), f"lin to {step.object}"),
+        cell.child("approach", Lin(**chosen.at.keys, group=step.group), f"lin to {step.object}"),
     ]
+
+
+def _can_lift(lift: MoveRelative, state: FloatArray, cell: Cell) -> bool:
+    """Whether the arm can make the straight move after the grasp from joint positions."""
+    if lift.direction is None or lift.direction.frame != "world":
+        return True  # the direction depends on where the grasp leaves the frame
+    try:
+        lift.plan(state, replace(cell.current.options, path_only=True), cell)
+    except PlanningFailed:
+        return False
+    return True
+
+
+def pick_advice(step: Pick, failure: PlanningFailed, grasps: int, cell: Cell) -> str:
+    """What to do in the keys of a pick."""
+    if failure.code == "GOAL_IN_COLLISION":
+        return _collision_advice(step, failure, grasps)
+    if failure.facts.get("is_start_of_approach"):
+        return "the grasp can be reached, the start of its approach cannot: " + (
+            "give `approach` a shorter `distance`, or another `direction`"
+        )
+    if failure.code == "GOAL_CONSTRAINTS_VIOLATED":
+        joints = len(cell.description.groups[group_of(cell, step.group)].joint_names)
+        return (
+            f"an arm of {joints} joints cannot reach every rotation at a point: leave the rotation"
+            " out of `grasp_pose` and the arm finds its own; `pitch` states how far the gripper"
+            " points down"
+        )
+    nearest = failure.facts.get("nearest", {})
+    moved = ""
+    if "pose" in nearest and nearest["position_error"] >= 1e-3:
+        x, y, z = nearest["pose"][:3]
+        moved = (
+            f"the nearest point that the gripper reaches is ({x:.3f}, {y:.3f}, {z:.3f}), "
+            f"{millimetres(nearest['position_error'])} from the grasp: bring '{step.object}' or the"
+            " robot's `base` nearer by that much"
+        )
+    if step.grasp_pose is not None and step.grasp_pose.has_rotation:
+        freer = "leave the rotation out of `grasp_pose`, so that every grasp from above is tried"
+    elif step.pitch is not None:
+        freer = "leave out `pitch`, so that every pitch is tried"
+    else:
+        tried = f"{grasps} grasps were tried" if grasps > 1 else "one grasp was tried"
+        freer = f"{tried}; state another one with `grasp_pose`"
+    return "; or ".join(part for part in (moved, freer) if part)
+
+
+def _collision_advice(step: Pick, failure: PlanningFailed, grasps: int) -> str:
+    nearest = failure.facts.get("nearest", {})
+    touches = nearest.get("touches", [])
+    if not touches or touches[0]["distance"] >= 0:
+        return ""  # the padding is in the way, and the planner's advice says so
+    first, second = touches[0]["pair"]
+    tried = f"none of {grasps} grasps is free" if grasps > 1 else "the grasp is not free"
+    shift = nearest.get("nearest_free", {}).get("shift")
+    moved = f"move '{second}' away from {first}"
+    if shift is not None:
+        axis = max(range(3), key=lambda index: abs(shift[index]))
+        sign = "+" if shift[axis] > 0 else "-"
+        moved = (
+            f"move '{step.object}' {millimetres(abs(shift[axis]))} along {sign}{'xyz'[axis]} of the"
+            f" world, or '{second}' out of the way"
+        )
+    return f"{tried}: {moved}; or state another grasp with `grasp_pose`"
+
+
+def millimetres(metres: float) -> str:
+    """`58.1 mm`."""
+    return f"{1000 * metres:.1f} mm"
+
+
+def with_advice(failure: PlanningFailed, advice: str) -> PlanningFailed:
+    """The failure with advice that can be followed in the step that it is reported for."""
+    return PlanningFailed(
+        failure.code, failure.message, failure.facts | ({"advice": advice} if advice else {})
+    )
 
 
 def grasp_goals(step: Pick, cell: Cell) -> list[TcpGoal]:
     """Where the TCP may be to grasp: poses, or position and pitch for arms of fewer joints."""
-    if step.grasp_pose is not None:
-        return [TcpGoal(world_pose_spec(cell.world_pose(step.grasp_pose)))]
-    object_pose = cell.frame(step.object)
-    if arm_has_six_joints(cell, step.group) and step.pitch is None:
-        obj = cell.presence[step.object].obj
-        return [TcpGoal(world_pose_spec(pose)) for pose in top_grasps(obj, object_pose, cell)]
-    point = grasp_point(cell.presence[step.object].obj, object_pose)
-    x, y, z = (float(value) for value in point)
-    return [TcpGoal(Position(xyz=(x, y, z)), step.pitch or 0.0)]
+    given = None if step.grasp_pose is None else cell.world_pose(step.grasp_pose)
+    if given is not None and step.grasp_pose is not None and step.grasp_pose.has_rotation:
+        return [TcpGoal(world_pose_spec(given))]
+    obj, object_pose = cell.presence[step.object].obj, cell.frame(step.object)
+    if arm_has_six_joints(cell.description, step.group):
+        poses = (
+            top_grasps(obj, object_pose, cell)
+            if given is None
+            else top_grasps_at(given.translation, obj, object_pose, cell)
+        )
+        return [TcpGoal(world_pose_spec(pose)) for pose in poses]
+    check_opening(obj, object_pose, cell)
+    points = grasp_points(obj, object_pose) if given is None else [given.translation]
+    return [
+        TcpGoal(Position(xyz=(float(x), float(y), float(z))), pitch)
+        for x, y, z in points
+        for pitch in (PITCHES if step.pitch is None else [step.pitch])
+    ]
 
 
 def back_off(target: TcpGoal, distance: float, step: Pick, cell: Cell) -> TcpGoal:
@@ -169,16 +308,14 @@ def _turning_axis(cell: Cell, group: str | None) -> FloatArray:
     return cell.frame(cell.description.joint_by_name[first].child).translation
 
 
-def arm_has_six_joints(cell: Cell, group: str | None) -> bool:
-    """Whether the arm can reach any pose near it, not only positions at a pitch."""
-    return len(cell.description.groups[group_of(cell, group)].joint_names) >= 6
-
-
-def travel_distance(travel: Travel | None) -> float:
-    """How far a travel goes at most [m]."""
-    if travel is None:
-        return DEFAULT_TRAVEL
-    return travel.distance or travel.max_distance or travel.min_distance or DEFAULT_TRAVEL
+def travel_lengths(travel: Travel | None) -> list[float]:
+    """Lengths of an approach to try, longest first [m]: the stated one, or several of a range."""
+    if travel is not None and travel.distance is not None:
+        return [travel.distance]
+    most = (travel and travel.max_distance) or DEFAULT_TRAVEL
+    least = (travel and travel.min_distance) or min(SHORTEST_TRAVEL, most)
+    most = max(most, least)
+    return [float(length) for length in np.linspace(most, least, TRAVELS)]
 
 
 def relative_step(travel: Travel | None, default: Direction, group: str | None) -> MoveRelative:

@@ -10,8 +10,8 @@ import numpy as np
 from pydantic import Field
 
 from harness.cell.cell import Cell
-from harness.cell.goals import TcpGoal, group_of
-from harness.cell.grasp_choice import first_that_goes
+from harness.cell.goals import TcpGoal, arm_has_six_joints, group_of
+from harness.cell.grasp_choice import Approach, Search, choose_approach
 from harness.cell.grasping import UP, gripper_axes, pitch_of, turn_about
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
@@ -19,7 +19,7 @@ from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.spatial import SE3
 from harness.core.symmetry import equal_turns
 from harness.core.types import FloatArray
-from harness.ports import PositionGoal
+from harness.ports import PositionGoal, Touch
 from harness.spec.base import Name
 from harness.spec.poses import Direction, Pose, Position
 from harness.spec.step import Step
@@ -27,16 +27,19 @@ from harness.steps.lin import Lin
 from harness.steps.move_to import MoveTo
 from harness.steps.pick import (
     Travel,
-    arm_has_six_joints,
     check_travel,
+    millimetres,
     relative_step,
-    travel_distance,
+    travel_lengths,
+    with_advice,
     world_pose_spec,
 )
 from harness.steps.release import Release
 
 REFINEMENTS = 4
 PUT_DOWN_GAP = 0.001  # [m] above the target, so that the support is touched when the fingers open
+DEEPEST_OPENING = 0.002
+"""Penetration of the opening gripper above which nothing is put down [m]."""
 TURNS_OF_ROUND = 8
 """As many turns are tried of what is round about the vertical."""
 DEFAULT_RETREAT = Travel(min_distance=0.03, max_distance=0.1)
@@ -60,7 +63,9 @@ class Place(Step):
     )
     pose: Pose = Field(description="The pose at which the object will stand.")
     approach: Travel | None = Field(
-        default=None, description="The approach; the default is 10 cm straight down."
+        default=None,
+        description="The approach; the default is straight down, 10 cm or as much as the arm can "
+        "follow, at least 3 cm.",
     )
     retreat: Travel | None = Field(
         default=None, description="The retreat; the default is 3 to 10 cm back along the gripper."
@@ -108,34 +113,107 @@ def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
     along = -UP
     if step.approach is not None and step.approach.direction is not None:
         along = cell.world_direction(step.approach.direction)
-    back = travel_distance(step.approach) * along
-    ways: list[tuple[TcpGoal, TcpGoal]] = []
-    for stated in _equal_poses(name, step, cell):
-        target = SE3(stated.rotation, stated.translation + PUT_DOWN_GAP * UP)
-        before = SE3(target.rotation, target.translation - back)
-        ways.append((_tcp_goal(name, before, step, cell), _tcp_goal(name, target, step, cell)))
-    chosen = first_that_goes(
-        ways,
+    targets = [
+        SE3(stated.rotation, stated.translation + PUT_DOWN_GAP * UP)
+        for stated in _equal_poses(name, step, cell)
+    ]
+    goals = [_tcp_goal(name, target, step, cell) for target in targets]
+    approaches = [
+        Approach(
+            _tcp_goal(name, SE3(target.rotation, target.translation - length * along), step, cell),
+            goal,
+            number,
+        )
+        for length in travel_lengths(step.approach)
+        for number, (target, goal) in enumerate(zip(targets, goals, strict=True))
+    ]
+    cell.notes.result.update(turns=len(targets), turn=1)
+    refused: list[Touch] = []
+    search = Search(
         group_of(cell, step.group),
-        cell,
-        padding=0.0,
-        may_end=lambda state: _can_open(state, cell),
+        cell.planning_start(),
+        replace(cell.current.options, padding=0.0),
+        may_end=lambda state: _can_open(state, refused, cell),
     )
-    cell.notes.result.update(turns=len(ways), turn=chosen + 1)
-    before, target = ways[chosen]
+    try:
+        chosen = choose_approach(approaches, search, cell)
+    except PlanningFailed as failure:
+        advice = place_advice(name, step, failure, cell)
+        raise with_advice(failure, advice) from failure
+    least = max(refused, key=lambda touch: touch.distance, default=None)
+    if least is not None and least.distance < -DEEPEST_OPENING:
+        raise _no_room(name, least)
+    cell.notes.result.update(turn=chosen.number + 1)
     return [
         cell.child(
-            "reach", MoveTo(**before.keys, group=step.group), f"move_to above the place of {name}"
+            "reach",
+            MoveTo(**chosen.before.keys, group=step.group),
+            f"move_to above the place of {name}",
         ),
-        _touching(cell.child("lower", Lin(**target.keys, group=step.group), f"lin {name}")),
+        _touching(cell.child("lower", Lin(**chosen.at.keys, group=step.group), f"lin {name}")),
     ]
 
 
-def _can_open(state: FloatArray, cell: Cell) -> bool:
-    """Whether the open hand touches nothing but what it holds, the arm standing so."""
-    hand_open = np.array(state)
-    hand_open[cell.description.joint_index[cell.gripper.joint]] = cell.gripper.open_position
-    return not cell.scene.touches(cell.description.with_mimics(hand_open))
+def _can_open(state: FloatArray, refused: list[Touch], cell: Cell) -> bool:
+    """Whether the open gripper touches nothing but what it holds; keeps the deepest pair if not."""
+    touches = cell.scene.touches(cell.with_open_gripper(state))
+    if touches:
+        refused.append(touches[0])
+        return False
+    refused.clear()
+    return True
+
+
+def _no_room(name: str, touch: Touch) -> StepFailed:
+    """Where the arm can put the object down, but not let go of it."""
+    depth = millimetres(-touch.distance)
+    return StepFailed(
+        "GOAL_IN_COLLISION",
+        f"the gripper has no room to open where '{name}' is put down: open, {touch.first} and"
+        f" {touch.second} would be {depth} inside each other",
+        {
+            "touches": [{"pair": [touch.first, touch.second], "distance": touch.distance}],
+            "advice": (
+                f"put it down farther from '{touch.second}', or where there is {depth} more room"
+                " on that side of the gripper"
+            ),
+        },
+    )
+
+
+def place_advice(name: str, step: Place, failure: PlanningFailed, cell: Cell) -> str:
+    """What to do in the keys of a place."""
+    if failure.facts.get("is_start_of_approach"):
+        return (
+            "the place can be reached, the start of the approach cannot: give `approach` a shorter"
+            " `distance`, or another `direction`"
+        )
+    stated = cell.world_pose(step.pose)
+    if failure.code == "GOAL_IN_COLLISION":
+        shift = failure.facts.get("nearest", {}).get("nearest_free", {}).get("shift")
+        if shift is None:
+            return ""
+        return (
+            f"move '{name}' to where it is free: `pose: {{{_xyz(stated.translation + shift)}}}`, or"
+            " move what is in the way"
+        )
+    nearest = failure.facts.get("nearest", {}).get("joint_positions")
+    if nearest is None:
+        return ""
+    state = np.array([nearest[joint] for joint in cell.description.joint_names])
+    pose = cell.scene.object_pose(name, state)
+    point = pose.translation - PUT_DOWN_GAP * UP
+    away = float(np.linalg.norm(point - stated.translation))
+    return (
+        f"the nearest place that the arm can bring '{name}' to, held as it is, is `pose:"
+        f" {{{_xyz(point)}}}`, {millimetres(away)} away; or pick it with another `pitch` or"
+        " `grasp_pose`"
+    )
+
+
+def _xyz(point: FloatArray) -> str:
+    x, y, z = np.round(point, 3) + 0.0
+    return f"xyz: [{x:g}, {y:g}, {z:g}]"
 
 
 def _equal_poses(name: str, step: Place, cell: Cell) -> list[SE3]:
@@ -144,7 +222,7 @@ def _equal_poses(name: str, step: Place, cell: Cell) -> list[SE3]:
     An arm of fewer than six joints turns the object as it reaches there: it has one way.
     """
     stated = cell.world_pose(step.pose)
-    if step.pose.has_rotation or not arm_has_six_joints(cell, step.group):
+    if step.pose.has_rotation or not arm_has_six_joints(cell.description, step.group):
         return [stated]
     obj = cell.presence[name].obj
     count = equal_turns(obj.visuals or obj.shapes, stated.rotation) or TURNS_OF_ROUND
@@ -171,7 +249,7 @@ def _tcp_goal(name: str, target: SE3, step: Place, cell: Cell) -> TcpGoal:
     start = cell.planning_start()
     tcp = cell.kinematics.link_pose(start, cell.description.tcp_link)
     tcp_to_object = tcp.inverse() @ cell.scene.object_pose(name, start)
-    if arm_has_six_joints(cell, step.group):
+    if arm_has_six_joints(cell.description, step.group):
         return TcpGoal(world_pose_spec(target @ tcp_to_object.inverse()))
     pitch = pitch_of(tcp.rotation)
     x, y, z = _tcp_position(target.translation, tcp_to_object, pitch, step, cell)
@@ -192,11 +270,7 @@ def _tcp_position(
         goal = PositionGoal(link, position, pitch)
         solutions = cell.kinematics.solve(group, goal, start, cell.current.options.seed)
         if not solutions:
-            raise PlanningFailed(
-                "NO_IK_SOLUTION",
-                f"no joint positions put the held object at ({point[0]:.3f}, {point[1]:.3f},"
-                f" {point[2]:.3f}) with the gripper pitched {np.degrees(pitch):.1f} degrees",
-            )
+            break  # the search for an approach explains it
         state = np.array(start)
         state[list(cell.description.group_indices(group))] = solutions[0]
         tcp = cell.kinematics.link_pose(cell.description.with_mimics(state), link)

@@ -15,12 +15,15 @@ from harness.recording.store import RUN, read_run
 from harness.reporting.result import CaseResult
 from harness.reporting.terminal import causes
 from harness.suite.cases import CaseJob, nobody_watches, run_here
-from harness.suite.discovery import SUFFIX, UsageError
+from harness.suite.discovery import UsageError
 from harness.suite.header import source_lines
 from harness.suite.variation import Case, Variation
 
 if TYPE_CHECKING:
     from harness.spec.scenario import Scenario
+
+MODEL = "<Scenario model>"
+"""What messages call a scenario that is a model in Python, and no file."""
 
 T = TypeVar("T")
 Runner = Callable[[CaseJob], CaseResult]
@@ -33,10 +36,13 @@ class ScenarioResult:
     Attributes:
         case: Outcome, verdicts, problems, digest, times, as the terminal and the reports tell them.
         run: Everything recorded; None where nothing ran.
+        text: Of the scenario file; of a model, the file that says the same, whose lines messages
+            count.
     """
 
     case: CaseResult
     run: Run | None
+    text: str = ""
 
     @property
     def passed(self) -> bool:
@@ -53,9 +59,7 @@ class ScenarioResult:
         """Why it did not pass, as the terminal says it."""
         if self.passed:
             return f"passed: {self.case.title}"
-        return "\n".join(
-            [self.case.outcome, *causes(self.case, source_lines(Path(self.case.file)))]
-        )
+        return "\n".join([self.case.outcome, *causes(self.case, self.text.splitlines())])
 
     def verdict(self, words: str) -> Verdict:
         """The one verdict whose expectation has these words in it.
@@ -119,7 +123,18 @@ def run_scenario(
         run = read_run(folder).run if folder is not None and (folder / RUN).is_file() else None
         if report_dir is None:
             result = replace(result, report_dir="")
-    return ScenarioResult(result, run)
+    if job.text is None:
+        return ScenarioResult(result, run, "\n".join(source_lines(job.file)))
+    return ScenarioResult(_without_folder(result), run, job.text)
+
+
+def _without_folder(result: CaseResult) -> CaseResult:
+    """A model's result under the model's name: there is no such file in any folder."""
+    problems = tuple(
+        replace(problem, path=MODEL if problem.path == result.file else problem.path)
+        for problem in result.problems
+    )
+    return replace(result, file=MODEL, problems=problems)
 
 
 def run_in_process(job: CaseJob) -> CaseResult:
@@ -139,7 +154,7 @@ def _job(
         from harness.spec.written import scenario_text, written
 
         text = scenario_text(scenario)
-        file, variation = Path.cwd() / f"python{SUFFIX}", Variation.of(written(scenario))
+        file, variation = Path.cwd() / MODEL, Variation.of(written(scenario))
     name = str(scenario) if isinstance(scenario, str | Path) else scenario.scenario
     chosen = _case(variation, seed, case, name)
     return CaseJob(

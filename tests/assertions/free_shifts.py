@@ -70,8 +70,6 @@ FREE = (
          "tracking_error", "joint_positions, joint_commands", "+-finger"),
     Free("acceleration is asked of the arm", "within_limits", "joint_command_velocities",
          "+-finger"),
-    Free("a command excuses a joint that stands at its limit, and this one does not",
-         "within_limits 2", "joint_commands", "+-shoulder"),
     Free("the formula asks for `force > 0.5`", "formula", "contact_forces", "+"),
     Free("the formula asks for `z(box) < 0.1` and a tilt",
          "formula", "object_poses", "+-x +-y -z +-yaw"),

@@ -133,7 +133,7 @@ def step(name, start, stop, verb="move_to", status="passed", **fields):
     """A step over samples [start, stop)."""
     return StepRecord(
         id=name,
-        path=f"steps[{start}]",
+        path=fields.pop("path", f"steps[{start}]"),
         verb=verb,
         summary=verb,
         line=0,

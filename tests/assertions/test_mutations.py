@@ -51,6 +51,8 @@ SHOWN_ONLY = {
     ("collision", "clearances"): "contacts decide; how near it came is the margin of what did not"
 }
 SAME_THING = {
+    ("within_limits", "joint_commands", "drop"): "measured joints are judged in a recording without"
+    " commands, too",
     (
         "static",
         "object_poses",

@@ -235,7 +235,7 @@ THREE = [
         -5e-5,
         "m",
     ),
-    Three(WithinLimits(), make_run(), with_joint(joint_velocities=2.01), -0.01, "rad/s"),
+    Three(WithinLimits(), make_run(), with_joint(joint_velocities=2.012), -0.01, "rad/s"),
     Three(TrackingError(), make_run(), with_joint(joint_positions=0.051), -0.001, "rad"),
     Three(Effort(max_fraction=0.5), make_run(), with_joint(joint_efforts=5.05), -0.005, "1"),
     Three(DurationCheck(at_most=0.5), lasting(49), lasting(51), -0.01, "s", during="move"),

@@ -1,4 +1,4 @@
-"""A recorded camera's video, its clock, and the stream of its compressed pictures."""
+"""A recorded camera's video: its size, its clock, and what it shows."""
 
 import subprocess
 import sys
@@ -8,7 +8,11 @@ import cv2
 import numpy as np
 import pytest
 
+from harness.cameras.camera_scene import CameraScene
+from harness.cameras.renderer import make_renderer
+from harness.cameras.sensor import as_delivered
 from harness.cameras.videos import MOST_FRAMES, record_videos
+from harness.recording.film import decoded_film
 from tests.cameras.camera_runs import ball, eye, robot, run_with
 from tests.cameras.test_captures import centre_of, predicted
 
@@ -55,17 +59,38 @@ def test_every_frame_shows_the_moment_that_the_clock_table_says(tmp_path, backen
     np.testing.assert_allclose(video.times, np.arange(11) / 10)
     film = film_of(files[video.file], tmp_path)
     assert len(film) == len(video.times)
-    assert film[0].shape == (video.height, video.width, 3)
-    stream = files[video.frames]
-    assert len(video.frame_offsets) == len(video.times) + 1
+    assert film[0].shape == (video.height, video.width, 3) == (150, 200, 3)
+    assert list(files) == [video.file]
     for number, time in enumerate(video.times):
         place = (0.8, -0.3 + 0.6 * time, 1.0)
         column = predicted(CAMERA, place)[0]
-        assert abs(centre_of(red_in(film[number]))[0] - column) < 3
-        jpeg = stream[video.frame_offsets[number] : video.frame_offsets[number + 1]]
-        picture = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
-        assert picture.shape == (150, 200, 3)
-        assert abs(centre_of(red_in(picture))[0] - column) < 2
+        assert abs(centre_of(red_in(film[number]))[0] - column) < 2
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 720), (321, 241), (64, 48), (8, 8)])
+def test_a_video_has_the_camera_s_size_in_even_numbers(width, height, tmp_path):
+    run, objects = crossing(2)
+    run = replace(run, cameras=(replace(CAMERA, width=width, height=height),))
+    video, files, _ = recorded(run, objects)
+    (frame,) = film_of(files[video.file], tmp_path)
+    assert frame.shape[1::-1] == (video.width, video.height)
+    assert abs(video.width - width) <= 1
+    assert abs(video.height - height) <= 1
+    assert video.width % 2 == video.height % 2 == 0
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.02])
+def test_a_video_shows_what_the_camera_delivered(noise):
+    run, objects = crossing(2)
+    camera = replace(CAMERA, width=320, height=240, noise_stddev=noise)
+    run = replace(run, cameras=(camera,))
+    video, files, _ = recorded(run, objects)
+    shown = next(decoded_film(files[video.file]))
+    scene = CameraScene(robot(), objects, run)
+    renderer = make_renderer(scene.picture, camera.width, camera.height, "rays")
+    drawn = renderer.render(scene.view(camera, scene.pose(0)))
+    renderer.close()
+    assert cv2.PSNR(as_delivered(drawn, camera, run.seed, 0), np.ascontiguousarray(shown)) > 33
 
 
 def test_a_long_run_is_recorded_more_slowly_and_says_so():

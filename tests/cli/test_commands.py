@@ -1,12 +1,17 @@
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from harness import __version__
 from harness.cli.main import main
+from harness.core.spatial import xyzw_from_wxyz
+from harness.recording.store import read_run
+from harness.session.run_case import run_case
 from harness.spec.step import STEPS
 
 HEAVY = (
@@ -111,6 +116,76 @@ def test_the_list_of_steps_has_every_verb_with_its_package(capsys):
     rows = [row.split(maxsplit=2) for row in capsys.readouterr().out.splitlines()]
     assert [verb for verb, _, _ in rows] == list(STEPS)
     assert {package for _, package, _ in rows} == {"armharness"}
+
+
+def test_every_expectation_that_is_judged_is_listed_as_available(capsys):
+    main(["list", "expectations"])
+    rows = dict(row.split(maxsplit=1) for row in capsys.readouterr().out.splitlines())
+    assert {"until", "formula", "always", "tcp_path"} <= set(rows)
+    assert not [name for name, text in rows.items() if "not yet available" in text]
+
+
+LINES = """\
+scenario: Up and down
+robot: ur3e
+# a comment, which the resolved file does not have
+
+
+steps:
+  - ptp: {joints: {elbow_joint: -1, shoulder_lift_joint: -1.2}}
+  - move_relative:   # written out differently
+      {direction: {xyz: [0, 0, 1]}, distance: 3 cm}
+    id: up
+    expect:
+      - tcp_path
+  - wait: 0.1 s
+    expect:
+
+      - static
+expect:
+  - always: within_limits
+  - tcp_path: {during: up}
+"""
+
+
+@pytest.fixture
+def lines_run(folder):
+    (folder / "lines.scenario.yaml").write_text(LINES)
+    result = run_case(Path("lines.scenario.yaml"), report_dir=folder / "run", stills=False)
+    assert result.outcome == "passed", result
+    return folder / "run"
+
+
+def test_judge_counts_the_lines_of_the_file_that_ran(lines_run, folder, capsys):
+    assert main(["judge", str(lines_run)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [re.search(r"line (\d+):", line).group(1) for line in lines[:4]] == [
+        "12", "16", "18", "19",
+    ]  # fmt: skip
+    other = LINES.replace("robot: ur3e\n", "robot: ur3e\n\n")
+    (folder / "other.scenario.yaml").write_text(other)
+    assert main(["judge", str(lines_run), "--with", "other.scenario.yaml"]) == 0
+    assert "line 13: tcp_path" in capsys.readouterr().out
+
+
+def test_explain_prints_where_the_tcp_is_at_the_start_and_end_of_each_step(lines_run, capsys):
+    assert main(["explain", "lines.scenario.yaml"]) == 0
+    said = [
+        (kind, np.array(xyz.split(","), float), np.array(quat.split(","), float))
+        for kind, xyz, quat in re.findall(
+            r"TCP (from|to|at) +\{xyz: \[(.*?)\], quat_xyzw: \[(.*?)\]\}",
+            capsys.readouterr().out,
+        )
+    ]
+    assert [kind for kind, _, _ in said] == ["from", "to", "from", "to", "at"]
+    run = read_run(lines_run).run
+    indices = [each for one in run.steps[:2] for each in (one.start_index, one.end_index - 1)]
+    indices.append(run.steps[2].start_index)
+    for (_, xyz, quat), index in zip(said, indices, strict=True):
+        actual = run.signals.tcp_pose[index]
+        np.testing.assert_allclose(xyz, actual[:3], atol=2e-4)
+        np.testing.assert_allclose(abs(quat @ xyzw_from_wxyz(actual[3:])), 1.0, atol=1e-4)
+    np.testing.assert_allclose(said[3][1] - said[2][1], [0, 0, 0.03], atol=2e-5)
 
 
 def test_new_writes_a_file_and_never_over_another(folder, capsys):

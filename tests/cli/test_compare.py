@@ -7,7 +7,11 @@ from pathlib import Path
 import pytest
 
 from harness.cli.main import main
+from harness.recording.compare import compare
+from harness.recording.run import Verdict
 from harness.recording.scenario_lines import MOST, line_changes
+from harness.recording.store import StoredRun
+from harness.reporting.comparison import comparison_lines
 from harness.session.run_case import run_case
 from tests.assertions.synthetic_run import make_run
 
@@ -96,3 +100,22 @@ def test_many_changed_lines_are_counted():
     changes = line_changes(*runs)
     assert changes[0] == ("a 0", "b 0")
     assert changes[MOST] == ("30 more lines", "30 more lines")
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "said"),
+    [
+        (Verdict("path", "passed", 0.05, "1"), Verdict("path", "failed", -0.2, "1"),
+         "path: passed by 0.05 -> failed by 0.2"),
+        (Verdict("path", "passed", 0.05, "1"), Verdict("path", "passed", 0.04, "1"),
+         "path: 0.05 -> 0.04 (-0.01)"),
+        (Verdict("path", "passed", 0.05, "1"), Verdict("path", "passed", 0.003, "m"),
+         "path: 0.05 -> 0.003 m"),
+        (Verdict("path", "passed", 0.05, "m"), Verdict("path", "passed", 0.04, "m"),
+         "path: 0.05 m -> 0.04 m (-0.01 m)"),
+    ],
+)  # fmt: skip
+def test_a_plain_number_has_no_unit(before, after, said):
+    run = make_run()
+    stored = [StoredRun(run, (each,), "passed", each.status, {}) for each in (before, after)]
+    assert f"  {said}" in list(comparison_lines(compare(*stored)))

@@ -22,7 +22,7 @@ def test_a_can_with_its_origin_at_the_foot_is_picked_and_placed(tmp_path):
         - place: {pose: {frame: base_link, xyz: [0.3, 0.05, -0.005]}}
           expect_error: INVALID_OBJECT_NAME
         - pick: beer_0
-          expect_error: INVALID_OBJECT_NAME
+          expect_error: GOAL_STATE_INVALID
         """,
         robot=UR,
         world="lesson_ur",
@@ -38,7 +38,10 @@ def test_a_can_with_its_origin_at_the_foot_is_picked_and_placed(tmp_path):
     ]
     messages = [step.message for step in record.steps if step.status == "expected_error"]
     assert messages[0] == "nothing is held, so nothing can be placed"
-    assert messages[1].startswith("'beer_0' is 110 mm wide, the gripper opens 107 mm")
+    assert messages[1] == (
+        "'beer_0' is too wide for the gripper: 110.0 mm across its narrowest level side, and the"
+        " gripper opens to 106.9 mm"
+    )
 
 
 @pytest.mark.parametrize("turn", ["[90 deg, 0, 0]", "[0, 90 deg, 40 deg]"])

@@ -110,3 +110,18 @@ def test_a_mistake_in_a_formula_is_told_at_its_word(tmp_path):
         (11, 20, "<"),
         (12, 51, "parsec"),
     ]
+
+
+@pytest.mark.parametrize("expected", ["tcp_path", "always: tcp_path", "tcp_path: {for: 1 s}"])
+def test_the_path_of_no_step_is_told_before_anything_runs(expected, tmp_path):
+    text = "scenario: Path\nrobot: ur3e\nsteps:\n  - ptp: {joints: {elbow_joint: 1}}\n    id: go\n"
+    (tmp_path / "whole.scenario.yaml").write_text(f"{text}expect:\n  - {expected}\n")
+    with pytest.raises(SpecError) as caught:
+        prepare(tmp_path / "whole.scenario.yaml")
+    (problem,) = caught.value.problems
+    assert (problem.line, problem.column) == (7, 5)
+    assert "`tcp_path` without `line` or `arc`" in problem.message
+    assert "`during`" in problem.hint
+    step = f"{text}    expect:\n      - {expected}\n"
+    (tmp_path / "step.scenario.yaml").write_text(step)
+    assert prepare(tmp_path / "step.scenario.yaml").program.expectations

@@ -5,6 +5,7 @@ import pytest
 
 from harness.expectations.clearance import Clearance
 from harness.expectations.never import Never
+from harness.reporting.margins import margin_share
 from tests.assertions.synthetic_run import BOX, TABLE, attachment, changed, make_run, thing, verdict
 
 
@@ -24,7 +25,7 @@ def test_clearance_names_the_nearest_link_and_the_moment():
     answer = verdict(clearance_run(distance), spec)
     assert answer.status == "passed"
     assert answer.margin == pytest.approx(0.002)
-    assert answer.reason == "12.0 mm between arm_link and box, 10.0 mm asked for at t=0.700 s"
+    assert answer.reason == "12.0 mm between arm_link and box, 10.0 mm required at t=0.700 s"
     nearer = Clearance(between=("box", "robot"), at_least=0.0121)
     assert verdict(clearance_run(distance), nearer).status == "failed"
 
@@ -40,10 +41,10 @@ def test_a_distance_may_be_little_less_than_with_the_arm_at_its_commands():
     answer = verdict(run, Clearance(between=("robot", "box"), max_below_plan=0.002))
     assert (answer.status, answer.margin) == ("failed", pytest.approx(-0.0005))
     assert answer.reason == (
-        "17.5 mm between robot and box, planned 20.0 mm; 2.0 mm less allowed at t=0.900 s"
+        "17.5 mm between robot and box, planned 20.0 mm: 2.5 mm less, 2.0 mm allowed at t=0.900 s"
     )
     both = Clearance(between=("robot", "box"), at_least=0.018, max_below_plan=0.003)
-    assert verdict(run, both).reason.startswith("17.5 mm between arm_link and box, 18.0 mm asked")
+    assert verdict(run, both).reason.startswith("17.5 mm between arm_link and box, 18.0 mm req")
     gone = changed(run, clearances={("robot", "box"): np.full(200, np.nan)})
     assert verdict(gone, spec).status == "not reached"
     unknown = changed(run, planned_clearances={("robot", "box"): np.full(200, np.nan)})
@@ -93,3 +94,13 @@ def test_a_held_object_is_found_under_both_of_its_names():
     assert verdict(run, spec).margin == pytest.approx(0.001)
     unheld = make_run(objects=(TABLE, BOX, stand_in))
     assert verdict(unheld, spec).status == "not reached"
+
+
+@pytest.mark.parametrize("at_least", [0.14, 0.05])
+def test_a_distance_that_was_recorded_as_at_least_that_far_has_the_largest_margin(at_least):
+    far = make_run(clearances={("robot", "box"): np.full(200, 0.15)})
+    answer = verdict(far, Clearance(between=("robot", "box"), at_least=at_least))
+    assert (answer.status, margin_share(answer)) == ("passed", 1.0)
+    near = make_run(clearances={("robot", "box"): np.full(200, 0.10)})
+    answer = verdict(near, Clearance(between=("robot", "box"), at_least=0.05))
+    assert margin_share(answer) == pytest.approx(0.5)

@@ -1,20 +1,35 @@
-"""slip: where the planner believes a held object to be, against where it is."""
+"""slip: a held object against where the planner believes it to be."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from harness.core.spatial import SE3
 from harness.expectations.slip import Slip
+from harness.session.agreement import held_finding as finding_of_hold
 from tests.assertions.synthetic_run import (
     BOX,
     CYLINDER,
     TABLE,
     attachment,
     changed,
+    force,
+    heights,
     lift_run,
     make_run,
+    step,
     thing,
     verdict,
 )
+
+
+def held_finding(run):
+    """What became of the run's one attachment."""
+    (record,) = run.attachments
+    found = finding_of_hold(run, record)
+    assert found is not None
+    return found
 
 
 def test_slip_is_drift_since_the_fingers_hold_and_not_the_first_offset():
@@ -54,3 +69,46 @@ def test_slip_of_what_was_never_held_is_not_reached():
     assert verdict(lift_run(), Slip(object="box")).status == "not reached"
     never_touched = make_run(attachments=[attachment("box", 20, 200)])
     assert verdict(never_touched, Slip(object="box")).status == "not reached"
+
+
+RELEASES = {
+    "release": (step("release", 149, 180, "release"),),
+    "gripper and detach_object": (
+        step("open", 149, 170, "gripper"),
+        step("detach", 169, 180, "detach_object"),
+    ),
+    "place": (
+        step("put", 100, 200, "place", path="put"),
+        step("put.release", 149, 180, "release", path="put.release"),
+    ),
+}
+
+
+@pytest.mark.parametrize("steps", RELEASES.values(), ids=RELEASES)
+def test_an_object_that_drops_as_the_gripper_releases_it_was_not_lost(steps):
+    z = np.where(np.arange(200) < 155, 0.3, 0.29)
+    grips = {(f"{side}_finger", "box"): force(200, (50, 155)) for side in ("left", "right")}
+    run = make_run(
+        object_poses={"box": heights(z)}, contact_forces=grips, tcp_pose=heights(np.full(200, 0.3)),
+        attachments=(attachment("box", 60, 178),), steps=steps,
+    )  # fmt: skip
+    assert verdict(run, Slip(object="box")).margin == pytest.approx(0.003)
+    assert "lost" not in held_finding(run).message
+    carried = replace(run, steps=(step("go", 0, 200),))
+    assert verdict(carried, Slip(object="box")).status == "failed"
+    assert "the physics lost it at 1.55 s" in held_finding(carried).message
+
+
+def test_an_object_that_falls_before_the_arm_moves_on_was_lost():
+    z = np.where(np.arange(200) < 100, 0.3, 0.29)
+    grips = {(f"{side}_finger", "box"): force(200, (50, 100)) for side in ("left", "right")}
+    run = make_run(
+        object_poses={"box": heights(z)}, contact_forces=grips, tcp_pose=heights(np.full(200, 0.3)),
+        attachments=(attachment("box", 60, 178),),
+        steps=(
+            step("open", 90, 110, "gripper"),
+            step("go", 109, 150),
+            step("release", 149, 180, "release"),
+        ),
+    )  # fmt: skip
+    assert "the physics lost it at 1.00 s" in held_finding(run).message

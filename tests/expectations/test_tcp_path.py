@@ -1,10 +1,15 @@
 """tcp_path: how far the TCP strays from a line or an arc, and how much of it it travels."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from harness.expectations.fraction import FractionCheck
 from harness.expectations.tcp_path import TcpPath
-from tests.assertions.synthetic_run import at, changed, heights, make_run, verdict
+from harness.recording.run import LinkPlacement
+from harness.reporting.margins import allowance_used, margin_share
+from tests.assertions.synthetic_run import ROBOT, at, changed, heights, make_run, step, verdict
 
 LINE = {"start": {"xyz": [0, 0, 0.3]}, "end": {"xyz": [0, 0, 0.5]}}
 
@@ -31,7 +36,11 @@ def around(radius, first=0.0, last=np.pi):
 def test_a_line_is_followed_near_enough_and_from_end_to_end():
     spec = TcpPath(line=LINE, max_deviation=0.002)
     answer = verdict(along_z(0.0015), spec)
-    assert (answer.status, answer.unit) == ("passed", "1"), "the share is the tighter of the two"
+    assert (answer.status, answer.unit) == ("passed", "m"), "all of the line was travelled"
+    assert answer.margin == pytest.approx(5e-4)
+    short = verdict(along_z(0.0015, end=0.492), spec)
+    assert (short.status, short.unit) == ("passed", "1"), "the share is the tighter of the two"
+    assert short.margin == pytest.approx(0.01, abs=1e-6)
     strayed = verdict(along_z(0.0021), spec)
     assert (strayed.status, strayed.unit) == ("failed", "m")
     assert strayed.margin == pytest.approx(-1e-4)
@@ -88,7 +97,7 @@ def test_an_arc_through_points_on_a_line_cannot_be_judged():
     assert verdict(make_run(), TcpPath(arc=flat)).status == "not observable"
     point = {"start": LINE["start"], "end": LINE["start"]}
     assert verdict(make_run(), TcpPath(line=point)).status == "not observable"
-    with pytest.raises(ValueError, match="exactly one of line, arc"):
+    with pytest.raises(ValueError, match="`line`, or `arc`, or neither"):
         TcpPath(line=LINE, arc=ARC)
 
 
@@ -98,3 +107,57 @@ def test_a_line_in_the_frame_of_an_object_moves_with_it():
     in_box = {"start": {"frame": "box"}, "end": {"frame": "box", "xyz": [0, 0, 0.1]}}
     answer = verdict(carried, TcpPath(line=in_box))
     assert (answer.status, answer.unit) == ("failed", "1"), "it stands at the line's start"
+
+
+@pytest.mark.parametrize("at_least", [0.95, 1.0])
+def test_a_path_that_was_followed_to_its_end_has_the_largest_margin(at_least):
+    path = step("path", 0, 200, "cartesian_path", result={"fraction": 1.0})
+    answer = verdict(make_run(steps=(path,)), FractionCheck(at_least=at_least))
+    assert (answer.status, margin_share(answer)) == ("passed", 1.0)
+    assert allowance_used(answer.measures[0]) == 0.0
+
+
+def sliding(z, planned, verb="lin"):
+    """A robot whose TCP slides along z by its joint `shoulder`; planned positions of a step."""
+    along = (0.0, 0.0, 1.0)
+    places = (
+        LinkPlacement("base_link", "world", (0.1, 0.2, 0.3, 1.0, 0.0, 0.0, 0.0)),
+        LinkPlacement("palm", "base_link", (0, 0, 0, 1, 0, 0, 0), "shoulder", True, along),
+    )
+    tcp = at(200, (0.1, 0.2, 0.3))
+    tcp[:, 2] += z
+    trajectory = {
+        "joint_names": ["shoulder"],
+        "times": np.linspace(0, 1.99, len(planned)),
+        "positions": np.asarray(planned, dtype=float)[:, None],
+    }
+    moving = step("go", 0, 200, verb, trajectory=trajectory)
+    return make_run(tcp_pose=tcp, robot=replace(ROBOT, placements=places), steps=(moving,))
+
+
+def test_a_step_s_own_path_is_the_line_from_its_start_to_its_goal():
+    whole = np.linspace(0.0, 0.2, 200)
+    answer = verdict(sliding(whole, [0.0, 0.05, 0.2]), TcpPath(), "go")
+    assert (answer.status, answer.unit) == ("passed", "m")
+    assert answer.margin == pytest.approx(0.001)
+    half = verdict(sliding(whole / 2, [0.0, 0.2]), TcpPath(), "go")
+    assert (half.status, half.margin) == ("failed", pytest.approx(0.5 - 0.95))
+    aside = sliding(whole, [0.0, 0.2])
+    aside.signals.tcp_pose[100, 0] += 0.002
+    assert verdict(aside, TcpPath(), "go").margin == pytest.approx(-0.001)
+    beyond = verdict(sliding(1.02 * whole, [0.0, 0.2]), TcpPath(during="go"))
+    assert beyond.margin == pytest.approx(0.001 - 0.004)
+
+
+def test_a_step_without_a_path_of_its_own_is_not_observable():
+    run = sliding(np.linspace(0.0, 0.2, 200), [0.0, 0.2])
+    assert verdict(run, TcpPath()).status == "not observable"
+    waiting = make_run(steps=(step("wait", 0, 200, "wait"),))
+    assert verdict(waiting, TcpPath(), "wait").status == "not observable"
+    still = sliding(np.zeros(200), [0.1, 0.1])
+    assert verdict(still, TcpPath(), "go").status == "not observable", "it has no length"
+    failed = make_run(
+        steps=(step("go", 0, 200, "lin", status="failed", error_code="PLANNING_FAILED"),),
+        ended_early="PLANNING_FAILED: no line",
+    )
+    assert verdict(failed, TcpPath(), "go").status == "not reached"

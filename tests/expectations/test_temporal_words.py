@@ -47,7 +47,7 @@ def test_what_never_held_shows_where_it_came_nearest():
     answer = verdict(lift_run(), spec)
     assert answer.status == "failed"
     assert answer.reason.startswith("lifted 100 mm of 200 mm")
-    assert answer.reason.endswith("held for 0.0 s at most, 0.5 s asked for")
+    assert answer.reason.endswith("held for 0.0 s at most, 0.5 s required")
 
 
 def test_a_deadline_counts_from_the_window_s_start():

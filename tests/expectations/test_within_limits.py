@@ -1,5 +1,6 @@
 """within_limits: joints stay within their limits."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -19,8 +20,8 @@ def test_limits_are_inclusive_and_the_worst_joint_is_told():
     )
     assert verdict(at_limit, WithinLimits()).status == "passed"
     for change, said in (
-        ({"joint_positions": positions(-1.001)}, "position of shoulder"),
-        ({"joint_velocities": positions(-2.001)}, "velocity of shoulder"),
+        ({"joint_positions": positions(-1.0011)}, "position of shoulder"),
+        ({"joint_velocities": positions(-2.0021)}, "velocity of shoulder"),
         ({"joint_efforts": positions(0.0, 20.1)}, "effort of finger"),
     ):
         answer = verdict(make_run(**change), WithinLimits())
@@ -38,7 +39,7 @@ def test_a_gripper_may_rest_on_its_stop_and_an_arm_may_not():
     assert (
         verdict(make_run(joint_positions=positions(0, -0.0007)), WithinLimits()).status == "failed"
     )
-    assert verdict(make_run(joint_positions=positions(1.0005)), WithinLimits()).status == "failed"
+    assert verdict(make_run(joint_positions=positions(1.0011)), WithinLimits()).status == "failed"
 
 
 def test_an_idle_joint_off_the_arm_may_rest_on_its_stop_too():
@@ -60,3 +61,30 @@ def test_acceleration_is_that_of_the_commands():
     assert answer.status == "failed"
     assert answer.margin == pytest.approx(-0.1)
     assert answer.time == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("beyond", "status"), [(0.0, "passed"), (1e-7, "passed"), (9e-4, "passed"), (1.1e-3, "failed")]
+)
+def test_a_measured_position_may_exceed_its_limit_by_the_stated_tolerance(beyond, status):
+    for position in (1.0 + beyond, -1.0 - beyond):
+        run = make_run(joint_positions=positions(position))
+        assert verdict(run, WithinLimits()).status == status
+
+
+@pytest.mark.parametrize("beyond", [1e-7, 5e-4, 0.1])
+def test_a_commanded_position_has_no_tolerance(beyond):
+    at_limit = changed(make_run(), joint_commands=positions(1.0))
+    assert verdict(at_limit, WithinLimits()).status == "passed"
+    for position in (1.0 + beyond, -1.0 - beyond):
+        run = changed(make_run(), joint_commands=positions(position))
+        answer = verdict(run, WithinLimits())
+        assert answer.status == "failed"
+        assert answer.reason.startswith("commanded position of shoulder is ")
+        value, limit = re.findall(r"-?[0-9.]+ deg", answer.reason)
+        assert value != limit
+
+
+def test_a_measured_velocity_may_exceed_its_limit_by_a_thousandth():
+    run = make_run(joint_velocities=positions(2.0019))
+    assert verdict(run, WithinLimits()).status == "passed"

@@ -90,9 +90,30 @@ def test_a_load_that_the_arm_cannot_hold_never_moves():
     with pytest.raises(PlanningFailed) as caught:
         cell.planner.plan(ARM, cell.state, goal, PlanningOptions())
     assert caught.value.code == "INVALID_MOTION_PLAN"
-    assert "to hold the arm still on the way" in caught.value.message
+    facts = caught.value.facts
+    assert "the arm cannot hold load (20 kg) still" in caught.value.message
+    assert f"needs {facts['effort']:.1f} N m and has at most 54.0 N m" in caught.value.message
+    assert "no slower motion helps: give load a `mass` of at most" in facts["advice"]
     light = cell_with(1.0).planner.plan(ARM, cell.state, goal, PlanningOptions())
     assert light.trajectory.duration > 0
+
+
+@pytest.mark.parametrize("share", [0.98, 1.02])
+def test_the_largest_mass_that_is_advised_is_the_largest_that_the_arm_holds(share):
+    posture = np.array([0.0, 0.0, 0.0, -1.4, -1.57, 0.0])
+    _, facts = dynamics_of(cell_with(20.0)).standing_overload(posture)
+    dynamics = dynamics_of(cell_with(share * facts["most_mass"]))
+    still = np.zeros((1, 6))
+    efforts = np.abs(dynamics.efforts(posture[None], still, still)[0])
+    assert bool(np.all(efforts <= dynamics.limits)) == (share < 1)
+
+
+def test_an_arm_too_weak_for_itself_is_not_advised_to_hold_less():
+    dynamics = dynamics_of(cell_with(0))
+    weak = replace(dynamics, limits=np.full(6, 5.0))
+    message, facts = weak.standing_overload(START)
+    assert "cannot hold itself still" in message
+    assert "most_mass" not in facts
 
 
 def test_the_library_agrees_about_the_whole_robot():

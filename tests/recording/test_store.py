@@ -106,14 +106,11 @@ def full_run():
                 4,
                 2,
                 "rays",
-                "cameras/eye/all.mjpeg",
-                (0, 3, 5),
             ),
         ),
         files={
             "cameras/eye/1.png": b"picture",
             "cameras/eye/all.webm": b"film",
-            "cameras/eye/all.mjpeg": b"aaabb",
         },
     )
 

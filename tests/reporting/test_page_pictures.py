@@ -8,12 +8,21 @@ import numpy as np
 import pytest
 
 from harness.core.camera import Camera
-from harness.recording.run import CaptureRecord, VideoRecord
+from harness.core.geometry import Box, Shape
+from harness.recording.run import CaptureRecord, ContactRecord, VideoRecord
 from harness.recording.store import StoredRun
 from harness.reporting.html.page import page_html
 from harness.reporting.terminal import failure_place
 from harness.session.run_case import run_case
-from tests.assertions.synthetic_run import lift_run
+from tests.assertions.synthetic_run import (
+    BOX,
+    TABLE,
+    changed,
+    force,
+    lift_run,
+    make_run,
+    step,
+)
 
 RED, GREEN = (0, 0, 255), (0, 255, 0)  # BGR
 
@@ -83,8 +92,13 @@ def test_pictures_and_videos_follow_the_clock(visit, tmp_path):
     width = page.locator(".camera").first.bounding_box()["width"]
     page.locator(".camera button").first.press("Enter")
     assert page.locator(".camera").first.bounding_box()["width"] > 1.5 * width, "enlarged"
+    view = page.locator("#view").bounding_box()
+    for camera in page.locator(".camera").all():
+        box = camera.bounding_box()
+        assert box["y"] >= view["y"] + view["height"], "no picture hides the replay"
     page.click("#tool-cameras")
     assert not page.locator(".camera").first.is_visible()
+    assert page.locator("#view").bounding_box()["height"] > view["height"]
 
 
 def test_a_ten_minute_run_opens_and_scrubs(visit, tmp_path):
@@ -121,6 +135,65 @@ def test_contacts_are_told_and_drawn_where_they_were(visit, tmp_path):
     page.click("#tool-contacts")
     page.keyboard.press("Home")
     assert told not in opened.text("#readout"), "before it touches"
+
+
+HUES = """() => {
+  const seen = document.createElement('canvas');
+  const view = document.querySelector('#view canvas');
+  [seen.width, seen.height] = [view.width, view.height];
+  const pen = seen.getContext('2d');
+  pen.drawImage(view, 0, 0);
+  const data = pen.getImageData(0, 0, seen.width, seen.height).data;
+  const found = {blue: 0, other: 0};
+  for (let i = 0; i < data.length; i += 4) {
+    const [r, g, b] = data.slice(i, i + 3);
+    if (Math.max(r, g, b) - Math.min(r, g, b) < 40) continue;
+    found[b > 1.6 * r && b > 1.6 * g ? 'blue' : 'other'] += 1;
+  }
+  return found;
+}"""
+
+
+def blue_cube(**changes):
+    """A box that lies on a grey table under a hand; of the robot nothing is seen."""
+    cube = replace(BOX, shapes=(Shape(Box((0.2, 0.2, 0.2)), rgba=(0.0, 0.0, 1.0, 1.0)),))
+    table = replace(TABLE, shapes=(replace(TABLE.shapes[0], rgba=(0.5, 0.5, 0.5, 1.0)),))
+    touching = {("Table", "box"): force(200, (0, 200), value=20.0)}
+    return make_run(objects=(table, cube), contact_forces=touching, **changes)
+
+
+@pytest.mark.parametrize("other", ["Table", "left_finger"])
+@pytest.mark.parametrize("is_collision", [False, True])
+def test_only_bodies_that_collide_change_their_colour(other, is_collision, visit, tmp_path):
+    run = blue_cube()
+    forces = {(other, "box"): force(200, (0, 200), value=20.0)}
+    contact = ContactRecord((other, "box"), 0.0, 2.0, 20.0, is_collision)
+    run = replace(changed(run, contact_forces=forces), contacts=(contact,))
+    page = visit(write(tmp_path, run), "#t=1").page
+    for tool in ("path", "plan", "frame", "goal"):
+        page.click(f"#tool-{tool}")
+    page.wait_for_timeout(400)
+    found = page.evaluate(HUES)
+    assert found["blue" if not is_collision else "other"] > 500
+    assert (
+        found["blue" if not is_collision else "other"]
+        > 10 * found["other" if not is_collision else "blue"]
+    )
+
+
+def test_only_stages_that_failed_are_printed_in_red(visit, tmp_path):
+    stages = [
+        {"stage": name, "status": status, "code": "", "text": "why", "details": []}
+        for name, status in (("reach", "passed"), ("path", "failed"), ("time", "not reached"))
+    ]
+    steps = (step("go", 0, 200, status="failed", error_code="X", explanation={"stages": stages}),)
+    page = visit(write(tmp_path, make_run(steps=steps)), "#tab=planner").page
+    colours = page.locator(".stages .reason").evaluate_all(
+        "all => all.map((each) => getComputedStyle(each).color)"
+    )
+    red = page.locator(".stages .bad .reason").evaluate("each => getComputedStyle(each).color")
+    assert [colour == red for colour in colours] == [False, True, False]
+    assert page.locator("#steps .bad").count() == 1
 
 
 def test_a_run_without_duration_says_so_where_plots_would_be(visit, tmp_path):

@@ -8,6 +8,7 @@ from xml.etree import ElementTree as ET
 import pytest
 
 from harness.reporting.margins import margin_share, worst
+from harness.reporting.result import StepLine
 from harness.reporting.sampled import SampledRate
 from harness.reporting.suite.cause import cause_of, short_lines
 from harness.reporting.suite.github import error_annotations, job_summary
@@ -15,7 +16,17 @@ from harness.reporting.suite.history import history_of
 from harness.reporting.suite.junit import junit_xml
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.reporting.suite.write import write_suite
-from tests.reporting.suites import BROKEN, INVALID, STUCK, failed, large_suite, passed, small_suite
+from harness.reporting.terminal import causes, failure_place, root_failures
+from tests.reporting.suites import (
+    BROKEN,
+    INVALID,
+    STUCK,
+    failed,
+    large_suite,
+    passed,
+    small_suite,
+    verdict,
+)
 from tests.suite.samples import rate_of
 
 # element -> (required attributes, further ones, children in the order that all schemas know)
@@ -122,9 +133,20 @@ def test_annotations_stand_at_their_lines_and_cannot_be_broken_out_of():
     assert all("\n" not in line for line in lines)
 
 
+def test_a_rate_is_named_without_a_mark_that_reads_as_a_word():
+    record = small_suite()
+    message = next(
+        failure.get("message")
+        for failure in ET.fromstring(junit_xml(record)).iter("failure")
+        if failure.get("type") == "success rate"
+    )
+    assert message.startswith("a/pick.scenario.yaml: 8 of 10 samples passed, 80.0%")
+    assert "\n- a/pick.scenario.yaml: 8 of 10 samples passed" in job_summary(record)
+
+
 def test_the_job_summary_has_the_worst_first_and_keeps_text_text():
     lines = job_summary(small_suite()).splitlines()
-    assert lines[0] == "## 💥 armharness: 1 of 5 passed; 1 of 1 rates not shown"
+    assert lines[0] == "## 💥 armharness: 1 of 5 passed; 1 of 1 success rates not confirmed"
     rows = [line for line in lines if line.startswith("| ")][1:]
     assert rows[0].startswith("| ❌ | Pick")
     assert rows[-1].startswith("| ✅ |")
@@ -145,10 +167,41 @@ def test_cases_that_fail_alike_have_one_cause():
     assert cause_of(failed(1)).group == cause_of(failed(2, 0.01)).group
 
 
+REACH = StepLine(
+    "pick.reach", "move_to", "move_to before cube", "failed", "GOAL_IN_COLLISION",
+    "the nearest: forearm_link and post", path="steps[1].reach",
+)  # fmt: skip
+OUTER = {
+    "pick": StepLine("pick", "pick", "pick cube", "failed", "GOAL_IN_COLLISION",
+                     "its step `move_to before cube` failed", path="steps[1]"),
+    "repeat": StepLine("again", "repeat", "repeat 3 times", "failed", "GOAL_IN_COLLISION",
+                       "its step `pick cube` failed", path="steps"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("outer", [("pick",), ("repeat", "pick"), ()])
+def test_a_case_failed_because_of_the_innermost_step(outer):
+    steps = (*(OUTER[name] for name in outer), REACH)
+    result = replace(STUCK, steps=steps, page="b/report.html", verdicts=(verdict(0.03),))
+    cause = cause_of(result)
+    assert cause.group == "GOAL_IN_COLLISION in move_to"
+    assert cause.said == (
+        "move_to before cube: GOAL_IN_COLLISION: the nearest: forearm_link and post"
+    )
+    assert [each for each in causes(result) if "its step" in each] == []
+    assert failure_place(result) == "#t=4.00&tab=planner", "where the step is explained"
+
+
+def test_steps_with_like_names_are_not_nested():
+    first = replace(REACH, path="steps[1]", summary="first")
+    other = replace(REACH, path="steps[10]", summary="other")
+    assert root_failures([first, other]) == [first, other]
+
+
 def test_margins_of_any_unit_are_shares_between_minus_one_and_one():
     assert worst([]) is None
     for record in large_suite(200).cases:
-        for verdict in record.result.verdicts:
-            share = margin_share(verdict)
+        for each in record.result.verdicts:
+            share = margin_share(each)
             assert -1 <= share <= 1
-            assert math.copysign(1, share) == (1 if verdict.status == "passed" else -1)
+            assert math.copysign(1, share) == (1 if each.status == "passed" else -1)

@@ -26,13 +26,46 @@ def names(page):
 def test_it_tells_everything_and_hostile_names_stay_text(small, visit):
     seen = visit(small)
     page = seen.page
-    assert page.title() == "1 of 5 passed; 1 of 1 rates not shown"
+    assert page.title() == "1 of 5 passed; 1 of 1 success rates not confirmed"
     assert page.locator("tbody tr").count() == 5
     assert "<script>document.title" in seen.text("tbody")
     assert "8 of 10 samples passed, 80.0%" in seen.text("main")
     assert page.locator("svg.spark").count() == 1
     link = page.get_attribute("tbody a", "href")
     assert link.endswith("a/pick/c1/report.html#t=2.00&expect=2")
+
+
+def columns(page, row):
+    """The cells of a row of cases by the heading that is drawn above them."""
+    middle = "each => each.map((cell) => { const box = cell.getBoundingClientRect();"
+    middle += " return [cell.innerText, box.left, box.right]; })"
+    heads = page.locator("thead th").evaluate_all(middle)
+    cells = page.locator("tbody tr").nth(row).locator("td").evaluate_all(middle)
+    assert len(heads) == len(cells)
+    assert [head[1:] for head in heads] == [cell[1:] for cell in cells]
+    return {
+        head[0].partition("bar:")[0].strip(): cell[0]
+        for head, cell in zip(heads, cells, strict=True)
+    }
+
+
+@pytest.mark.parametrize("history", [None, {}, {("a/pick.scenario.yaml", "c0"): [0.5, 0.4]}])
+def test_every_cell_stands_under_its_heading(history, tmp_path, visit):
+    page = visit(write_suite(tmp_path, small_suite(), 3, history), width=1400).page
+    for row, seed in enumerate(("0", "1", "3")):
+        found = columns(page, row)
+        assert (found["Seed"], found["Simulated"]) == (seed, "4.0 s" if row == 2 else "9.0 s")
+        assert ("Worst margin over runs" in found) == bool(history)
+    page.select_option("#order select", "cause")
+    assert page.locator("tr.group td").first.get_attribute("colspan") == str(len(found))
+
+
+def test_bars_show_the_share_of_the_allowance_that_was_used(small, visit):
+    page = visit(small).page
+    said = page.locator(".bar").evaluate_all("bars => bars.map((bar) => bar.title)")
+    assert said == ["83 % of the allowance used", "167 % of the allowance used"]
+    widths = page.locator(".bar i").evaluate_all("bars => bars.map((bar) => bar.style.width)")
+    assert widths == ["83.3%", "100%"]
 
 
 def test_filters_search_and_address(small, visit):

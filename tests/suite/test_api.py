@@ -112,3 +112,24 @@ def test_a_broken_file_is_a_result_with_its_problems(tmp_path):
     assert result.case.outcome == "invalid"
     assert result.run is None
     assert "ur99" in str(result)
+
+
+@pytest.mark.parametrize("title", ["Home", "a/b: c", "<x>"])
+def test_a_model_that_fails_names_no_file_and_quotes_its_own_lines(title, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    scenario = Scenario(
+        scenario=title, robot="open_manipulator_x", steps=[MoveTo(named_target="home")],
+        expect=[NamedTarget(state="init")],
+    )  # fmt: skip
+    told = str(harness.run(scenario))
+    [line] = [line for line in told.splitlines() if line.startswith("<Scenario model>:")]
+    number = int(line.split(":")[1])
+    quoted = scenario_text(scenario).splitlines()[number - 1]
+    assert "state: init" in quoted
+    assert f"{number} | {quoted}" in told
+    assert str(tmp_path) not in told
+    mistaken = scenario.model_copy(update={"steps": (MoveTo(named_target="hime"),)})
+    told = str(harness.run(mistaken))
+    assert "<Scenario model>:" in told
+    assert "did you mean 'home'" in told
+    assert str(tmp_path) not in told

@@ -118,7 +118,7 @@ def test_a_rate_that_cannot_be_shown_fails_and_says_what_to_do(varied):
     path = varied(VARIED.replace("samples: 12", "samples: 4\nexpect_rate: {at_least: 0.6}"))
     done = harness("run", path, "--no-report", cwd=path.parent)
     assert done.returncode == 1
-    assert "at least 60.0% is not shown: take more samples, or ask for less" in done.stdout
+    assert "at least 60.0% is not confirmed: take more samples, or require less" in done.stdout
 
 
 def test_samples_of_what_has_none_are_refused_and_leave_files_beside_sampled_ones_alone(varied):

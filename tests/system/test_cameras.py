@@ -10,6 +10,7 @@ import pytest
 
 from harness.core.pose_arrays import compose
 from harness.core.resources import data_folder
+from harness.recording.film import decoded_film
 from harness.recording.link_poses import link_poses
 from harness.recording.plain import to_plain
 from harness.recording.store import read_run
@@ -98,8 +99,10 @@ def test_a_video_has_a_time_for_every_frame_within_the_run(case):
     for film in run.videos:
         assert film.times[0] == 0.0
         assert film.times[-1] <= run.signals.times[-1] + 1e-9
-        assert len(film.frame_offsets) == len(film.times) + 1
-        assert film.frame_offsets[-1] == len(run.files[film.frames])
+        frames = list(decoded_film(run.files[film.file]))
+        assert len(frames) == len(film.times)
+        camera = next(camera for camera in run.cameras if camera.name == film.camera)
+        assert frames[0].shape == (camera.height, camera.width, 3)
 
 
 def test_a_run_of_a_camera_is_the_same_twice_to_the_byte(tmp_path):

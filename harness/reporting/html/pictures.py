@@ -8,11 +8,14 @@ from typing import Any
 import cv2
 import numpy as np
 
+from harness.recording.film import decoded_film, encoded_film, film_size
 from harness.recording.run import Run
 from harness.reporting.html.packing import Packer
 
 KINDS = {"color": "", "depth_preview": "depth", "segmentation_preview": "segmentation"}
 """Kinds of files that can be looked at, and how the page calls them."""
+WIDEST_VIDEO = 320
+"""Of a video in the page [pixels]; the file in the run's folder has the camera's size."""
 LARGEST_VIDEO = 1_500_000
 """A larger one stays in the run's folder [bytes]."""
 MOST_IMAGES = 40
@@ -29,7 +32,12 @@ def _videos(run: Run, packer: Packer) -> list[dict[str, Any]]:
     views: list[dict[str, Any]] = []
     for number, video in enumerate(run.videos):
         data = run.files.get(video.file, b"")
-        if not 0 < len(data) <= LARGEST_VIDEO or not video.times:
+        if not data or not video.times:
+            continue
+        if video.width > WIDEST_VIDEO:
+            size = film_size(video.width, video.height, WIDEST_VIDEO)
+            data = encoded_film(decoded_film(data), video.rate, size)
+        if len(data) > LARGEST_VIDEO:
             continue
         name = packer.add(f"video.{number}", data)
         source = {"buffer": name, "type": "video/webm", "start": video.times[0]}

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from harness.recording.plain import to_plain
-from harness.recording.run import JointRecord, Measure, Run, StepRecord, Verdict
+from harness.recording.run import JointRecord, Run, StepRecord, Verdict, is_nested
 from harness.recording.store import StoredRun
+from harness.reporting.margins import allowance_used
 
 TONES = {"passed": "good", "expected_error": "good", "failed": "bad", "not_reached": "open"}
 
@@ -20,7 +21,7 @@ def ordered_steps(run: Run) -> list[StepRecord]:
     order = {step.path: number for number, step in enumerate(run.steps)}
 
     def key(step: StepRecord) -> tuple[int, int]:
-        nested = [order[each.path] for each in run.steps if _is_inside(each, step)]
+        nested = [order[each.path] for each in run.steps if is_nested(each.path, step.path)]
         return min([order[step.path], *nested]), depth_of(step, run)
 
     return sorted(run.steps, key=key)
@@ -28,12 +29,14 @@ def ordered_steps(run: Run) -> list[StepRecord]:
 
 def depth_of(step: StepRecord, run: Run) -> int:
     """In how many other steps it is nested."""
-    return sum(_is_inside(step, other) for other in run.steps)
+    return sum(is_nested(step.path, other.path) for other in run.steps)
 
 
 def _decided_here(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> bool:
     """Whether an expectation of the step, or of one around it, failed by a sample of it."""
-    around = {each.id for each in run.steps if each.path == step.path or _is_inside(step, each)}
+    around = {
+        each.id for each in run.steps if each.path == step.path or is_nested(step.path, each.path)
+    }
     return any(
         each.status != "passed" and each.step in around
         and (step.start_time < each.time <= step.end_time or each.step == step.id)
@@ -41,14 +44,15 @@ def _decided_here(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> bo
     )  # fmt: skip
 
 
-def _is_inside(inner: StepRecord, outer: StepRecord) -> bool:
-    return inner.path != outer.path and inner.path.startswith((f"{outer.path}.", f"{outer.path}["))
-
-
 def step_facts(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> dict[str, Any]:
     """A step as plain data; one whose own expectations do not hold looks failed."""
-    broken = [each for each in verdicts if each.step == step.id and each.status != "passed"]
     tone = TONES[step.status]
+    broken = [
+        each
+        for each in verdicts
+        if each.step == step.id
+        and (each.status != "passed" if tone == "good" else each.status == "failed")
+    ]
     return {
         "tone": "bad" if broken and tone == "good" else tone,
         "band": "bad" if tone == "good" and _decided_here(run, step, verdicts) else tone,
@@ -64,7 +68,7 @@ def step_facts(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> dict[
         "start": step.start_time,
         "end": step.end_time,
         "depth": depth_of(step, run),
-        "hasChildren": any(_is_inside(other, step) for other in run.steps),
+        "hasChildren": any(is_nested(other.path, step.path) for other in run.steps),
         "planner": finite(
             {key: value for key, value in step.planner.items() if key not in {"raw_path", "path"}}
         ),
@@ -98,18 +102,6 @@ def _points(verdict: Verdict) -> dict[str, list[float]] | None:
             points = {"expected": list(measure.expected), "actual": list(measure.actual)}
             return points if np.isfinite([*measure.expected, *measure.actual]).all() else None
     return None
-
-
-def allowance_used(measure: Measure) -> float | None:
-    """Share of what was allowed that was used, 1 at the limit; None where that has no meaning."""
-    value, limit = measure.value, measure.limit
-    if not (math.isfinite(value) and math.isfinite(limit)) or measure.comparison == "==":
-        return None
-    if measure.comparison == "<=":
-        return max(0.0, value) / limit if limit > 0 else None
-    if limit <= 0:
-        return None
-    return limit / value if value > limit / 100 else 100.0
 
 
 def findings_facts(run: Run) -> list[dict[str, Any]]:

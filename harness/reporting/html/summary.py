@@ -10,7 +10,8 @@ from html import escape
 
 from harness.recording.run import Measure, StepRecord, Verdict
 from harness.recording.store import StoredRun
-from harness.reporting.html.story import allowance_used, depth_of, environment, ordered_steps
+from harness.reporting.html.story import depth_of, environment, ordered_steps
+from harness.reporting.margins import allowance_used
 from harness.reporting.terminal import verdict_line
 
 STATUS = {

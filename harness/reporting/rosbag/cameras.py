@@ -10,6 +10,7 @@ import cv2
 import numpy as np
 
 from harness.core.camera import Camera
+from harness.recording.film import decoded_film
 from harness.recording.run import CaptureRecord, Run, VideoRecord
 from harness.reporting.rosbag.frames import optical_frames
 from harness.reporting.rosbag.messages import (
@@ -44,25 +45,34 @@ def captures(run: Run) -> Iterator[Message]:
 
 
 def video_frames(run: Run, video: VideoRecord, *, is_raw: bool = False) -> Iterator[Message]:
-    """Every kept frame of a camera that was recorded all along.
+    """Every frame of the video of a camera that was recorded all along, as its JPEG pictures.
 
     Args:
         run: What happened.
         video: Of one camera.
         is_raw: Publish the frames uncompressed too.
     """
-    if not video.frames:
-        return
     camera = next(camera for camera in run.cameras if camera.name == video.camera)
     topics, frame = camera_topics(camera.name), optical_frames(run)[camera.name]
-    stream = run.files[video.frames]
-    offsets = video.frame_offsets
-    for time, begin, end in zip(video.times, offsets[:-1], offsets[1:], strict=True):
-        content = stream[begin:end]
+    pictures = decoded_film(run.files[video.file])
+    for time, picture in zip(video.times, pictures, strict=False):  # one that is cut off has less
+        content = _jpeg(picture, camera)
         yield Message(time, topics.info, _info(camera, time, frame))
         yield Message(time, topics.compressed, _compressed(content, camera, time, frame))
         if is_raw:
             yield Message(time, topics.image, _raw(content, camera, time, frame))
+
+
+def _jpeg(picture: np.ndarray[Any, Any], camera: Camera) -> bytes:
+    """A picture of a video as the camera delivers it compressed."""
+    if picture.shape[:2] != (camera.height, camera.width):  # odd sizes are even in a video
+        picture = cv2.resize(picture, (camera.width, camera.height))
+    code = cv2.COLOR_RGB2GRAY if camera.is_grey else cv2.COLOR_RGB2BGR
+    options = [cv2.IMWRITE_JPEG_QUALITY, camera.jpeg_quality]
+    is_coded, content = cv2.imencode(".jpg", cv2.cvtColor(picture, code), options)
+    if not is_coded:
+        raise RuntimeError("OpenCV cannot write .jpg files here")
+    return content.tobytes()
 
 
 def _compressed(content: bytes, camera: Camera, time: float, frame: str) -> Any:

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 from harness.core.errors import Problem
 from harness.reporting.result import CaseResult
+from harness.reporting.terminal import root_failures
 
 
 @dataclass(frozen=True)
 class Cause:
-    """The first thing that went wrong.
+    """The first thing that went wrong, at its root.
 
     Attributes:
         group: The same for cases that failed alike: `NO_IK_SOLUTION in move_to`.
@@ -38,10 +39,9 @@ def cause_of(result: CaseResult) -> Cause | None:
             said = f"{problem.message}: {problem.hint}" if problem.hint else problem.message
             return Cause(f"invalid: {_short(problem.message)}", said, problem.line, problem.column)
         return Cause("invalid", result.message)
-    for step in result.steps:
-        if step.status == "failed":
-            code = step.error_code or "failed"
-            return Cause(f"{code} in {step.verb}", f"{step.summary}: {step.message}", step.line)
+    for step in root_failures(result.steps):
+        said = ": ".join(filter(None, (step.summary, step.error_code, step.message)))
+        return Cause(f"{step.error_code or 'failed'} in {step.verb}", said, step.line)
     for verdict in result.verdicts:
         if verdict.status != "passed":
             said = f"{verdict.expectation}: {verdict.status}"

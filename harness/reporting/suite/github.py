@@ -14,7 +14,7 @@ from pathlib import Path
 from harness.core.errors import HarnessError, Problem
 from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import CaseResult
-from harness.reporting.sampled import missed, rate_line
+from harness.reporting.sampled import missed, rate_text
 from harness.reporting.suite.cause import cause_of
 from harness.reporting.suite.record import SuiteRecord
 
@@ -81,7 +81,7 @@ def job_summary(record: SuiteRecord) -> str:
     passed = sum(result.outcome == "passed" for result in results)
     told = "; ".join(filter(None, (f"{passed} of {len(results)} passed", missed(record.rates))))
     lines = [f"## {SIGNS[record.outcome]} armharness: {told}", ""]
-    lines += [f"- {rate_line(_cell(f'{r.file} {r.group}'.strip()), r.rate)}" for r in record.rates]
+    lines += [f"- {rate_text(_cell(f'{r.file} {r.group}'.strip()), r.rate)}" for r in record.rates]
     lines += ["", "| | case | nearest to failing | why |", "|---|---|---|---|"]
     order = sorted(results, key=_urgency)
     lines += [_row(result) for result in order[:MOST_ROWS]]

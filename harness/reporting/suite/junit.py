@@ -15,7 +15,7 @@ from xml.etree import ElementTree as ET
 from harness.recording.run import Verdict
 from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import CaseResult
-from harness.reporting.sampled import SampledRate, rate_line
+from harness.reporting.sampled import SampledRate, rate_text
 from harness.reporting.suite.cause import cause_of
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.reporting.terminal import causes, report_link
@@ -32,7 +32,7 @@ def junit_xml(record: SuiteRecord) -> str:
     """A document with one `testsuite` a scenario file; times are of the wall clock.
 
     Samples may fail where a success rate is asked for: the rate is a `testcase` of its own, with
-    the `failure` when it is not shown.
+    the `failure` when it is not confirmed.
     """
     suites = ET.Element("testsuites", name=NAME)
     files: dict[str, list[SuiteCase]] = {}
@@ -88,7 +88,7 @@ def _add_rate(suite: ET.Element, sampled: SampledRate) -> None:
     for key, value in (("passed", rate.passed), ("samples", rate.total)):
         ET.SubElement(properties, "property", name=key, value=str(value))
     if sampled.outcome != "passed":
-        said = _legal(rate_line(f"{sampled.file} {sampled.group}".strip(), rate))
+        said = _legal(rate_text(f"{sampled.file} {sampled.group}".strip(), rate))
         ET.SubElement(element, "failure", message=said, type="success rate").text = said
 
 

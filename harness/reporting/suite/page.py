@@ -12,9 +12,9 @@ from string import Template
 from urllib.parse import quote
 
 from harness.reporting.html import bundle
-from harness.reporting.margins import margin_share, worst
+from harness.reporting.margins import allowance_used, margin_share, worst
 from harness.reporting.result import CaseResult
-from harness.reporting.sampled import SampledRate, missed, rate_line, table_lines
+from harness.reporting.sampled import SampledRate, missed, rate_text, table_lines
 from harness.reporting.suite.cause import cause_of
 from harness.reporting.suite.history import Key
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
@@ -22,6 +22,7 @@ from harness.reporting.terminal import OUTCOMES, Style, failure_place
 
 FOLDER = Path(__file__).with_name("page")
 SIGNS = Style(has_signs=True)
+HISTORY_HEAD = '<th scope="col" class="history">Worst margin over runs</th>'
 SPARK_WIDTH, SPARK_HEIGHT = 90, 20  # [pixels]
 
 
@@ -39,7 +40,7 @@ def suite_html(
     """
     results = [case.result for case in record.cases]
     passed = sum(result.outcome == "passed" for result in results)
-    rows = [_row(i, case, folder, history or {}) for i, case in enumerate(record.cases)]
+    rows = [_row(i, case, folder, history) for i, case in enumerate(record.cases)]
     return Template(_read("suite.html")).substitute(
         title="; ".join(filter(None, (f"{passed} of {len(results)} passed", missed(record.rates)))),
         style=bundle.theme() + _read("suite.css"),
@@ -52,7 +53,7 @@ def suite_html(
         rates=_rates(record.rates),
         table=_varied(record.cases),
         rows="\n".join(rows),
-        history="" if history else " hidden",
+        history=HISTORY_HEAD if history else "",
     )
 
 
@@ -79,13 +80,13 @@ def _causes(results: Sequence[CaseResult]) -> str:
 
 
 def _rates(rates: Sequence[SampledRate]) -> str:
-    """A row each, those that are not shown first."""
+    """A row each, those that are not confirmed first."""
     if not rates:
         return ""
     rows = "".join(_rate(each) for each in sorted(rates, key=lambda each: each.outcome == "passed"))
     return (
         '<section class="panel"><h2>Success rates of samples <span class="key">bar: interval'
-        " · stroke: measured · blue: asked</span></h2>"
+        " · stroke: measured · blue: required</span></h2>"
         f'<div class="rates">{rows}</div></section>'
     )
 
@@ -96,7 +97,7 @@ def _rate(sampled: SampledRate) -> str:
     asked = "" if rate.at_least is None else (
         f'<i class="asked" style="left:{100 * rate.at_least:.2f}%"></i>'
     )  # fmt: skip
-    said = rate_line("", rate).partition(": ")[2]
+    said = rate_text("", rate).partition(": ")[2]
     group = f' <span class="tag">{escape(sampled.group)}</span>' if sampled.group else ""
     return (
         f'<button type="button" class="rate {sampled.outcome}" data-rate="{escape(name.lower())}"'
@@ -127,7 +128,7 @@ def _varied(cases: Sequence[SuiteCase]) -> str:
 
 
 def _row(
-    index: int, case: SuiteCase, folder: Path, history: Mapping[Key, Sequence[float | None]]
+    index: int, case: SuiteCase, folder: Path, history: Mapping[Key, Sequence[float | None]] | None
 ) -> str:
     result = case.result
     nearest, cause = worst(result.verdicts), cause_of(result)
@@ -138,7 +139,11 @@ def _row(
     words = " ".join((result.title, result.case, result.file, *case.tags, *case.verifies))
     tags = "".join(f'<span class="tag">{escape(each)}</span>' for each in case.tags)
     said = cause.said if cause else ""
-    earlier = [*history.get((result.file, result.case), ()), None if nearest is None else share]
+    line = ""
+    if history:
+        earlier = history.get((result.file, result.case), ())
+        line = _sparkline([*earlier, None if nearest is None else share])
+        line = f'<td class="history">{line}</td>'
     return (
         f'<tr data-index="{index}" data-outcome="{result.outcome}"'
         f' data-cause="{escape(cause.group) if cause else ""}"'
@@ -149,24 +154,27 @@ def _row(
         f'<td>{title}{tags}<div class="quiet">{escape(result.file)}</div>'
         f'<div class="why">{escape(said)}</div></td>'
         f"<td>{_margin(result)}</td>"
-        f'<td class="history">{_sparkline(earlier)}</td>'
-        f'<td class="number">{result.sim_time:.1f} s</td>'
+        f'{line}<td class="number">{result.sim_time:.1f} s</td>'
         f'<td class="number">{result.seed}</td>'
-        f"<td><code>{escape(result.digest[:12])}</code></td></tr>"
+        f'<td class="number">{escape(result.digest[:12])}</td></tr>'
     )
 
 
 def _margin(result: CaseResult) -> str:
+    """The worst margin, and as on the page of a run how much of the allowance was used."""
     nearest = worst(result.verdicts)
     if nearest is None:
         return ""
-    share = margin_share(nearest)
     kind = "good" if nearest.status == "passed" else "bad"
     unit = "" if nearest.unit == "1" else f" {nearest.unit}"
+    used = allowance_used(nearest.measures[0]) if nearest.measures else None
+    bar = "" if used is None else (
+        f'<span class="bar" role="img" aria-label="{100 * used:.0f} % of the allowance used"'
+        f' title="{100 * used:.0f} % of the allowance used"><i class="{kind}" style="width:'
+        f'{min(100.0, max(2.0, 100 * used)):.1f}%"></i></span>'
+    )  # fmt: skip
     return (
-        f'<span class="bar" aria-hidden="true"><i class="{kind}" style="width:'
-        f'{max(2.0, 100 * abs(share)):.1f}%"></i></span>'
-        f'<span class="number">{nearest.margin:.4g}{escape(unit)}</span>'
+        f'{bar}<span class="number">{nearest.margin:.4g}{escape(unit)}</span>'
         f'<div class="quiet">{escape(nearest.expectation)}</div>'
     )
 

@@ -35,6 +35,11 @@ export function scrollInto(list, item) {
   else if (bottom > list.scrollTop + list.clientHeight) list.scrollTop = bottom - list.clientHeight;
 }
 
+/** Scroll a list, and only the list, so far that an item begins at its top. */
+export function scrollToTop(list, item) {
+  if (item) list.scrollTop = item.offsetTop - list.offsetTop;
+}
+
 /** The value of a colour of the style sheet, as it is in the present theme. @param {string} name `--accent` */
 export function themeColor(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();

@@ -3,7 +3,7 @@
 import { readAddress, writeAddress } from "./address.js";
 import { Clock } from "./clock.js";
 import { makeControls } from "./controls.js";
-import { byId, scrollInto } from "./dom.js";
+import { byId, scrollToTop } from "./dom.js";
 import { makeFilm } from "./film.js";
 import { listenToKeys } from "./keys.js";
 import { unpack, valueAt } from "./payload.js";
@@ -89,7 +89,7 @@ async function start() {
     const isFailure = step.status === "failed";
     chosen = { step: index, time: isFailure ? step.end : Math.min(step.start + 1e-3, step.end) };
     clock.seek(chosen.time);
-    scrollInto(byId("panels"), document.querySelector(`#panel-planner:not([hidden]) [data-step="${index}"]`));
+    scrollToTop(byId("panels"), document.querySelector(`#panel-planner:not([hidden]) [data-step="${index}"]`));
     writeAddress({ t: clock.time.toFixed(2), step: index + 1 });
   }
 

@@ -60,7 +60,7 @@ export class Replay {
     return pose;
   }
 
-  /** Let bodies glow by how hard they are pressed. @param {Map<string, number>} glows 0 to 1 by name */
+  /** Let bodies that collide glow by how hard they do; all others keep their colour. @param {Map<string, number>} glows 0 to 1 by name */
   glow(glows) {
     for (const body of this.bodies) {
       for (const piece of body.pieces) piece.surface.glow = piece.surface.grid ? 0 : glows.get(body.name) ?? 0;

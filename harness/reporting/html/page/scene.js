@@ -8,7 +8,7 @@ import { indexAt, valueAt } from "./payload.js";
 import { Replay } from "./replay.js";
 import { Viewer } from "./viewer.js";
 
-const GRIP = 20; // a force [N] at which a body in contact glows fully
+const HARD = 20; // a force [N] at which a body in collision glows fully
 
 /** Null where the browser has no WebGL2. @param {import("./payload.js").Payload} payload */
 export function makeScene(payload) {
@@ -29,6 +29,9 @@ export function makeScene(payload) {
   const replay = new Replay(payload, viewer);
   const marks = new Marks(payload, viewer);
   const arrows = new Contacts(payload, viewer);
+  const collisions = new Map(
+    run.contacts.filter(({ isCollision }) => isCollision).map(({ first, second }) => [`${first} and ${second}`, [first, second]]),
+  );
   return {
     viewer, orbit, film, replay, marks, arrows,
     toolPosition(time) {
@@ -38,15 +41,15 @@ export function makeScene(payload) {
     },
     pose(time, step, contacts) {
       replay.pose(time);
-      const pressed = new Map();
+      const colliding = new Map();
       for (const series of contacts?.series ?? []) {
         const force = valueAt(series, time);
         if (!(force > 0.01)) continue;
-        for (const name of series.name.split(" and ")) {
-          pressed.set(name, Math.max(pressed.get(name) ?? 0, Math.min(1, 0.25 + force / GRIP)));
+        for (const name of collisions.get(series.name) ?? []) {
+          colliding.set(name, Math.max(colliding.get(name) ?? 0, Math.min(1, 0.25 + force / HARD)));
         }
       }
-      replay.glow(this.showsContacts ? pressed : new Map());
+      replay.glow(this.showsContacts ? colliding : new Map());
       arrows.show(time, this.showsContacts);
       const tool = replay.byName.get(run.toolBody);
       replay.showState(marks.wanted.goal ? run.steps[step]?.nearest?.bodies : null);

@@ -32,7 +32,7 @@
     const row = document.createElement("tr");
     row.className = "group";
     const cell = row.insertCell();
-    cell.colSpan = 7;
+    cell.colSpan = document.querySelectorAll("thead th").length;
     cell.textContent = `${cause || "passed"} (${number})`;
     return row;
   }

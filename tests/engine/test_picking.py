@@ -1,0 +1,256 @@
+"""pick and place choose what the file leaves open, and say what to do in keys that they have."""
+
+import re
+
+import pytest
+
+from tests.engine.front_door import UR, check, failures, problems, run
+
+OM = "open_manipulator_x"
+UR5E = "{model: ur5e, gripper: rh_p12_rn_a}"
+
+
+def cube(name, size, x, y, more=""):
+    """A cube of a size [cm] on the floor."""
+    return (
+        f"- {{name: {name}, box: {{size: [{size} cm, {size} cm, {size} cm]}},"
+        f" pose: {{xyz: [{x}, {y}, {size / 200}]{more}}}, mass: 0.05}}"
+    )
+
+
+def objects(*lines):
+    return "objects:\n" + "\n".join(f"  {line}" for line in lines)
+
+
+def advice(record, path="steps[0]"):
+    return next(step for step in record.steps if step.path == path).explanation.get("advice", "")
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper"),
+    [
+        (cube("lower", 4, 0.25, 0.0), cube("upper", 4, 0.2, -0.1, ", rpy: [0, 0, 20 deg]")),
+        (cube("lower", 5, 0.28, 0.05), cube("upper", 4, 0.25, -0.1)),
+        (cube("lower", 6, 0.15, 0.15), cube("upper", 5, 0.2, 0.0)),
+    ],
+)
+def test_an_arm_of_four_joints_stacks_boxes_without_a_pose_of_its_gripper(tmp_path, lower, upper):
+    height = (float(lower.split("[")[1].split()[0]) + float(upper.split("[")[1].split()[0])) / 200
+    result, _ = run(
+        tmp_path,
+        f"""
+        - pick: upper
+          expect: [{{lifted: {{object: upper, above: 5 cm}}}}]
+        - place: {{object: upper, pose: {{frame: lower, xyz: [0, 0, {height}]}}}}
+        - settle: {{}}
+          expect: [{{on: {{object: upper, support: lower}}}}, {{released: upper}}]
+        """,
+        robot=OM,
+        rest=objects(lower, upper),
+    )
+    assert result.outcome == "passed", (failures(result), [s.message for s in result.steps])
+
+
+@pytest.mark.parametrize(
+    ("robot", "where", "pitch"),
+    [
+        (OM, "0.2, 0.07, 0.03", ""),
+        (OM, "0.2, 0.07, 0.03", ", pitch: 60 deg"),
+        (UR5E, "0.5, 0.1, 0.03", ""),
+    ],
+)
+def test_a_grasp_pose_without_rotation_leaves_the_rotation_to_the_arm(
+    tmp_path, robot, where, pitch
+):
+    x, y, _ = where.split(", ")
+    result, record = run(
+        tmp_path,
+        f"""
+        - pick: {{object: cube, grasp_pose: {{xyz: [{where}]}}{pitch}, lift: {{distance: 5 cm}}}}
+          expect: [{{lifted: {{object: cube, above: 4 cm}}}}]
+        """,
+        robot=robot,
+        rest=objects(cube("cube", 4, x, y)),
+    )
+    assert result.outcome == "passed", (failures(result), [s.message for s in result.steps])
+    assert record.steps[0].result["grasps"] == (1 if pitch else 7 if robot == OM else 4)
+
+
+@pytest.mark.parametrize("rotation", ["rpy: [0, 0, 0]", "quat_xyzw: [0, 0, 0, 1]"])
+def test_a_pitch_next_to_a_rotation_is_refused(tmp_path, rotation):
+    found = problems(
+        tmp_path,
+        f"- pick: {{object: cube, grasp_pose: {{xyz: [0.2, 0, 0], {rotation}}}, pitch: 0}}",
+        robot=OM,
+        rest=objects(cube("cube", 4, 0.2, 0.0)),
+    )
+    assert [line for line, _ in found] == [5]
+    assert "`pitch` goes with a `grasp_pose` without rotation" in found[0][1]
+
+
+def test_a_pitch_for_an_arm_of_six_joints_is_refused(tmp_path):
+    found = check(
+        tmp_path,
+        "- pick: {object: cube, pitch: 0}",
+        robot=UR5E,
+        rest=objects(cube("cube", 4, 0.5, 0.0)),
+    ).problems
+    assert [(problem.line, "fewer than six joints" in problem.message) for problem in found] == [
+        (5, True)
+    ]
+    assert "`grasp_pose` with a rotation" in found[0].hint
+
+
+@pytest.mark.parametrize(
+    ("step", "words"),
+    [
+        (
+            "{object: cube, grasp_pose: {xyz: [0.2, 0.05, 0.03], rpy: [0, 0, 0]}}",
+            "leave the rotation out of `grasp_pose`",
+        ),
+        ("{object: cube, pitch: 0}", "give `approach` a shorter `distance`"),
+        ("{object: far}", "bring 'far' or the robot's `base` nearer"),
+        ("{object: far, pitch: 10 deg}", "leave out `pitch`"),
+    ],
+)
+def test_advice_for_a_pick_names_keys_that_it_has(tmp_path, step, words):
+    result, record = run(
+        tmp_path,
+        f"- pick: {step}",
+        robot=OM,
+        rest=objects(cube("cube", 4, 0.2, 0.05), cube("far", 4, 0.6, 0.2)),
+    )
+    assert result.outcome == "failed"
+    assert words in advice(record)
+    keys = re.findall(r"`(\w+)", advice(record))
+    assert set(keys) <= {"grasp_pose", "pitch", "approach", "distance", "direction", "base"}
+
+
+@pytest.mark.parametrize("robot", [OM, UR5E])
+def test_a_place_out_of_reach_gives_the_nearest_pose_and_that_one_is_reached(tmp_path, robot):
+    (x, y), far = ((0.2, -0.05), "[0.3, 0.3, 0.04]") if robot == OM else ((0.5, -0.2), "[1, 1, 1]")
+    words = {"robot": robot, "rest": objects(cube("cube", 4, x, y))}
+    steps = "- pick: cube\n- place: {object: cube, pose: {xyz: WHERE}}"
+    result, record = run(tmp_path, steps.replace("WHERE", far), **words)
+    assert result.outcome == "failed"
+    said = advice(record, "steps[1]")
+    nearest = re.search(r"`pose: \{xyz: (\[[^]]*\])\}`, [0-9.]+ mm away", said)
+    assert nearest, said
+    assert not [step for step in record.steps if step.path.startswith("steps[1].")]
+
+
+@pytest.mark.parametrize("padding", ["25 mm", "30 mm"])
+def test_padding_does_not_apply_to_what_is_about_to_be_grasped(tmp_path, padding):
+    result, _ = run(
+        tmp_path,
+        "- pick: {object: cube, lift: {distance: 5 cm}}\n"
+        "  expect: [{lifted: {object: cube, above: 4 cm}}]",
+        robot=UR5E,
+        rest=f"planning: {{padding: {padding}}}\n" + objects(cube("cube", 8, 0.5, 0.1)),
+    )
+    assert result.outcome == "passed", [step.message for step in result.steps]
+
+
+def test_padding_that_is_in_the_way_is_named_with_both_distances(tmp_path):
+    """The floor keeps its padding; the cube to grasp does not."""
+    result, record = run(
+        tmp_path,
+        "- pick: cube",
+        robot=UR5E,
+        rest="planning: {padding: 60 mm}\n" + objects(cube("cube", 4, 0.5, 0.1)),
+    )
+    assert result.outcome == "failed"
+    assert "mm apart, 60.0 mm required)" in record.steps[0].message
+    assert "only the `padding` of 60.0 mm is not kept" in advice(record)
+
+
+@pytest.mark.parametrize(
+    ("robot", "size", "opening", "words"),
+    [
+        (UR5E, "20 cm, 20 cm, 20 cm", "106.9 mm", "no side of it fits"),
+        (UR5E, "20 cm, 15 cm, 5 cm", "106.9 mm", "its height of 50.0 mm fits"),
+        (OM, "9 cm, 8.5 cm, 9 cm", "80.0 mm", "no side of it fits"),
+    ],
+)
+def test_an_object_that_is_too_wide_is_compared_with_the_gripper(
+    tmp_path, robot, size, opening, words
+):
+    result, record = run(
+        tmp_path,
+        "- pick: wide\n  expect_error: GOAL_STATE_INVALID",
+        robot=robot,
+        rest=objects(f"- {{name: wide, box: {{size: [{size}]}}, pose: {{xyz: [0.3, 0, 0.1]}}}}"),
+    )
+    assert result.outcome == "passed"
+    assert "is too wide for the gripper: " in record.steps[0].message
+    assert record.steps[0].message.endswith(f"the gripper opens to {opening}")
+    assert words in advice(record)
+
+
+def test_a_load_too_heavy_to_hold_still_is_reported_with_torques(tmp_path):
+    result, record = run(
+        tmp_path,
+        "- pick: heavy",
+        robot=UR5E,
+        rest="""
+        objects:
+          - name: heavy
+            box: {size: [8 cm, 8 cm, 8 cm]}
+            pose: {xyz: [0.5, 0.1, 0.04]}
+            mass: 30
+        """,
+    )
+    assert result.outcome == "failed"
+    lift = next(step for step in record.steps if step.path == "steps[0].lift")
+    assert re.search(
+        r"cannot hold heavy \(30 kg\) still .* needs [0-9.]+ N m and has at most 150.0 N m",
+        lift.message,
+    )
+    assert "no slower motion helps" in lift.explanation["advice"]
+
+
+def test_nothing_is_put_down_where_the_gripper_cannot_open(tmp_path):
+    """The open fingers are 117 mm wide."""
+    length, half = 0.12, 0.06
+    wall = (
+        "- {name: wall, static: true, box: {size: [20 cm, 1 cm, 8 cm]},"
+        " pose: {xyz: [0.22, 0, 0.04]}}"
+    )
+    sides = [
+        f"{{box: {{size: [{length}, 5 mm, 4 cm]}}, pose: {{xyz: [0, {half}, 2 cm]}}}}",
+        f"{{box: {{size: [{length}, 5 mm, 4 cm]}}, pose: {{xyz: [0, {-half}, 2 cm]}}}}",
+        f"{{box: {{size: [5 mm, {length}, 4 cm]}}, pose: {{xyz: [{half}, 0, 2 cm]}}}}",
+        f"{{box: {{size: [5 mm, {length}, 4 cm]}}, pose: {{xyz: [{-half}, 0, 2 cm]}}}}",
+    ]
+    bottom = f"{{box: {{size: [{length}, {length}, 5 mm]}}, pose: {{xyz: [0, 0, 2.5 mm]}}}}"
+    shapes = ", ".join([bottom, *sides])
+    bin_line = f"- {{name: bin, static: true, pose: {{xyz: [0.18, 0.12, 0]}}, shapes: [{shapes}]}}"
+    result, record = run(
+        tmp_path,
+        "- pick: cube\n- place: {object: cube, pose: {frame: bin, xyz: [0, 0, 0.02]}}",
+        robot=OM,
+        rest=objects(cube("cube", 3, 0.2, -0.1), wall, bin_line),
+    )
+    assert result.outcome == "failed"
+    step = next(step for step in record.steps if step.path == "steps[1]")
+    assert step.error_code == "GOAL_IN_COLLISION"
+    assert "the gripper has no room to open where 'cube' is put down" in step.message
+    assert "farther from 'bin'" in advice(record, "steps[1]")
+
+
+def test_the_first_length_of_an_approach_that_the_arm_can_follow_is_taken(tmp_path):
+    """A shelf above leaves 6 cm."""
+    result, _ = run(
+        tmp_path,
+        "- pick: {object: cube, lift: {distance: 3 cm}}\n"
+        "  expect: [{lifted: {object: cube, above: 2 cm}}]",
+        robot=UR,
+        world="empty",
+        rest=objects(
+            "- {name: stand, static: true, box: {size: [0.3, 0.3, 1.02]},"
+            " pose: {xyz: [0.3, 0.2, 0.51]}}",
+            "- {name: cube, box: {size: [4 cm, 4 cm, 4 cm]}, pose: {xyz: [0.3, 0.2, 1.041]},"
+            " mass: 0.05}",
+        ),
+    )
+    assert result.outcome == "passed", [step.message for step in result.steps]
