@@ -207,7 +207,8 @@ def _bounded_quantity(cls: type[Predicate]) -> tuple[Quantity, ...]:
     Raises:
         TypeError: What it measures cannot be known from its fields.
     """
-    units = {units_of(cls.model_fields[key]) or ("1",) for key in BOUNDS if key in cls.model_fields}
+    fields = [cls.model_fields[key] for key in BOUNDS if key in cls.model_fields]
+    units = {units_of(field.annotation, field.metadata) or ("1",) for field in fields}
     if len(units) != 1 or len(next(iter(units))) != 1:
         raise TypeError(
             f"the predicate {cls.__name__} does not say what it measures: give it `quantities`,"

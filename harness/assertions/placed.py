@@ -48,7 +48,9 @@ def as_expectation(spec: ExpectationFields) -> Expectation:
 def check_expectation(spec: Expectation, loc: Loc, scope: Scope) -> None:
     """Report what is wrong with an expectation; names may be of steps and objects further down."""
     if spec.during is not None and spec.during not in scope.step_ids:
-        scope.problems.unknown((*loc, "during"), "step with the id", spec.during, scope.step_ids)
+        scope.problems.unknown(
+            (*loc, "during"), "step with the id", spec.during, scope.step_ids, needs=()
+        )
     if loc[0] == "expect" and len(loc) == 2:
         _check_step_is_named(spec, loc, scope)
     for key, inner in spec.predicates().items():

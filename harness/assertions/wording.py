@@ -63,8 +63,10 @@ def _value(spec: ExpectationFields, key: str) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
-        units = units_of(type(spec).model_fields[key])
-        return amount(value, units[0]) if len(units) == 1 else f"{value:.6g}"
+        field = type(spec).model_fields[key]
+        units = units_of(field.annotation, field.metadata)
+        has_unit = len(units) == 1 and units != ("1",)
+        return amount(value, units[0]) if has_unit else f"{value:.6g}"
     return str(value)
 
 

@@ -18,6 +18,7 @@ from harness.cameras.outlines import outline_pixels
 from harness.cameras.ray_renderer import RayRenderer
 from harness.cameras.sensor import as_delivered
 from harness.cameras.viewpoint import FLIP, View
+from harness.core.activity import Activity, unobserved
 from harness.core.camera import Camera
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
@@ -40,6 +41,7 @@ def take_pictures(
     objects: Sequence[WorldObject],
     run: Run,
     looks: Sequence[Look],
+    activity: Activity = unobserved,
 ) -> tuple[tuple[CaptureRecord, ...], dict[str, bytes]]:
     """The wanted pictures, and their files by path in the run's folder.
 
@@ -52,6 +54,7 @@ def take_pictures(
         objects: Everything that takes part.
         run: What happened, its cameras included.
         looks: What is wanted, in order of time.
+        activity: Called for each picture.
     """
     if not looks:
         return (), {}
@@ -61,7 +64,8 @@ def take_pictures(
     renderers: dict[str, RayRenderer] = {}
     captures: list[CaptureRecord] = []
     files: dict[str, bytes] = {}
-    for look in looks:
+    for number, look in enumerate(looks):
+        activity("taking camera pictures", number, len(looks))
         camera = cameras[look.camera]
         poses = scene.pose(look.sample)
         view = scene.view(camera, poses)

@@ -15,7 +15,9 @@ from harness.cameras.recorded_scene import floor_height, poses_at
 from harness.cameras.renderer import Renderer, make_renderer
 from harness.cameras.robot_poses import link_poses
 from harness.cameras.viewpoint import View, Viewpoint, fit_viewpoint
+from harness.core.activity import Activity, unobserved
 from harness.core.geometry import bounding_radius
+from harness.core.printable import printable
 from harness.core.world import WorldObject
 from harness.recording.run import Run, StepRecord
 from harness.robot.description import RobotDescription
@@ -53,6 +55,7 @@ def save_stills(
     folder: Path,
     *,
     backend: str = "auto",
+    activity: Activity = unobserved,
 ) -> StillsReport:
     """Write a JPEG of every executed step, 640 x 480, as things stood at its end.
 
@@ -65,6 +68,7 @@ def save_stills(
         run: What happened.
         folder: Made if needed; files are numbered in order of the steps.
         backend: `auto`, `egl`, `osmesa` or `rays`.
+        activity: Called for each picture.
     """
     steps = [step for step in run.steps if step.status != "not_reached"]
     if not steps or not len(run.signals.times):
@@ -82,6 +86,7 @@ def save_stills(
     files: list[Path] = []
     try:
         for number, step in enumerate(steps, start=1):
+            activity("drawing a picture of each step", number - 1, len(steps))
             sample = min(max(step.end_index - 1, 0), len(run.signals.times) - 1)
             picture.pose(poses_at(description, world_objects, run, sample, step))
             files.append(folder / f"{number:02d}-{slug(step.id)}.jpg")
@@ -138,10 +143,11 @@ def _write(file: Path, renderer: Renderer, view: View, step: StepRecord, number:
     picture = np.ascontiguousarray(renderer.render(view)[:, :, ::-1])
     font, line = cv2.FONT_HERSHEY_SIMPLEX, cv2.LINE_AA
     picture[-26:] = (0.25 * picture[-26:] + 0.75 * 255).astype(np.uint8)
-    text = f"{number}  {step.summary or step.verb}"[:62]
+    text = printable(f"{number}  {step.summary or step.verb}")[:62]
     ink = INK.get(step.status, (60, 60, 60))
     cv2.putText(picture, text, (10, HEIGHT - 9), font, 0.45, (50, 45, 40), 1, line)
     right = f"{step.end_time:.2f} s  {step.status.replace('_', ' ')}"
     (wide, _), _ = cv2.getTextSize(right, font, 0.45, 1)
     cv2.putText(picture, right, (WIDTH - 10 - wide, HEIGHT - 9), font, 0.45, ink, 1, line)
-    cv2.imwrite(str(file), picture, [cv2.IMWRITE_JPEG_QUALITY, 92])
+    _, content = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, 92])
+    file.write_bytes(content.tobytes())  # OpenCV crashes on names of files that are no UTF-8

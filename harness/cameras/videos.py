@@ -10,6 +10,7 @@ from harness.cameras.camera_scene import CameraScene
 from harness.cameras.captures import camera_folders
 from harness.cameras.renderer import Renderer, make_renderer
 from harness.cameras.sensor import as_delivered
+from harness.core.activity import Activity, unobserved
 from harness.core.camera import Camera
 from harness.core.world import WorldObject
 from harness.recording.film import encoded_film, film_size
@@ -27,6 +28,7 @@ def record_videos(
     rates: Mapping[str, float],
     *,
     backend: str = "auto",
+    activity: Activity = unobserved,
 ) -> tuple[tuple[VideoRecord, ...], dict[str, bytes], tuple[Finding, ...]]:
     """A video of each camera, its files by path, and what a person should know of them.
 
@@ -36,6 +38,7 @@ def record_videos(
         run: What happened, its cameras included.
         rates: Frames a second of simulated time by camera.
         backend: `auto`, `egl`, `osmesa` or `rays`.
+        activity: Called for each frame.
     """
     if not rates:
         return (), {}, ()
@@ -56,7 +59,7 @@ def record_videos(
             notes.append(Finding("video_rate", message))
         renderer = make_renderer(scene.picture, camera.width, camera.height, backend)
         try:
-            video, content = _record(scene, camera, run, rate, renderer, folders[name])
+            video, content = _record(scene, camera, run, rate, renderer, folders[name], activity)
         finally:
             renderer.close()
         if video is not None:
@@ -72,11 +75,12 @@ def _record(
     rate: float,
     renderer: Renderer,
     folder: str,
+    activity: Activity,
 ) -> tuple[VideoRecord | None, dict[str, bytes]]:
     times: list[float] = []
 
     def pictures() -> Iterator[np.ndarray]:
-        for time, frame in _frames(scene, camera, run, rate, renderer):
+        for time, frame in _frames(scene, camera, run, rate, renderer, activity):
             times.append(time)
             yield frame
 
@@ -98,13 +102,19 @@ def _record(
 
 
 def _frames(
-    scene: CameraScene, camera: Camera, run: Run, rate: float, renderer: Renderer
+    scene: CameraScene,
+    camera: Camera,
+    run: Run,
+    rate: float,
+    renderer: Renderer,
+    activity: Activity,
 ) -> Iterator[tuple[float, np.ndarray]]:
     """Simulated time and picture of every frame; the last one stands while there is none."""
     times = run.signals.times
     previous: np.ndarray | None = None
     count = int(np.floor(float(times[-1]) * rate + 1e-6)) + 1
     for number in range(count):
+        activity(f"recording the video of camera {camera.name}", number, count)
         sample = min(int(np.searchsorted(times, number / rate - 1e-9)), len(times) - 1)
         view = scene.view(camera, scene.pose(sample))
         if view is not None:

@@ -72,6 +72,8 @@ class Program:
         expectations: Of steps and run, in file order.
         seed: Of the run.
         cameras: Of robot, world and scenario, by name.
+        step_locs: Where each step is written, by its path.
+        object_locs: Where each object is written, by name; the world's own are at `world`.
         videos: Cameras that are recorded all through the run, and their frames a second.
     """
 
@@ -83,6 +85,7 @@ class Program:
     expectations: tuple[ProgramExpectation, ...]
     seed: int
     step_locs: Mapping[str, Loc] = field(default_factory=dict[str, Loc])
+    object_locs: Mapping[str, Loc] = field(default_factory=dict[str, Loc])
     cameras: Mapping[str, Camera] = field(default_factory=dict[str, Camera])
     videos: Mapping[str, float] = field(default_factory=dict[str, float])
 

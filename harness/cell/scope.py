@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable, Iterable
+from typing import Literal
 
 from harness.core.camera import Camera
 from harness.core.errors import Problem, SpecError
@@ -17,17 +18,34 @@ from harness.spec.source import Loc, SourceMap
 
 LISTED = 12  # names in a hint
 
+Part = Literal["robot", "world"]
+EVERYTHING: tuple[Part, ...] = ("robot", "world")
+
 
 class Problems:
-    """Collects located problems, so that all of a file's are told at once."""
+    """Collects located problems, so that all of a file's are reported at once.
 
-    def __init__(self, lines: SourceMap) -> None:
+    Every problem says what it needs to be known: where the robot cannot be loaded, a joint's name
+    cannot be judged, but a planner's name can.
+    """
+
+    def __init__(self, lines: SourceMap, missing: frozenset[Part] = frozenset()) -> None:
+        """Collect nothing yet.
+
+        Args:
+            lines: Of the file.
+            missing: What could not be loaded; something stands in for it.
+        """
         self._lines = lines
+        self._missing = missing
         self._found: dict[Loc, Problem] = {}
 
-    def add(self, loc: Loc, message: str, hint: str = "") -> None:
+    def add(
+        self, loc: Loc, message: str, hint: str = "", *, needs: tuple[Part, ...] = EVERYTHING
+    ) -> None:
         """Note a problem at a place of the file; others at the same place follow from the first."""
-        self._found.setdefault(loc, self._lines.problem(loc, message, hint))
+        if not self._missing.intersection(needs):
+            self._found.setdefault(loc, self._lines.problem(loc, message, hint))
 
     def unknown(
         self,
@@ -38,6 +56,7 @@ class Problems:
         *,
         is_key: bool = False,
         start: int | None = None,
+        needs: tuple[Part, ...] = EVERYTHING,
     ) -> None:
         """Note a name that nothing has, with the nearest that something has, then the rest.
 
@@ -48,7 +67,10 @@ class Problems:
             known: Names that something has.
             is_key: The name is a key, not a value.
             start: The name is a part of the text there and begins at this character, from 0.
+            needs: What must be loaded to know the names.
         """
+        if self._missing.intersection(needs):
+            return
         names = list(dict.fromkeys(known))
         near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
         rest = ", ".join(names[:LISTED]) + (", ..." if len(names) > LISTED else "")
@@ -124,7 +146,7 @@ class Scope:
     def check_link(self, name: str | None, loc: Loc) -> None:
         """A robot link."""
         if name is not None and name not in self.description.link_names:
-            self.problems.unknown(loc, "link", name, self.description.link_names)
+            self.problems.unknown(loc, "link", name, self.description.link_names, needs=("robot",))
 
     def check_link_or_held(self, name: str | None, loc: Loc) -> None:
         """A robot link, or an object that is attached here (Task Constructor's ik_frame)."""
@@ -140,6 +162,7 @@ class Scope:
                 f"the steps up to here ask for {self.asked_time:g} s, and a run may take"
                 f" {LONGEST_RUN:g} s of simulated time",
                 "shorten it, or make it several scenarios",
+                needs=(),
             )
 
     def check_group(self, name: str | None, loc: Loc) -> str:
@@ -147,7 +170,9 @@ class Scope:
         if name is None:
             return self.description.default_group
         if name not in self.description.groups:
-            self.problems.unknown(loc, "planning group", name, self.description.groups)
+            self.problems.unknown(
+                loc, "planning group", name, self.description.groups, needs=("robot",)
+            )
         return name
 
     def check_object(
@@ -156,7 +181,9 @@ class Scope:
         """An object of the world or of an earlier step, and one that the physics knows."""
         obj = self.objects.get(name)
         if obj is None:
-            self.problems.unknown(loc, "object", name, self.objects, is_key=is_key)
+            self.problems.unknown(
+                loc, "object", name, self.objects, is_key=is_key, needs=("world",)
+            )
         elif simulated and not obj.in_simulation:
             self.problems.add(
                 loc,
@@ -169,7 +196,9 @@ class Scope:
         if name not in self.objects:
             self.check_object(name, loc)
         elif name not in self.present:
-            self.problems.add(loc, f"'{name}' is not in the scene at this step", "add it first")
+            self.problems.add(
+                loc, f"'{name}' is not in the scene at this step", "add it first", needs=("world",)
+            )
 
     def check_camera(self, name: str, loc: Loc) -> None:
         """A camera of the robot, the world or the scenario."""
@@ -186,7 +215,9 @@ class Scope:
         """A named state of a group."""
         states = self.description.states_of(group)
         if state not in states and group in self.description.groups:
-            self.problems.unknown(loc, f"named state of {group} called", state, states)
+            self.problems.unknown(
+                loc, f"named state of {group} called", state, states, needs=("robot",)
+            )
 
     def check_joint(
         self, name: str, loc: Loc, group: str | None = None, *, is_key: bool = True
@@ -198,7 +229,7 @@ class Scope:
             names = self.description.groups[group].joint_names
             where = f"joint of '{group}'"
         if name not in names:
-            self.problems.unknown(loc, where, name, names, is_key=is_key)
+            self.problems.unknown(loc, where, name, names, is_key=is_key, needs=("robot",))
 
     def check_gripper(self, loc: Loc, what: str) -> bool:
         """Whether the robot has a gripper, which `what` needs."""
@@ -207,6 +238,7 @@ class Scope:
                 loc,
                 f"{what} needs a gripper, and {self.description.name} has none",
                 "say `gripper: rh_p12_rn_a` under `robot`",
+                needs=("robot",),
             )
             return False
         return True

@@ -3,7 +3,25 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+from harness.core.printable import printable
+
+if TYPE_CHECKING:
+    from _typeshed import SupportsWrite
+
+
+class Parser(argparse.ArgumentParser):
+    """Reads arguments; what it says of wrong ones is printable."""
+
+    def error(self, message: str) -> NoReturn:
+        super().error(printable(message))
+
+    def print_help(self, file: SupportsWrite[str] | None = None) -> None:
+        """Print the help; argparse would hide that it cannot be written."""
+        (file or sys.stdout).write(self.format_help())
 
 
 def folder(text: str) -> Path:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from harness.cli.output import complain, guarded, only_json_on_stdout, say
+from harness.cli.output import complain, guarded, only_json_on_stdout, say, say_text
 from harness.core.errors import SpecError
 from harness.suite.discovery import UsageError, discover
 from harness.suite.outcome import EXIT_CODES
@@ -60,10 +60,10 @@ def _bench(
     if not searched:
         say(f"nothing to compare: {len(motions)} motions by `move_to`, none of them searched")
         return code, document(motions, planners, seeds)
-    say(f"\n{searched} of {len(motions)} motions are searched, {len(seeds)} seeds; medians:")
-    say(table(motions, planners))
+    say("", f"{searched} of {len(motions)} motions are searched, {len(seeds)} seeds; medians:")
+    say_text(table(motions, planners))
     if not arguments.no_report:
         folder = Path(arguments.report_dir) / "bench"
         write_results(folder, motions, planners, seeds)
-        say(f"picture: {folder / PICTURE}\nnumbers: {folder / 'results.json'}")
+        say(f"picture: {folder / PICTURE}", f"numbers: {folder / 'results.json'}")
     return code, document(motions, planners, seeds)

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 
-from harness.cli.output import guarded, only_json_on_stdout, say
+from harness.cli.output import guarded, only_json_on_stdout, output, say, say_text
 from harness.suite.discovery import discover
 from harness.suite.header import read_header
 from harness.suite.outcome import EXIT_CODES
@@ -49,9 +49,10 @@ def _run(arguments: argparse.Namespace) -> int:
         for note in found.notes:
             say(f"note: {note}")
         for problem in found.problems:
-            say(str(problem))
+            say_text(str(problem))
         for problem, explained in zip(found.predicted, found.explanations, strict=True):
-            say("\n".join([str(problem), *(f"    {line}" for line in explained)]))
+            say_text(str(problem))
+            say(*(f"    {line}" for line in explained))
         count = len(found.problems)
         told = {
             "invalid": f"{count} problem{'s' if count != 1 else ''}",
@@ -64,8 +65,9 @@ def _run(arguments: argparse.Namespace) -> int:
         with only_json_on_stdout() as write_json:
             write_json({"format": "armharness-check/1", "exit_code": code, "files": documents})
         return code
+    write = output().command if arguments.format == "github" else say
     for line in dict.fromkeys(lines):
-        say(line)
+        write(line)
     return code
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from harness.cli.output import guarded, say
+from harness.cli.output import guarded, say_text
 from harness.suite.discovery import discover
 
 
@@ -19,5 +19,5 @@ def _run(arguments: argparse.Namespace) -> int:
 
     for file in files:
         overrides = dict(arguments.overrides)
-        say(explain_file(file, overrides=overrides, seed=arguments.seed).rstrip())
+        say_text(explain_file(file, overrides=overrides, seed=arguments.seed).rstrip())
     return 0

@@ -62,7 +62,7 @@ def _run(arguments: argparse.Namespace) -> int:
         for line in contact_lines(contacts, style):
             say(line)
     held = sum(verdict.status == "passed" for verdict in verdicts)
-    say(f"{held} of {len(verdicts)} expectations hold")
+    say(f"{held} of {len(verdicts)} expectations hold" if verdicts else "nothing is expected")
     for change in changes:
         say(f"{style.bad('changed')}  {change}")
     if ended_early:

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-import argparse
-import gc
-import importlib
 import os
+import signal
 import sys
-from collections.abc import Sequence
-from contextlib import AbstractContextManager, nullcontext
-from pathlib import Path
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
-from harness import __version__
-from harness.cli import options
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Callable, Sequence
+    from contextlib import AbstractContextManager
+    from pathlib import Path
+    from types import FrameType
 
-EPILOG = """exit codes: 0 passed, 1 failed, 2 invalid file or wrong usage, 3 error, 130 Ctrl-C"""
+EPILOG = """exit codes: 0 passed, 1 failed, 2 invalid file or wrong usage, 3 error,
+130 interrupted (Ctrl-C, SIGTERM)"""
 USAGE_EXIT_CODE = 2
+ERROR_EXIT_CODE = 3
+INTERRUPTED_EXIT_CODE = 130
 BROKEN_PIPE_EXIT_CODE = 141  # as a shell shows SIGPIPE
+STREAMS = ("stdin", "stdout", "stderr")
 
 
 def entry() -> NoReturn:
@@ -26,13 +29,26 @@ def entry() -> NoReturn:
     A command makes hundreds of thousands of objects that live to its end, through which the
     collector would walk, and taking native libraries down takes 0.1 s and prints about leaks.
     """
+    # Until a command has begun there is nothing to put in order.
+    _handle(lambda _number, _frame: os._exit(INTERRUPTED_EXIT_CODE))
+    import gc
+
     gc.disable()
-    code = main()
+    _use_utf8()
+    _prepare_streams()
+    os.environ.pop("MUJOCO_GL", None)  # with a library that is missing, mujoco cannot be imported
+    from harness.cli.interruption import interrupt
+
     try:
-        sys.stdout.flush()
-        sys.stderr.flush()
-    finally:
-        os._exit(code)
+        _handle(interrupt)
+        code = main()
+    except KeyboardInterrupt:
+        code = INTERRUPTED_EXIT_CODE
+    except SystemExit as end:  # of argparse, which has written why
+        code = end.code if isinstance(end.code, int) else ERROR_EXIT_CODE
+    except OSError as error:
+        code = _unwritable(error)
+    os._exit(_flushed(code))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -41,7 +57,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         The exit code.
     """
+    import gc
+    import importlib
+
     parsed = _parser().parse_args(arguments)
+    from harness.cli.output import OutputError, complain
+
     if parsed.module == "run":
         gc.enable()
     try:
@@ -49,18 +70,80 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return USAGE_EXIT_CODE
         command = importlib.import_module(f"harness.cli.{parsed.module}")
         with _package_path(getattr(parsed, "package_folders", ())):
-            code = command.run(parsed)
+            code: int = command.run(parsed)
         sys.stdout.flush()
     except BrokenPipeError:
-        # The reader of a pipe has left; nothing is to be said to it at exit either.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _abandon_stdout()  # the reader of a pipe has left
         return BROKEN_PIPE_EXIT_CODE
     except KeyboardInterrupt:
-        return 130
+        return INTERRUPTED_EXIT_CODE
+    except OutputError as error:
+        _abandon_stdout()
+        complain(f"harness: {error}")
+        return ERROR_EXIT_CODE
     return code
 
 
+def _abandon_stdout() -> None:
+    """Lead standard output nowhere, so that what it still holds is no error at exit."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _handle(handler: Callable[[int, FrameType | None], object]) -> None:
+    """Let Ctrl-C, SIGTERM and SIGHUP do this, unless whoever started the process ignores them."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, handler)
+
+
+def _use_utf8() -> None:
+    """Start again in Python's UTF-8 mode where the locale has another encoding.
+
+    Names and contents of files are UTF-8 whatever the locale says; the terminal keeps its encoding.
+    """
+    if sys.flags.utf8_mode or sys.getfilesystemencoding() == "utf-8" or not sys.executable:
+        return
+    environment = {**os.environ, "PYTHONUTF8": "1"}
+    if sys.stdout is not None:  # pyright: ignore[reportUnnecessaryComparison] - it was closed
+        environment.setdefault("PYTHONIOENCODING", f"{sys.stdout.encoding}:backslashreplace")
+    os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], environment)
+
+
+def _prepare_streams() -> None:
+    """Lead standard streams that are closed nowhere, and let no character be refused."""
+    for number, name in enumerate(STREAMS):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)  # the lowest number: this one
+        if getattr(sys, name) is None:
+            stream = open(number, "w" if number else "r", encoding="utf-8")  # noqa: SIM115, PTH123
+            setattr(sys, name, stream)
+    for stream in (sys.stdout, sys.stderr):
+        stream.reconfigure(errors="backslashreplace")  # pyright: ignore[reportAttributeAccessIssue]
+
+
+def _flushed(code: int) -> int:
+    """The exit code, or that of an error where the last words cannot be written."""
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        return _unwritable(error)
+    return code
+
+
+def _unwritable(error: OSError) -> int:
+    from harness.cli.output import complain
+
+    if isinstance(error, BrokenPipeError):
+        return BROKEN_PIPE_EXIT_CODE
+    complain(f"harness: standard output cannot be written: {error.strerror}")
+    return ERROR_EXIT_CODE
+
+
 def _package_path(folders: Sequence[Path]) -> AbstractContextManager[None]:
+    from contextlib import nullcontext
+
     if not folders:
         return nullcontext()
     from harness.robot.packages import searched_too
@@ -72,19 +155,24 @@ def _load_plugins(modules: Sequence[str]) -> bool:
     """Load the modules of `--plugin`; what is wrong with one is printed."""
     if not modules:
         return True
+    from harness.cli.output import complain
     from harness.core.registry import PluginError, load_plugin
 
     try:
         for module in modules:
             load_plugin(module)
     except PluginError as error:
-        sys.stderr.write(f"harness: {error}\n")
+        complain(f"harness: {error}")
         return False
     return True
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    from harness import __version__
+    from harness.cli import options
+    from harness.cli.arguments import Parser
+
+    parser = Parser(
         prog="harness",
         description="Run scenarios of robot arms: planned, simulated, judged, reported.",
         epilog=EPILOG,

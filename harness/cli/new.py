@@ -6,7 +6,7 @@ import argparse
 import shlex
 from pathlib import Path
 
-from harness.cli.output import guarded, say
+from harness.cli.output import guarded, say, say_text
 from harness.cli.robot_options import source_of
 from harness.suite.discovery import SUFFIX, UsageError
 
@@ -39,8 +39,8 @@ def _run(arguments: argparse.Namespace, file: Path) -> int:
     name = shlex.quote(str(file))
     say(f"wrote {file}")
     if trouble:
-        say(f"no steps were found that pass; `harness check` says: {trouble}")
-    say(f"check it: harness check {name}\nrun it:   harness run {name}")
+        say_text(f"no steps were found that pass; `harness check` says: {trouble}")
+    say(f"check it: harness check {name}", f"run it:   harness run {name}")
     return 0
 
 

@@ -308,7 +308,7 @@ def _paths(command: argparse.ArgumentParser) -> None:
         action="append",
         type=override,
         default=[],
-        help="change a value of the file: --set robot.model=ur5e",
+        help="change a value of the file: --set robot.model=ur5e, --set objects.cube.mass=1",
     )
     _package_option(command)
     _plugin_option(command)

@@ -1,74 +1,123 @@
-"""Lines of progress while cases run: steps on a terminal, one line a case elsewhere."""
+"""Progress while cases run: steps and a status on a terminal, one line for each case elsewhere."""
 
 from __future__ import annotations
 
-import shutil
+import time
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TextIO
 
+from harness.cli.output import Output
 from harness.reporting.result import CaseResult, ProgressEvent
 from harness.reporting.terminal import Style, case_line, step_done, step_running
-
-CLEAR_LINE = "\r\x1b[2K"
 
 Moment = tuple[float, float]
 """Wall time and simulation time [s]."""
 
+ENOUGH_FOR_AN_ESTIMATE = 3.0
+"""Seconds after which the remaining time is estimated from what is done."""
+
 
 class ProgressLines:
-    """Tells a case's steps as they begin and end, and the case's outcome.
+    """Shows a case's steps as they begin and end, and the case's outcome.
 
-    One case at a time has its file as a headline and its steps below; of several side by side,
-    every line begins with the case it belongs to. Where nobody watches, in a pipe or a file, and
-    of very many cases, a case is one line, told when it has ended.
+    One case at a time has its file as a headline and its steps below; with several at the same
+    time, every line begins with the case that it belongs to. In a pipe or a file, and with very
+    many cases, a case is one line, written when it has ended. On a terminal the last line says
+    what is going on now: the step or the part of the report, how far it is, and how many of the
+    cases are done.
     """
 
     def __init__(
         self,
-        stream: TextIO,
+        output: Output,
         cases: Sequence[str],
         *,
         is_side_by_side: bool,
         style: Style,
         is_brief: bool = False,
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._stream = stream
+        self._output = output
         self._cases = cases
         self._style = style
         self._is_side_by_side = is_side_by_side
-        self._is_brief = is_brief or not stream.isatty()
-        self._rewrites = stream.isatty() and style.has_color and not is_side_by_side
+        self._is_brief = is_brief or not output.stream.isatty()
+        self._clock = clock
         self._headline = -1
+        self._noted: set[str] = set()  # every sample of a file has the same
         self._begun: dict[int, list[Moment]] = defaultdict(list)  # steps nest
+        self._activities: dict[int, tuple[str, float]] = {}
+        self._done = 0
+        self._start = self._last_end = clock()
+        self._output.status(self._status(None, 0))
 
     def step(self, index: int, event: ProgressEvent) -> None:
-        """Take note of a sign of life."""
-        if self._is_brief:
-            return
+        """Take note of a progress event of a running case."""
         if event.kind == "step_started":
             self._begun[index].append((event.wall_time, event.sim_time))
-            if self._rewrites:
-                self._begin(index)
-                width = shutil.get_terminal_size().columns
-                self._stream.write(f"{CLEAR_LINE}{step_running(event, self._style)[: width - 1]}")
-                self._stream.flush()
-        elif event.kind == "step_finished":
+        elif event.kind == "step_finished" and not self._is_brief:
             self._begin(index)
             speed = self._speed(index, event)
             self._line(index, step_done(replace(event, speed=speed), self._style))
+        if event.kind in ("step_started", "activity"):
+            if not self._is_brief:
+                self._begin(index)
+            is_frequent = event.kind == "activity" and event.index > 0
+            self._output.status(self._status(event, index), is_frequent=is_frequent)
 
     def result(self, index: int, result: CaseResult) -> None:
-        """Tell a case's outcome."""
+        """Show a case's outcome."""
+        self._done += 1
+        self._last_end = self._clock()
+        line = case_line(result, self._style)
         if self._is_brief:
-            line = case_line(result, self._style)
             self._line(index, f"  {line}" if self._is_side_by_side else self._named(index, line))
-            return
-        self._begin(index)
-        self._line(index, f"  {case_line(result, self._style)}")
+        else:
+            self._begin(index)
+            self._line(index, f"  {line}")
         for note in result.notes:
-            self._line(index, f"  {self._style.quiet(note)}")
+            if note not in self._noted:
+                self._noted.add(note)
+                self._line(index, f"  {self._style.quiet(f'note: {note}')}")
+        is_last = self._done == len(self._cases)
+        self._output.status(None if is_last else self._status(None, index))
+
+    def _status(self, event: ProgressEvent | None, index: int) -> Callable[[], str]:
+        """What the status line says, at any later moment."""
+        begin = now = self._clock()
+        if event is not None and event.kind == "activity":
+            if self._activities.get(index, ("", 0.0))[0] != event.step:
+                self._activities[index] = event.step, now
+            begin = self._activities[index][1]
+
+        def text() -> str:
+            return f"{self._suite_status()}{self._case_status(event, index, begin, now)}"
+
+        return text
+
+    def _suite_status(self) -> str:
+        total, done = len(self._cases), self._done
+        if total < 2:
+            return ""
+        left = remaining(self._start, self._last_end, self._clock(), done, total)
+        return f"  {done} of {total} runs done{left};"
+
+    def _case_status(
+        self, event: ProgressEvent | None, index: int, begin: float, now: float
+    ) -> str:
+        """What a run is doing: since when, and since when as far as the event says."""
+        time = self._clock()
+        passed = f"  {time - begin:.0f} s" if time - begin >= 1.0 else ""
+        if event is None:
+            return f"  starting{passed}"
+        has_headline = not (self._is_brief or self._is_side_by_side)
+        name = "    " if has_headline else f"  {self._cases[index]}:  "
+        if event.kind == "step_started":
+            return f"{name}{step_running(event, self._style).strip()}{passed}"
+        count = f", {event.index} of {event.total}" if event.total else ""
+        left = remaining(begin, now, time, event.index, event.total)
+        return f"{name}{event.step}{count}{passed}{left}"
 
     def _speed(self, index: int, event: ProgressEvent) -> float | None:
         """Simulated over wall seconds of a step, its planning included."""
@@ -84,10 +133,24 @@ class ProgressLines:
     def _begin(self, index: int) -> None:
         if not self._is_side_by_side and self._headline != index:
             self._headline = index
-            self._stream.write(f"{self._style.strong(self._cases[index])}\n")
+            self._output.line(self._style.strong(self._cases[index]))
 
     def _line(self, index: int, text: str) -> None:
-        clear = CLEAR_LINE if self._rewrites else ""
         whose = f"{self._cases[index]}:" if self._is_side_by_side else ""
-        self._stream.write(f"{clear}{whose}{text}\n")
-        self._stream.flush()
+        self._output.line(f"{whose}{text}")
+
+
+def remaining(begin: float, last: float, now: float, done: int, total: int) -> str:
+    """`, about 40 s left` at the pace so far; empty while there is too little to judge by.
+
+    Args:
+        begin: When the first part began [s].
+        last: When the last of those that are done ended.
+        now: On the same clock.
+        done: Parts.
+        total: Parts, the done ones included.
+    """
+    if not done or done >= total or last - begin < ENOUGH_FOR_AN_ESTIMATE:
+        return ""
+    left = max(1.0, (last - begin) / done * (total - done) - (now - last))
+    return f", about {left / 60:.0f} min left" if left >= 90 else f", about {left:.0f} s left"

@@ -55,7 +55,7 @@ def _check(arguments: argparse.Namespace) -> int:
         with only_json_on_stdout() as write_json:
             write_json({"format": FORMAT, "exit_code": code, "robot": checked.report})
         return code
-    say("\n".join([page(checked.report, Style.of(sys.stdout)), *told]))
+    say(*page(checked.report, Style.of(sys.stdout)), *told)
     return code
 
 

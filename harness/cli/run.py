@@ -10,8 +10,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from harness.cli.output import complain, guarded, only_json_on_stdout, say
+from harness.cli.output import complain, guarded, only_json_on_stdout, output, say, say_text
+from harness.suite.cases import describe
 from harness.suite.discovery import UsageError, discover
+from harness.suite.leftovers import clean_report_folder
 from harness.suite.warm import WarmServer
 
 if TYPE_CHECKING:
@@ -28,7 +30,7 @@ MOST_FAILURES = 20
 
 def run(arguments: argparse.Namespace) -> int:
     """Run scenarios; steps and outcomes as they come, failures last."""
-    return guarded(lambda: _run(arguments))
+    return guarded(lambda: _run(arguments), ticks=not arguments.in_process)
 
 
 def _run(arguments: argparse.Namespace) -> int:
@@ -44,25 +46,29 @@ def _run(arguments: argparse.Namespace) -> int:
             with only_json_on_stdout() as write_json:
                 suite.collect(server)
                 _write(arguments, suite)
+                _show_interruption(arguments, suite, time.monotonic() - start)
                 write_json(results_document(suite.record, suite.exit_code))
             return suite.exit_code
         if arguments.format != "full":
             suite.collect(server)
             _write(arguments, suite)
+            _show_interruption(arguments, suite, time.monotonic() - start)
             return _tell_lines(arguments, suite)
         from harness.cli.progress import ProgressLines
         from harness.reporting.terminal import Style
 
         names = _case_names(arguments, suite.jobs)
         progress = ProgressLines(
-            sys.stdout,
+            output(),
             names,
             is_side_by_side=arguments.workers > 1 and not arguments.in_process,
             is_brief=len(names) > BRIEF_FROM,
             style=Style.of(sys.stdout),
         )
         suite.collect(server, progress.step, progress.result)
+        output().status(lambda: "  writing the results")
     page = _write(arguments, suite)
+    output().status(None)
     _tell(arguments, suite, time.monotonic() - start, page)
     return suite.exit_code
 
@@ -74,6 +80,8 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
     if arguments.history and not Path(arguments.history).is_dir():
         raise UsageError(f"--history '{arguments.history}' is no folder")
     root = None if arguments.no_report else Path(arguments.report_dir)
+    if root is not None:
+        clean_report_folder(root)
     plan = planned(
         files,
         Wanted(
@@ -121,10 +129,11 @@ def _tell_lines(arguments: argparse.Namespace, suite: SuiteRun) -> int:
     from harness.reporting.suite.github import error_annotations
 
     results = list(suite.results.values())
-    for line in (
-        error_annotations(results) if arguments.format == "github" else short_lines(results)
-    ):
-        say(line)
+    if arguments.format == "github":
+        for line in error_annotations(results):
+            output().command(line)
+    else:
+        say(*short_lines(results))
     return suite.exit_code
 
 
@@ -160,7 +169,8 @@ def _tell(
         _tell_rates(suite, style)
     rates = missed(suite.rates)
     told = f"; {style.outcome('failed', rates)}" if rates else ""
-    say(f"{summary(list(suite.results.values()), seconds, style)}{told}")
+    if suite.results:
+        say(f"{summary(list(suite.results.values()), seconds, style)}{told}")
     if suite.resumed:
         say(f"{suite.resumed} of them were known from before")
     written = [result for result in suite.results.values() if result.report_dir]
@@ -170,11 +180,24 @@ def _tell(
         one = report_link(written[0], style)
         say(f"report: {one}" if len(written) == 1 else f"reports: {arguments.report_dir}")
     for line in annotations_for_action(suite.record):
-        say(line)
-    if suite.is_interrupted:
-        complain(f"interrupted: {suite.missing} of {len(suite.jobs)} runs did not finish")
-        if len(suite.jobs) > 1 and arguments.repeat == 1 and not arguments.no_report:
-            complain("go on with the same command and --resume")
+        output().command(line)
+    _show_interruption(arguments, suite, seconds)
+
+
+def _show_interruption(arguments: argparse.Namespace, suite: SuiteRun, seconds: float) -> None:
+    """What an interruption left undone, and how to go on; nothing where there was none."""
+    if not suite.is_interrupted:
+        return
+    after = f"interrupted after {seconds:.1f} s"
+    if len(suite.jobs) == 1:
+        where = "".join(f", during {describe(event)}" for event in suite.unfinished.values())
+        complain(f"{after}{where}: the run did not finish, and no report was written")
+        return
+    complain(f"{after}: {suite.missing} of {len(suite.jobs)} runs did not finish")
+    for index, event in suite.unfinished.items():
+        complain(f"  {suite.jobs[index].file}: during {describe(event)}")
+    if arguments.repeat == 1 and not arguments.no_report:
+        complain("the same command with --resume runs the rest")
 
 
 def _tell_failures(arguments: argparse.Namespace, suite: SuiteRun, style: Style) -> None:
@@ -191,12 +214,13 @@ def _tell_failures(arguments: argparse.Namespace, suite: SuiteRun, style: Style)
             continue
         job = suite.jobs[index]
         again, source = _command(arguments, job), source_lines(job.file)
-        say(f"\n{failure(result, style, again=again, source=source)}")
+        say("")
+        say_text(failure(result, style, again=again, source=source))
         folder = job.report_dir
         if folder and not result.report_dir and (folder / "run.json").is_file():
             say(f"  no report was written; {folder} is of an earlier run")
     if told > MOST_FAILURES:
-        say(f"\n... and {told - MOST_FAILURES} more that did not pass")
+        say("", f"... and {told - MOST_FAILURES} more that did not pass")
 
 
 def _tell_rates(suite: SuiteRun, style: Style) -> None:
@@ -206,9 +230,9 @@ def _tell_rates(suite: SuiteRun, style: Style) -> None:
         name = f"{group.file} [{group.group}]" if group.group else group.file
         say(rate_line(name, group.rate, style))
     cases = [
-        (suite.plan[index].values, result.outcome == "passed")
+        (values, result.outcome == "passed")
         for index, result in suite.results.items()
-        if suite.plan[index].values
+        if (values := suite.values(index)) and result.outcome != "invalid"
     ]
     for line in table_lines(cases, style):
         say(line)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from harness.cli.output import guarded, say
+from harness.cli.output import guarded, output, say
 from harness.suite.discovery import UsageError
 
 
@@ -18,7 +18,7 @@ def _run(file: str | None) -> int:
     from harness.spec.schema import schema_text
 
     if file is None:
-        say(schema_text().rstrip())
+        output().document(schema_text())
         return 0
     try:
         Path(file).write_text(schema_text(), encoding="utf-8")

@@ -3,6 +3,7 @@
 HarnessError
 ├── SpecError          a file says things that cannot be meant (exit code 2)
 ├── RobotError         a robot's or world's files cannot be used (exit code 2)
+├── ModelRefused       the physics cannot be built from a robot and a world (exit code 2)
 ├── StepFailed         a step cannot be carried out; ends the run, named by a MoveIt error code
 │   └── PlanningFailed with the planner's explanation
 └── SimulationDiverged the physics left the finite numbers (exit code 3)
@@ -11,10 +12,11 @@ HarnessError
 from __future__ import annotations
 
 import textwrap
-import unicodedata
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
+
+from harness.core.printable import columns_of, printable
 
 ErrorCode = Literal[
     "PLANNING_FAILED",
@@ -52,14 +54,8 @@ ErrorCode = Literal[
 ERROR_CODES: tuple[str, ...] = get_args(ErrorCode)
 
 
-EXCERPT_WIDTH = 110  # characters of a source line, and of a hint, on one line of a message
-
-
-def columns_of(character: str) -> int:
-    """Columns that a terminal gives a character: 2 for wide ones, 0 for combining ones."""
-    if unicodedata.combining(character) or not character.isprintable():
-        return 0
-    return 2 if unicodedata.east_asian_width(character) in "WF" else 1
+EXCERPT_WIDTH = 70  # characters of a source line, and of a hint: with margins, 80 columns
+TAB = "    "  # what is shown of a tab in a source line
 
 
 class HarnessError(Exception):
@@ -90,9 +86,9 @@ class Problem:
 
     def __str__(self) -> str:
         place = f"{self.path}:{self.line}:{self.column}" if self.line else self.path
-        text = f"{place}: {self.message}"
+        text = printable(f"{place}: {self.message}")
         if not self.source_line:
-            return f"{text}\n  {self.hint}" if self.hint else text
+            return f"{text}\n  {printable(self.hint)}" if self.hint else text
         return "\n".join([text, *self._excerpt()])
 
     def _excerpt(self) -> list[str]:
@@ -101,20 +97,28 @@ class Problem:
         if len(line) > EXCERPT_WIDTH:
             start = max(0, self.column - 1 - EXCERPT_WIDTH // 2)
             line = line[start : start + EXCERPT_WIDTH]
-        before = line[: self.column - 1 - start]
-        blank = "".join("\t" if c == "\t" else " " * columns_of(c) for c in before)
-        under = line[len(before) : len(before) + self.length]
-        caret = blank + "^" * max(1, sum(map(columns_of, under)))
-        beside = f"{caret} {self.hint}".rstrip()
+        before, rest = line[: self.column - 1 - start], line[self.column - 1 - start :]
+        under, hint = rest[: self.length], printable(self.hint)
+        caret = f"{' ' * _width(before)}{'^' * max(1, _width(under))}"
+        beside = f"{caret} {hint}".rstrip()
         margin = f"{'':>5} | "
         if len(beside) <= EXCERPT_WIDTH:
             below = [beside]
         else:
             lines = textwrap.wrap(
-                self.hint, EXCERPT_WIDTH, break_long_words=False, break_on_hyphens=False
+                hint, EXCERPT_WIDTH, break_long_words=False, break_on_hyphens=False
             )
             below = [caret, *lines]
-        return [f"{self.line:>5} | {line}", *(margin + each for each in below)]
+        return [f"{self.line:>5} | {_shown(line)}", *(margin + each for each in below)]
+
+
+def _shown(source: str) -> str:
+    return printable(source.replace("\t", TAB))
+
+
+def _width(source: str) -> int:
+    """Columns of a part of a source line as it is shown."""
+    return columns_of(_shown(source))
 
 
 class SpecError(HarnessError):
@@ -129,6 +133,19 @@ class SpecError(HarnessError):
 
 class RobotError(HarnessError):
     """A robot's description, or a file it names, cannot be used."""
+
+
+class ModelRefused(HarnessError):
+    """The physics cannot be built.
+
+    Attributes:
+        body: Name of the link or the object that prevents it; empty where none is known.
+        reason: What is wrong with it.
+    """
+
+    def __init__(self, body: str, reason: str) -> None:
+        self.body, self.reason = body, reason
+        super().__init__(f"{body}: {reason}" if body else reason)
 
 
 class StepFailed(HarnessError):

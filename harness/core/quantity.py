@@ -1,11 +1,23 @@
-"""A number with a unit as files write it: `10 cm`; and digits that tell two numbers apart."""
+"""Numbers as files write them: `10 cm`, `90 %`, `pi/2`; and digits that show a difference."""
 
 from __future__ import annotations
 
+import ast
+import math
 import re
 from collections.abc import Callable
 
 QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
+CONSTANTS = {"pi": math.pi, "π": math.pi, "tau": math.tau}
+EXPRESSION = re.compile(r"(?:pi|π|tau|[\d.eE+\-*/() ])+")
+IMPLIED_PRODUCT = re.compile(r"(\d|\))\s*(?=pi|π|tau|\()")
+LONGEST_EXPRESSION = 60  # characters
+OPERATORS: dict[type[ast.AST], Callable[[float, float], float]] = {
+    ast.Add: lambda left, right: left + right,
+    ast.Sub: lambda left, right: left - right,
+    ast.Mult: lambda left, right: left * right,
+    ast.Div: lambda left, right: left / right,
+}
 
 
 def split_quantity(value: object) -> tuple[float, str]:
@@ -16,6 +28,9 @@ def split_quantity(value: object) -> tuple[float, str]:
     """
     if isinstance(value, int | float) and not isinstance(value, bool):
         return float(value), ""
+    constant = constant_of(value) if isinstance(value, str) else None
+    if constant is not None:
+        return constant, ""
     found = QUANTITY.fullmatch(value) if isinstance(value, str) else None
     if found is None:
         raise ValueError(f"`{value}` is not a number, alone or with a unit")
@@ -39,3 +54,50 @@ def distinct(first: float, second: float, text: Callable[[float, int], str]) -> 
     if usual[0] != usual[1] or first == second:
         return usual
     return next((pair for pair in pairs if pair[0] != pair[1]), usual)
+
+
+def share_of(value: object) -> float:
+    """A share as a file writes it: `0.9`, `90 %`.
+
+    Raises:
+        ValueError: It is neither.
+    """
+    number, unit = split_quantity(value)
+    if unit not in ("", "%"):
+        raise ValueError(f"`{value}` is not a share")
+    return number / 100 if unit else number
+
+
+def constant_of(text: str) -> float | None:
+    """The number of an expression of constants, as `-pi/2` or `3*(pi - 1)`; None of other text.
+
+    Only numbers, pi, tau, the four operations and parentheses have a meaning, and one of the
+    constants or operations must be there: a number in quotes is text.
+    """
+    if len(text) > LONGEST_EXPRESSION or EXPRESSION.fullmatch(text) is None:
+        return None
+    try:
+        tree = ast.parse(IMPLIED_PRODUCT.sub(r"\1*", text.strip()), mode="eval").body
+        is_number = isinstance(tree, ast.Constant) or (
+            isinstance(tree, ast.UnaryOp) and isinstance(tree.operand, ast.Constant)
+        )
+        value = None if is_number else _value(tree)
+    except (SyntaxError, ValueError, ArithmeticError, RecursionError, MemoryError):
+        return None
+    return value if value is not None and math.isfinite(value) else None
+
+
+def _value(node: ast.AST) -> float:
+    match node:
+        case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
+            return float(number)
+        case ast.Name(id=name) if name in CONSTANTS:
+            return CONSTANTS[name]
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            return -_value(operand)
+        case ast.UnaryOp(op=ast.UAdd(), operand=operand):
+            return _value(operand)
+        case ast.BinOp(left=left, op=operation, right=right) if type(operation) in OPERATORS:
+            return OPERATORS[type(operation)](_value(left), _value(right))
+        case _:
+            raise ValueError("no constant expression")

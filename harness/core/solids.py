@@ -1,4 +1,4 @@
-"""Volume and inertia of solids of one density."""
+"""Volume and inertia of solids of one density, and which tensors can be a body's inertia."""
 
 from __future__ import annotations
 
@@ -8,6 +8,20 @@ import numpy as np
 
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Sphere
 from harness.core.types import FloatArray
+
+TRIANGLE_SLACK = 1e-3
+"""Part of the largest principal moment by which rounding may break the triangle inequality: a file
+of four digits does."""
+
+
+def is_inertia_of_a_body(tensor: FloatArray) -> bool:
+    """Whether the principal moments are positive and none exceeds the sum of the others.
+
+    A tensor that breaks the inequality by `TRIANGLE_SLACK` at most is accepted; the physics raises
+    its two smaller moments.
+    """
+    least, middle, most = np.linalg.eigvalsh(tensor)
+    return bool(least > 0 and most - least - middle <= TRIANGLE_SLACK * most)
 
 
 def solid_of(geometry: Geometry) -> tuple[float, FloatArray] | None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from harness.assertions.placed import as_expectation, check_expectation
 from harness.cell.program import Program, ProgramExpectation, ProgramStep, step_seed
-from harness.cell.scope import At, Problems, Scope
+from harness.cell.scope import At, Part, Problems, Scope
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh
 from harness.core.spatial import SE3
@@ -44,6 +44,8 @@ class Sources:
         check_planner: Normalises a planner's name and knows its parameters.
         checks_per_second: What a second of `planning_time` buys, in state checks.
         check_mesh: Raises RobotError for a mesh file that cannot be used.
+        missing: What could not be loaded; something stands in for it, and problems that it decides
+            are not reported.
     """
 
     scenario: Scenario
@@ -56,6 +58,7 @@ class Sources:
     check_planner: CheckPlanner
     checks_per_second: int
     check_mesh: Callable[[Mesh], None]
+    missing: frozenset[Part] = frozenset()
 
 
 def compile_scenario(sources: Sources) -> Program:
@@ -70,11 +73,12 @@ def compile_scenario(sources: Sources) -> Program:
 class _Compiler:
     def __init__(self, sources: Sources) -> None:
         self.sources = sources
-        self.problems = Problems(sources.lines)
+        self.problems = Problems(sources.lines, sources.missing)
         self.scope = Scope(sources.description, self.problems, sources.kinematics.link_pose)
         self.later: dict[str, WorldObject] = {}
         self.later_specs: dict[str, ObjectSpec] = {}  # without poses
         self.step_locs: dict[str, Loc] = {}
+        self.object_locs: dict[str, Loc] = {}
         self.expectations: list[ProgramExpectation] = []
         self.pending: list[tuple[ExpectationFields, Loc]] = []
 
@@ -110,6 +114,7 @@ class _Compiler:
             expectations=tuple(self.expectations),
             seed=scenario.seed,
             step_locs=self.step_locs,
+            object_locs=self.object_locs,
             cameras=self.scope.cameras,
             videos=videos,
         )
@@ -127,15 +132,19 @@ class _Compiler:
                     (*loc, "name"),
                     f"another object is called '{spec.name}'",
                     "every object has a name of its own",
+                    needs=(),
                 )
             elif spec.name in resolved and not spec.replace:
                 self.problems.add(
                     (*loc, "name"),
                     f"the world '{world.world}' has an object '{spec.name}' already",
                     "say `replace: true` to put this one in its place",
+                    needs=("world",),
                 )
             elif spec.name not in resolved and spec.replace:
-                self.problems.unknown((*loc, "name"), "object of the world", spec.name, resolved)
+                self.problems.unknown(
+                    (*loc, "name"), "object of the world", spec.name, resolved, needs=("world",)
+                )
             here.add(spec.name)
             obj = self._resolve(spec, loc, self._start_pose(spec, loc))
             if obj is not None:
@@ -143,10 +152,11 @@ class _Compiler:
         return tuple(resolved.values())
 
     def _world_objects(self) -> dict[str, WorldObject]:
-        """The world's own objects; what is wrong with one is told at the scenario's `world`."""
+        """The world's own objects; what is wrong with one is reported at the scenario's `world`."""
         resolved: dict[str, WorldObject] = {}
         world, problems = self.sources.world, list[str]()
         for spec in world.objects:
+            self.object_locs[spec.name] = ("world",)
             if spec.name in resolved:
                 problems.append(f"two objects are called '{spec.name}'")
             if spec.pose.frame != "world":
@@ -158,7 +168,9 @@ class _Compiler:
             except ObjectUnusableError as unusable:
                 problems.append(f"object '{spec.name}': {unusable}")
         if problems:
-            self.problems.add(("world",), f"world '{world.world}': " + "; ".join(problems))
+            self.problems.add(
+                ("world",), f"world '{world.world}': " + "; ".join(problems), needs=("world",)
+            )
         return resolved
 
     def _start_pose(self, spec: ObjectSpec, loc: Loc) -> SE3:
@@ -176,14 +188,23 @@ class _Compiler:
         return spec.pose.se3()
 
     def _resolve(self, spec: ObjectSpec, loc: Loc, pose: SE3) -> WorldObject | None:
-        if spec.name == "world" or spec.name in self.sources.description.link_names:
-            self.problems.add(
-                (*loc, "name"), f"'{spec.name}' is a robot link's name", "choose another"
-            )
+        self.object_locs[spec.name] = loc
+        description = self.sources.description
+        for kind, names in (
+            ("link", ("world", *description.link_names)),
+            ("joint", description.joint_names),
+        ):
+            if spec.name in names:
+                self.problems.add(
+                    (*loc, "name"),
+                    f"'{spec.name}' is a robot {kind}'s name",
+                    "choose another",
+                    needs=("robot",),
+                )
         try:
             return self._object(spec, pose, self.sources.base_dir)
         except ObjectUnusableError as unusable:
-            self.problems.add(loc, f"object '{spec.name}': {unusable}")
+            self.problems.add(loc, f"object '{spec.name}': {unusable}", needs=())
             return None
 
     def _object(self, spec: ObjectSpec, pose: SE3, folder: Path) -> WorldObject:
@@ -200,7 +221,7 @@ class _Compiler:
     def _later_object(self, spec: ObjectSpec, loc: Loc) -> None:
         """Prepare an object that a step adds; the same object may come and go, another may not."""
         if spec.replace:
-            self.problems.add(loc, "`replace` is for the scenario's `objects`")
+            self.problems.add(loc, "`replace` is for the scenario's `objects`", needs=())
         obj = self._resolve(spec, loc, spec.pose.se3())
         if obj is None:
             return
@@ -213,6 +234,7 @@ class _Compiler:
                 (*loc, "name"),
                 f"another object is called '{spec.name}'",
                 "every object has a name of its own",
+                needs=("world",),
             )
         self.later_specs.setdefault(spec.name, _without_pose(spec))
 
@@ -231,7 +253,7 @@ class _Compiler:
         self.step_locs[path] = loc
         step_id = f"{spec.id}{suffix}" if spec.id else path
         if not self.scope.claim_step_id(step_id):
-            self.problems.add((*loc, "id"), f"another step has the id '{step_id}'")
+            self.problems.add((*loc, "id"), f"another step has the id '{step_id}'", needs=())
         for keys, obj in spec.new_objects():
             self._later_object(obj, (*loc, *keys))
         if spec.group is not None:
@@ -256,7 +278,9 @@ class _Compiler:
         for block in spec.blocks(loc, path):
             if len(self.step_locs) > MOST_STEPS:
                 self.problems.add(
-                    loc, f"the file comes to more than {MOST_STEPS} steps, repeated ones counted"
+                    loc,
+                    f"the file comes to more than {MOST_STEPS} steps, repeated ones counted",
+                    needs=(),
                 )
                 break
             children += self._steps(block.steps, block.loc, block.path, suffix + block.suffix)

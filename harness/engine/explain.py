@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from harness.cell.program import Program
+from harness.core.printable import printable
 from harness.core.spatial import SE3, xyzw_from_wxyz
 from harness.core.world import World
 from harness.ports import PlanningOptions
@@ -37,7 +38,7 @@ def explain(
     if whole:
         lines.append("expected of the whole run")
         lines += [f"  {item.line:>4}  {describe(item.spec)}" for item in whole]
-    return "\n".join(lines) + "\n"
+    return "\n".join(map(printable, lines)) + "\n"
 
 
 def _robot(robot: RobotDescription) -> list[str]:

@@ -19,7 +19,7 @@ from harness.core.geometry import (
     Shape,
     Sphere,
 )
-from harness.core.solids import solid_of
+from harness.core.solids import is_inertia_of_a_body, solid_of
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import Light, World, WorldObject
@@ -50,7 +50,8 @@ def resolve_object(spec: ObjectSpec, pose: SE3, base_dir: Path) -> WorldObject:
     shapes = tuple(_shape(part, spec.color, base_dir) for part in parts)
     mass, center, inertia = 0.0, np.array(spec.center_of_mass, dtype=float), np.zeros((3, 3))
     if not spec.static:
-        mass, center, inertia = _mass_properties(spec, shapes)
+        with np.errstate(over="ignore", invalid="ignore"):  # the physics refuses what overflows
+            mass, center, inertia = _mass_properties(spec, shapes)
     return WorldObject(
         name=spec.name,
         shapes=shapes,
@@ -169,10 +170,10 @@ def _mass_properties(
 
 
 def _check_inertia(tensor: FloatArray) -> None:
-    moments = np.linalg.eigvalsh(tensor)
-    if moments[0] <= 0 or moments[2] > moments[0] + moments[1] + 1e-12:
+    if not is_inertia_of_a_body(tensor):
+        moments = np.linalg.eigvalsh(tensor)
         raise ObjectUnusableError(
             "no body has this inertia: its principal moments are "
-            + ", ".join(f"{moment:.3g}" for moment in moments)
+            + ", ".join(f"{moment:.6g}" for moment in moments)
             + " kg m^2, and each must be positive and no more than the sum of the others"
         )

@@ -81,7 +81,7 @@ def check_planning(
         check_planner(planner, {})
     except ValueError as error:
         if planning.planner_id is not None:
-            problems.add(said, str(error))
+            problems.add(said, str(error), needs=())
     else:
         checked = {name: ((*loc, "parameters", name), own[name]) for name in own}
         if planning.parameters is None and planning.planner_id is not None:
@@ -91,14 +91,17 @@ def check_planning(
             try:
                 check_planner(planner, {name: value})
             except ValueError as error:
-                problems.add(place, str(error))
+                problems.add(place, str(error), needs=())
     if planning.pipeline == "pilz_industrial_motion_planner":
         problems.add(
             (*loc, "pipeline"),
             "Pilz's planners are steps here",
             "write `ptp:`, `lin:` or `circ:` instead of `move_to:`",
+            needs=(),
         )
     if planning.planning_time is not None and planning.max_state_checks is not None:
         problems.add(
-            (*loc, "planning_time"), "both `planning_time` and `max_state_checks` are given"
+            (*loc, "planning_time"),
+            "both `planning_time` and `max_state_checks` are given",
+            needs=(),
         )

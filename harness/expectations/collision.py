@@ -28,7 +28,11 @@ FORCE = Quantity(
     "contact force", "N", "more than 0 in a pair that nothing excuses; the largest", "contact"
 )
 LEFT = Quantity(
-    "clearance", "m", "where nothing collided: what was left, if it was recorded", "clearance"
+    "clearance",
+    "m",
+    "where nothing collided: what was left, if it was recorded; where bodies overlap at the start:"
+    " their depth, below 0",
+    "clearance",
 )
 
 
@@ -62,7 +66,8 @@ class Collision(Predicate):
 
         Value and margin are the largest force of all collisions in the window [N], the same at each
         of their samples, so that the first contact decides. Where there is none the margin is the
-        distance that was left [m] if it was recorded, else 1.
+        distance that was left [m] if it was recorded, else 1. Where bodies overlap when the run
+        begins it is their depth [m].
         """
         run = window.run
         pairs = self._pairs(run)
@@ -79,6 +84,9 @@ class Collision(Predicate):
             for pair in pairs
             if guilty[pair].any()
         }
+        overlaps = _overlaps_at_start(window, forces)
+        if overlaps:
+            return _overlapped(forces, overlaps)
         if forces:
             return _collided(window, forces)
         distance, name = self._distance(window, pairs)
@@ -135,6 +143,41 @@ class Collision(Predicate):
                 lowest, name = float(np.nanmin(cut)), f"{a} and {'itself' if a == b else b}"
             best = cut if best is None else np.fmin(best, cut)
         return best, name
+
+
+def _overlaps_at_start(window: Window, forces: dict[Pair, FloatArray]) -> dict[Pair, float]:
+    """Depths [m] of the colliding pairs that overlap when the run begins, the deepest first."""
+    found: dict[Pair, float] = {}
+    for finding in window.run.findings if window.time(0) == 0.0 else ():
+        if finding.kind == "overlap":
+            first, second = finding.values["pair"]
+            pair = next((each for each in forces if set(each) == {first, second}), None)
+            if pair is not None and forces[pair][0] > 0:
+                found[pair] = float(finding.values["depth"])
+    return found
+
+
+def _overlapped(forces: dict[Pair, FloatArray], depths: dict[Pair, float]) -> MarginSignal:
+    """Positive as in `_collided`, by the depth [m]: the forces are those of no real contact."""
+    total = np.max(list(forces.values()), axis=0)
+    names = [f"{first} and {second}" for first, second in depths]
+    measures = tuple(
+        measured(LEFT, -depth, 0.0, ">=", 0.0, name)
+        for name, depth in zip(names, depths.values(), strict=True)
+    )
+    texts = [
+        f"{name} overlap by {amount(depth, 'm')} at the start"
+        for name, depth in zip(names, depths.values(), strict=True)
+    ]
+
+    def evidence(index: int) -> Evidence:
+        if total[index] <= 0:
+            return Evidence("no collision at this moment", measures)
+        more = f"; and {len(texts) - 2} more pairs" if len(texts) > 2 else ""
+        return Evidence("; ".join(texts[:2]) + more, measures[:4], is_moment=False)
+
+    values = np.where(total > 0, max(depths.values()), -LEAST_DISTANCE)
+    return MarginSignal(values, "m", evidence)
 
 
 def _collided(window: Window, forces: dict[Pair, FloatArray]) -> MarginSignal:

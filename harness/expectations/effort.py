@@ -13,7 +13,7 @@ from harness.assertions.joints import ROUNDING, is_measured
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.window import NotObservable, Window
 from harness.recording.run import Measure
-from harness.spec.base import Number
+from harness.spec.base import Share
 from harness.spec.expectation import Quantity
 
 EFFORT = Quantity("effort", "1", "at most `max_fraction`, for each joint", "effort")
@@ -26,7 +26,7 @@ class Effort(Predicate):
     judged = "always"
     quantities = (EFFORT,)
 
-    max_fraction: Annotated[Number, Field(gt=0)] = Field(
+    max_fraction: Annotated[Share, Field(gt=0)] = Field(
         default=1.0,
         description="The largest share of its effort limit that a joint may use; 1 is the limit.",
     )

@@ -12,7 +12,7 @@ from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import percentages
 from harness.assertions.window import NotReached, Window, refuse_unrecorded_steps
 from harness.recording.run import Measure
-from harness.spec.base import Number
+from harness.spec.base import Share
 from harness.spec.expectation import Quantity
 
 FRACTION = Quantity("fraction", "1", "at least `at_least`, for each path")
@@ -25,7 +25,7 @@ class FractionCheck(Predicate):
     short = "at_least"
     quantities = (FRACTION,)
 
-    at_least: Annotated[Number, Field(ge=0, le=1)] = Field(
+    at_least: Annotated[Share, Field(ge=0, le=1)] = Field(
         default=1.0, description="The smallest share of each path that must be followed."
     )
 

@@ -19,7 +19,7 @@ from harness.cell.scope import At
 from harness.core.types import FloatArray, IntArray
 from harness.recording.looks import PictureKind
 from harness.recording.run import CaptureRecord, Measure
-from harness.spec.base import Angle, Count, Fraction, Name, Number, SpecModel
+from harness.spec.base import Angle, Count, Fraction, Name, Share, SpecModel
 from harness.spec.expectation import Quantity
 from harness.spec.markers import MarkerName
 
@@ -37,7 +37,7 @@ HUES: dict[ColorName, tuple[float, float]] = {
 """From, to on the colour circle [deg]."""
 
 PIXELS = Quantity("pixels", "px", "at least `min_area`")
-SHARE = Quantity("visible share", "1", "of an object: at least `min_visible`")
+VISIBLE = Quantity("visible share", "1", "of an object: at least `min_visible`")
 
 
 class HueRange(SpecModel):
@@ -56,10 +56,10 @@ class HueRange(SpecModel):
         description="The first and the last hue on the colour circle, where 0 is red, 120 deg green"
         " and 240 deg blue; `[340 deg, 20 deg]` goes through 0.",
     )
-    min_saturation: Annotated[Number, Field(ge=0, le=1)] = Field(
+    min_saturation: Annotated[Share, Field(ge=0, le=1)] = Field(
         default=0.4, description="The smallest saturation; 0 is grey, 1 the pure colour."
     )
-    min_value: Annotated[Number, Field(ge=0, le=1)] = Field(
+    min_value: Annotated[Share, Field(ge=0, le=1)] = Field(
         default=0.15, description="The smallest brightness; 0 is black, 1 the brightest."
     )
 
@@ -85,7 +85,7 @@ class Sees(Predicate):
     """
 
     subject = "object"
-    quantities = (PIXELS, SHARE)
+    quantities = (PIXELS, VISIBLE)
 
     camera: Name = Field(description="The name of the camera.")
     object: Name | None = Field(
@@ -151,7 +151,7 @@ class Sees(Predicate):
                 seen / whole if whole else 0.0 for seen, whole in zip(pixels, outlines, strict=True)
             ]
             visible = np.minimum(shares, 1.0)
-            parts.append(_part(SHARE, name, visible, spoken_by, self.min_visible))
+            parts.append(_part(VISIBLE, name, visible, spoken_by, self.min_visible))
 
         def text(index: int, _: Measure) -> str:
             place = int(spoken_by[index])
@@ -228,6 +228,6 @@ def _part(
     limit: float,
 ) -> Part:
     values = np.asarray(by_picture, dtype=float)[spoken_by]
-    ceiling = 1.0 if quantity is SHARE else math.inf
+    ceiling = 1.0 if quantity is VISIBLE else math.inf
     name = f"{quantity.name} of {subject}"
     return Part(quantity, values, limit, ">=", ceiling=ceiling, measured_name=name)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Sphere
-from harness.core.solids import solid_of
+from harness.core.solids import is_inertia_of_a_body, solid_of
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.importers.notes import Notes
@@ -97,11 +97,11 @@ def _tensor(inertial: XmlElement) -> FloatArray:
     xx, yy, zz = (number(element, tag, 1.0) for tag in ("ixx", "iyy", "izz"))
     xy, xz, yz = (number(element, tag, 0.0) for tag in ("ixy", "ixz", "iyz"))
     tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    least, middle, most = (float(moment) for moment in np.linalg.eigvalsh(tensor))
-    if least <= 0 or most > least + middle + 1e-12:
+    if not is_inertia_of_a_body(tensor):
+        least, middle, most = (float(moment) for moment in np.linalg.eigvalsh(tensor))
         element.refuse(
-            f"no body has this inertia: its principal moments are {least:.3g}, {middle:.3g} and"
-            f" {most:.3g} kg m^2",
+            f"no body has this inertia: its principal moments are {least:.6g}, {middle:.6g} and"
+            f" {most:.6g} kg m^2",
             "each is above 0 and no more than the sum of the others",
         )
     return tensor

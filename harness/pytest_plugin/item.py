@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from harness.core.printable import printable, terminal_text
 from harness.suite.header import Header, read_header
 
 PYTEST_MARKS = frozenset(
@@ -22,9 +23,9 @@ class ScenarioFile(pytest.File):
 
     def collect(self) -> Iterable[ScenarioItem]:
         header = read_header(self.path)
-        title = header.title.replace("::", ":")
+        title = printable(header.title).replace("::", ":")
         for number, case in enumerate(header.variation.parametrized()):
-            name = f"{title}[{case.name}]" if case.name else title
+            name = f"{title}[{printable(case.name)}]" if case.name else title
             yield ScenarioItem.from_parent(
                 self, name=name, header=header, case=case.name, number=number
             )
@@ -48,7 +49,7 @@ class ScenarioItem(pytest.Item):
         for tag in header.tags:
             self.extra_keyword_matches.add(tag)
             if tag not in PYTEST_MARKS and not tag.startswith("_"):
-                self.config.addinivalue_line("markers", f"{tag}: a scenario's tag")
+                self.config.addinivalue_line("markers", f"{printable(tag)}: a scenario's tag")
                 self.add_marker(getattr(pytest.mark, tag))
 
     def runtest(self) -> None:
@@ -60,7 +61,7 @@ class ScenarioItem(pytest.Item):
         from harness.pytest_plugin.running import TOLD_AS_THEY_ARE
 
         if isinstance(excinfo.value, TOLD_AS_THEY_ARE):
-            return str(excinfo.value)
+            return "\n".join(map(terminal_text, str(excinfo.value).split("\n")))
         return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, int, str]:

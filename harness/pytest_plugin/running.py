@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from harness.core.printable import printable, terminal_text
 from harness.pytest_plugin.item import ScenarioItem
 from harness.pytest_plugin.session import TOLD
 from harness.pytest_plugin.session_files import ItemRecord, as_plain
@@ -17,12 +18,14 @@ from harness.reporting.suite.record import SuiteCase
 from harness.reporting.terminal import causes
 from harness.suite.cases import run_here, run_isolated
 from harness.suite.header import source_lines
+from harness.suite.leftovers import clean_report_folder
 from harness.suite.plan import PlannedCase, Wanted, planned
 from harness.suite.sampling import Sampling
 from harness.suite.warm import ServerStartError, WarmServer
 
 TOLD_SAMPLES = 3
 SERVER = pytest.StashKey[WarmServer]()
+CLEANED = pytest.StashKey[bool]()
 
 
 class ScenarioNotPassed(Exception):
@@ -31,7 +34,7 @@ class ScenarioNotPassed(Exception):
     def __init__(self, result: CaseResult) -> None:
         told = causes(result, source_lines(Path(result.file)))
         if result.report_dir:
-            told.append(f"report: {result.report_dir}")
+            told.append(printable(f"report: {result.report_dir}"))
         super().__init__("\n".join(told))
 
 
@@ -41,8 +44,9 @@ class RateNotShown(Exception):
     def __init__(self, rate: str, failed: Sequence[CaseResult]) -> None:
         told = [rate]
         for result in failed[:TOLD_SAMPLES]:
-            told += ["", f"{result.case}:", *causes(result, source_lines(Path(result.file)))]
-            told.append(f"again: harness run {result.file} --case {result.case}")
+            told += ["", printable(f"{result.case}:")]
+            told += causes(result, source_lines(Path(result.file)))
+            told.append(printable(f"again: harness run {result.file} --case {result.case}"))
         if len(failed) > TOLD_SAMPLES:
             told += ["", f"... and {len(failed) - TOLD_SAMPLES} more samples that failed"]
         super().__init__("\n".join(told))
@@ -54,9 +58,13 @@ TOLD_AS_THEY_ARE = (ScenarioNotPassed, RateNotShown, ServerStartError)
 
 def run_item(item: ScenarioItem) -> None:
     """Run a case, or all samples of one; raises what tells why it did not pass."""
+    root = report_root(item.config)
+    if root is not None and not item.config.stash.get(CLEANED, False):
+        item.config.stash[CLEANED] = True
+        clean_report_folder(root)
     plan = [
         each
-        for each in planned([shown(item.path)], Wanted(report_root=report_root(item.config)))
+        for each in planned([shown(item.path)], Wanted(report_root=root))
         if item.case == (each.case.name if each.case.sample is None else each.case.group)
     ]
     sampling = Sampling(plan)
@@ -87,7 +95,7 @@ def _judge_samples(
         raise ScenarioNotPassed(broken[0])
     [group] = sampling.groups()
     rate = group.rate
-    line = rate_text(item.name, rate)
+    line = printable(rate_text(item.name, rate))
     item.user_properties += [("passed", rate.passed), ("samples", rate.total)]
     item.add_report_section("call", "samples", line)
     if group.outcome != "passed":
@@ -130,7 +138,7 @@ def _tell(item: ScenarioItem, case: SuiteCase) -> None:
     if result.report_dir:
         item.user_properties.append(("report", result.report_dir))
     for note in result.notes:
-        item.add_report_section("call", "scenario", note)
+        item.add_report_section("call", "scenario", terminal_text(note))
 
 
 def _suite_case(planned_case: PlannedCase, result: CaseResult) -> SuiteCase:

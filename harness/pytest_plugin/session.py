@@ -32,6 +32,7 @@ class SessionResults:
         if not self.told:
             return
         from harness.core.errors import HarnessError
+        from harness.core.printable import printable, terminal_text
         from harness.pytest_plugin.running import report_root
         from harness.pytest_plugin.session_files import (
             from_plains,
@@ -52,7 +53,8 @@ class SessionResults:
             append_summary(suite)
         except HarnessError as error:
             self._lines.append(str(error))
-        self._lines += annotations_for_action(suite)
+        self._lines = [terminal_text(line) for line in self._lines]
+        self._lines += map(printable, annotations_for_action(suite))
 
     def pytest_terminal_summary(self, terminalreporter: Any) -> None:
         if self._lines:

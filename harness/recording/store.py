@@ -17,6 +17,7 @@ import numpy as np
 
 from harness.core.errors import HarnessError, Problem, SpecError
 from harness.core.geometry import Rgba
+from harness.core.printable import json_printable
 from harness.recording.arrays import arrays_of, is_signal, signals_from, write_npz
 from harness.recording.consistency import (
     Flaw,
@@ -124,7 +125,7 @@ def write_run(
         document = _document(run, verdicts, outcome, digest, wall_times, arrays)
         document[CHECKSUM] = _checksum(document, run.resolved)
         text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
-        (temporary / RUN).write_text(text + "\n", encoding="utf-8")
+        (temporary / RUN).write_text(json_printable(text) + "\n", encoding="utf-8")
         (temporary / RESOLVED).write_text(run.resolved, encoding="utf-8", newline="")
         write_npz(temporary / SIGNALS, arrays)
         write_npz(temporary / VISUALS, _mesh_arrays(run))

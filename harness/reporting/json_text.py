@@ -8,10 +8,16 @@ import math
 from collections.abc import Mapping
 from typing import Any, cast
 
+from harness.core.printable import json_printable
+
 
 def json_text(document: object) -> str:
-    """Strict JSON: dataclasses as objects, numbers that are not finite as null."""
-    return json.dumps(_plain(document), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    r"""Strict JSON: dataclasses as objects, numbers that are not finite as null.
+
+    Controls and signs that turn the direction of text are `\\u` escapes.
+    """
+    text = json.dumps(_plain(document), indent=2, ensure_ascii=False, allow_nan=False)
+    return f"{json_printable(text)}\n"
 
 
 def _plain(value: object) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 from harness.core.errors import Problem
 from harness.recording.run import Outcome, StepStatus, Verdict
@@ -15,16 +15,17 @@ class ProgressEvent:
     """A sign of life of a running case.
 
     Attributes:
-        index: Of the step, from 0.
-        total: How many steps there are.
-        step: Its summary in one line.
+        kind: `activity` is work on the report or the verdicts, which takes time after the steps.
+        index: Of the step, from 0; of an activity, how many of its parts are done.
+        total: How many steps, or parts of the activity, there are; 0 where that is not known.
+        step: Its summary in one line; of an activity, what is being done.
         status: What became of it, for `step_finished` and `judged`.
         sim_time: Simulation time so far [s].
         wall_time: On a clock that only goes forward [s]; shown, never judged.
         speed: Simulated over wall seconds of the step that finished; None where it is not known.
     """
 
-    kind: Literal["compiled", "step_started", "step_finished", "judged", "written"]
+    kind: Literal["compiled", "step_started", "step_finished", "activity", "judged", "written"]
     index: int
     total: int
     step: str
@@ -70,7 +71,10 @@ class CaseResult:
         page: The page in it; empty when none was written.
         problems: Of the file, when it is invalid; else what was predicted without physics.
         message: Why, when the harness or a native library broke.
-        notes: Fallbacks worth a line: no renderer, no meshes.
+        notes: Worth a line: no renderer, no meshes, nothing expected, an angle like 90 rad.
+        overlap: Depth of the deepest pair of bodies that overlap at the start [m]; 0: none do.
+        redraws: How often the sample was drawn again because objects overlapped.
+        values: What varies as it was drawn at last, path -> value; empty when drawn once.
         wall_times: Seconds of each part; never judged.
     """
 
@@ -88,4 +92,7 @@ class CaseResult:
     problems: tuple[Problem, ...] = ()
     message: str = ""
     notes: tuple[str, ...] = ()
+    overlap: float = 0.0
+    redraws: int = 0
+    values: Mapping[str, Any] = field(default_factory=dict[str, Any])
     wall_times: Mapping[str, float] = field(default_factory=dict[str, float])

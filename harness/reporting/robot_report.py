@@ -86,8 +86,8 @@ class RobotReport:
         return all(finding.is_good for finding in self.findings)
 
 
-def page(report: RobotReport, style: Style) -> str:
-    """The report on one page of text."""
+def page(report: RobotReport, style: Style) -> list[str]:
+    """The report as lines of text."""
     lines = [style.strong(report.name), ""]
     lines += _joints(report, style)
     lines += _groups(report, style)
@@ -101,7 +101,7 @@ def page(report: RobotReport, style: Style) -> str:
     if report.notes:
         lines += ["", style.strong("left out or assumed")]
         lines += [f"  {note}" for note in report.notes]
-    return "\n".join(lines)
+    return lines
 
 
 def _joints(report: RobotReport, style: Style) -> Iterator[str]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from harness.core.quantity import split_quantity
 from harness.recording.run import Outcome
+from harness.reporting.result import CaseResult
 from harness.reporting.terminal import PLAIN, Style
 
 RateVerdict = Literal["shown", "refuted", "open"]
@@ -32,6 +33,10 @@ class Rate:
         verdict: `shown` when the rate is at least what was asked, `refuted` when it is not, `open`
             when these samples cannot tell.
         stopped_early: Whether the sequential test ended the sampling.
+        overlapping: Samples that were run although objects overlap at their start.
+        redrawn: Samples that were drawn again because objects overlapped.
+        redraws: How often, of all of them together.
+        invalid: Samples that could not be run; they are not in `total`.
     """
 
     passed: int
@@ -42,6 +47,10 @@ class Rate:
     at_least: float | None
     verdict: RateVerdict
     stopped_early: bool = False
+    overlapping: int = 0
+    redrawn: int = 0
+    redraws: int = 0
+    invalid: int = 0
 
 
 @dataclass(frozen=True)
@@ -61,6 +70,16 @@ class SampledRate:
     outcome: Outcome
 
 
+def with_starts(rate: Rate, results: Sequence[CaseResult]) -> Rate:
+    """A rate with how many of its samples have overlapping objects at the start."""
+    return replace(
+        rate,
+        overlapping=sum(result.overlap > 0 for result in results),
+        redrawn=sum(result.redraws > 0 for result in results),
+        redraws=sum(result.redraws for result in results),
+    )
+
+
 def missed(rates: Sequence[SampledRate]) -> str:
     """`1 of 4 success rates not confirmed`; empty where all are.
 
@@ -77,9 +96,14 @@ def rate_line(name: str, rate: Rate, style: Style = PLAIN) -> str:
 
 def rate_text(name: str, rate: Rate) -> str:
     """`pick: 187 of 200 samples passed, 93.5% (...): at least 90% is confirmed`."""
-    share = f"{rate.passed / rate.total:.1%}" if rate.total else "no rate"
-    line = f"{name}: {rate.passed} of {rate.total} samples passed, {share}"
+    count = f"{rate.invalid} sample{'s' if rate.invalid != 1 else ''}"
+    if not rate.total:
+        why = f"{count} invalid" if rate.invalid else "no sample ended"
+        return f"{name}: no rate, {why}"
+    line = f"{name}: {rate.passed} of {rate.total} samples passed, {rate.passed / rate.total:.1%}"
     line += f" ({rate.low:.1%} to {rate.high:.1%} at {rate.confidence:.0%} confidence)"
+    if rate.invalid:
+        line += f", {count} invalid and not counted"
     if rate.at_least is None:
         is_shown = rate.verdict == "shown"
         line += "" if is_shown else "; every one must pass, as the file has no `expect_rate`"
@@ -92,6 +116,12 @@ def rate_text(name: str, rate: Rate) -> str:
         }[rate.verdict]
     if rate.stopped_early:
         line += "; the sequential test needed no more"
+    if rate.overlapping:
+        line += f"; objects overlap at the start of {rate.overlapping} of them"
+        line += " (`redraw_overlaps: true` draws such samples again)"
+    if rate.redrawn:
+        line += f"; {rate.redrawn} were drawn again, {rate.redraws} times in all,"
+        line += " because objects overlapped at the start"
     return line
 
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
+from harness.core.printable import ESC, printable, printable_lines
 from harness.recording.run import Measure, Verdict, is_nested
 from harness.reporting.result import CaseResult, ProgressEvent, StepLine
 
@@ -18,7 +19,10 @@ OUTCOMES = ("error", "invalid", "failed", "passed")
 
 @dataclass(frozen=True)
 class Style:
-    """How text may look: with colours, with signs beyond ASCII."""
+    """How text may look: with colours, with signs beyond ASCII.
+
+    Its control sequences are for `core.printable.terminal_text`, which writes no others.
+    """
 
     has_color: bool = False
     has_signs: bool = False
@@ -56,7 +60,7 @@ class Style:
 
     def link(self, text: str, address: str) -> str:
         """Text that a terminal opens an address from, where it can (OSC 8)."""
-        return f"\x1b]8;;{address}\x1b\\{text}\x1b]8;;\x1b\\" if self.has_color else text
+        return f"{ESC}]8;;{address}{ESC}\\{text}{ESC}]8;;{ESC}\\" if self.has_color else text
 
     def mark(self, is_good: bool) -> str:
         """A tick or a cross."""
@@ -65,7 +69,7 @@ class Style:
         return self.good("ok") if is_good else self.bad("no")
 
     def _paint(self, code: str, text: str) -> str:
-        return f"\x1b[{code}m{text}\x1b[0m" if self.has_color else text
+        return f"{ESC}[{code}m{text}{ESC}[0m" if self.has_color else text
 
 
 PLAIN = Style()
@@ -74,7 +78,7 @@ PLAIN = Style()
 def step_running(event: ProgressEvent, style: Style = PLAIN) -> str:
     """The line of a step that is under way."""
     dots = " …" if style.has_signs else " ..."
-    return f"    {_count(event)}  {event.step}{dots}  t={event.sim_time:.2f} s"
+    return f"    {_count(event)}  {printable(event.step)}{dots}  t={event.sim_time:.2f} s"
 
 
 def step_done(event: ProgressEvent, style: Style = PLAIN) -> str:
@@ -83,14 +87,14 @@ def step_done(event: ProgressEvent, style: Style = PLAIN) -> str:
     The speed is how many times faster than the real thing it was, where anything moved.
     """
     is_good = event.status in {"passed", "expected_error"}
-    line = f"  {style.mark(is_good)} {_count(event)}  {event.step}"
+    line = f"  {style.mark(is_good)} {_count(event)}  {printable(event.step)}"
     line += style.quiet(f"  t={event.sim_time:.2f} s")
     if event.speed:
         line += style.quiet(f"  {speed_text(event.speed)}")
     if event.status == "expected_error":
         line += style.quiet("  failed as expected")
     if not is_good and event.message:
-        line += f"  {event.message.splitlines()[0]}"
+        line += f"  {printable(event.message.splitlines()[0])}"
     return line
 
 
@@ -117,9 +121,10 @@ def case_line(result: CaseResult, style: Style = PLAIN) -> str:
         if wall := sum(result.wall_times.values()):
             simulated += f" at {speed_text(result.sim_time / wall)}"
         parts.append(f"{_plural(len(result.steps), 'step')}, {simulated}")
-        parts.append(f"{held} of {_plural(len(result.verdicts), 'expectation')} hold")
+        held_of = f"{held} of {_plural(len(result.verdicts), 'expectation')} hold"
+        parts.append(held_of if result.verdicts else "expects nothing")
         parts.append(style.quiet(f"digest {result.digest[:12]}"))
-    return "  ".join(parts)
+    return printable("  ".join(parts))
 
 
 def failure(
@@ -136,12 +141,12 @@ def failure(
     name = f"{result.file} [{result.case}]" if result.case else result.file
     title = f": {result.title}" if not result.file.endswith(result.title) else ""
     lines = [f"{style.outcome(result.outcome, result.outcome.upper())} {name}{title}"]
-    lines += [_indent(cause) for cause in causes(result, source)]
+    lines += [f"  {line}" for cause in causes(result, source) for line in cause.split("\n")]
     if result.report_dir:
         lines.append(f"  report: {report_link(result, style)}")
     if again:
         lines.append(f"  again:  {again}")
-    return "\n".join(lines)
+    return _joined(lines)
 
 
 def report_link(result: CaseResult, style: Style = PLAIN) -> str:
@@ -169,6 +174,8 @@ def failure_place(result: CaseResult) -> str:
 def causes(result: CaseResult, source: Sequence[str] = ()) -> list[str]:
     """Everything that kept a case from passing; the file's mistakes, else steps, else expectations.
 
+    Each cause is printable: one line, or several of which each is.
+
     Args:
         result: Of the case.
         source: Lines of the scenario file, to show those that are spoken of.
@@ -181,7 +188,7 @@ def causes(result: CaseResult, source: Sequence[str] = ()) -> list[str]:
         if verdict.status != "passed"
     ]
     if result.outcome == "error" or not found:
-        found.append(result.message or "no cause was told")
+        found.append(printable_lines(result.message.rstrip()) or "no cause was told")
     return found
 
 
@@ -201,7 +208,7 @@ def step_failure(file: str, step: StepLine, source: Sequence[str] = ()) -> str:
     said = step.message.removeprefix(f"{step.error_code}: ")
     why = ": ".join(part for part in (step.error_code, said) if part)
     explained = [f"    {line}" for line in step.explanation]
-    return "\n".join([f"{place}: {step.summary}: {why}", *_excerpt(source, step.line), *explained])
+    return _joined([f"{place}: {step.summary}: {why}", *_excerpt(source, step.line), *explained])
 
 
 def verdict_failure(file: str, verdict: Verdict, source: Sequence[str] = ()) -> str:
@@ -211,11 +218,12 @@ def verdict_failure(file: str, verdict: Verdict, source: Sequence[str] = ()) -> 
     if verdict.status != "not reached":
         lines += _excerpt(source, verdict.line)
     lines += [f"    {measure_text(measure)}" for measure in verdict.measures]
-    return "\n".join(lines)
+    return _joined(lines)
 
 
 def _excerpt(source: Sequence[str], number: int) -> list[str]:
-    return [f"{number:>5} | {source[number - 1]}"] if 0 < number <= len(source) else []
+    is_known = 0 < number <= len(source)
+    return [f"{number:>5} | {source[number - 1].expandtabs(4)}"] if is_known else []
 
 
 def verdict_line(verdict: Verdict) -> str:
@@ -266,8 +274,9 @@ def repeats(results: Iterable[CaseResult], style: Style = PLAIN) -> str:
     return f"{style.mark(False)} {digests.total()} runs, {len(digests)} digests: {told}"
 
 
-def _indent(text: str) -> str:
-    return "\n".join(f"  {line}" for line in text.splitlines())
+def _joined(lines: Iterable[str]) -> str:
+    """Lines as one text; what would end a line within one of them is escaped."""
+    return "\n".join(map(printable, lines))
 
 
 def _plural(count: int, word: str) -> str:

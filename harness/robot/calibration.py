@@ -42,7 +42,7 @@ def calibrated(joints: Sequence[Joint], path: Path) -> tuple[Joint, ...]:
     Raises:
         SpecError: The file is none, or of another robot; at line and column.
     """
-    root = read_data(path)
+    root = read_data(path, ("kinematics",), "UR calibration")
     entry = root.mapping().get("kinematics")
     if entry is None:
         refuse(root, "a UR calibration has `kinematics` at the top, as ur_calibration writes it")

@@ -7,11 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from harness.core.solids import TRIANGLE_SLACK
 from harness.robot.description import Inertial, Link, RobotDescription
 from harness.robot.urdf_links import NO_BODY
-
-TRIANGLE_SLACK = 1e-3
-"""Part by which rounding may break the triangle inequality: files have four digits and more."""
 
 LONGEST_GYRATION = 2.0
 """Radius of gyration that no link of an arm exceeds [m]."""

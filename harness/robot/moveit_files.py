@@ -10,6 +10,7 @@ from harness.robot.description import Joint
 from harness.robot.yaml_data import known_entry, number, read_data, refuse
 from harness.spec.source import Located
 
+SOLVER_KEYS = ("kinematics_solver", "position_only_ik")
 WRAPPERS = ("/**", "ros__parameters", "robot_description_planning", "robot_description_kinematics")
 """Keys that ROS 2 launch files and parameter files put around the content."""
 
@@ -25,9 +26,10 @@ def with_joint_limits(
     Raises:
         SpecError: A joint that the robot has not, or no number; at line and column.
     """
-    entry = _content(read_data(path)).mapping().get("joint_limits")
+    root = read_data(path, ("joint_limits",), "joint_limits.yaml")
+    entry = _content(root).mapping().get("joint_limits")
     if entry is None:
-        refuse(read_data(path), "MoveIt's joint_limits.yaml has `joint_limits` at the top")
+        refuse(root, "MoveIt's joint_limits.yaml has `joint_limits` at the top")
     sections = entry.value.mapping()
     names = [joint.name for joint in joints]
     limits = {name: known_entry(sections, name, names, "joint", robot) for name in sections}
@@ -90,7 +92,7 @@ def position_only_groups(path: Path, groups: Collection[str], robot: str) -> fro
     Raises:
         SpecError: A group that the robot has not; at its key.
     """
-    root = _content(read_data(path))
+    root = _content(read_data(path, SOLVER_KEYS, "kinematics.yaml"))
     sections = root.mapping()
     found: set[str] = set()
     for name in sections:

@@ -10,6 +10,7 @@ import numpy as np
 
 from harness.core.errors import RobotError, SpecError
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Rgba, Shape, Sphere
+from harness.core.solids import TRIANGLE_SLACK
 from harness.robot.description import Inertial, Link
 from harness.robot.mesh_file import SUFFIXES, convex_hull
 from harness.robot.packages import NotFoundError, PackagePath
@@ -92,7 +93,7 @@ class LinkReader:
         if raised[0] < 1e-3 * least:
             raised = np.maximum(raised, least)
         lack = raised[2] - raised[0] - raised[1]
-        if lack > 0:
+        if lack > TRIANGLE_SLACK * raised[2]:
             raised = raised + np.array([lack / 2, lack / 2, 0.0]) * (1 + 1e-9)
         if np.array_equal(raised, moments):
             return inertia

@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +37,7 @@ def render_bundled(path: Path, mappings: Mapping[str, str]) -> str:
     """
     import xacro  # here: parsing plain URDFs does not need it
 
+    xacro.__dict__["open"] = partial(open, encoding="utf-8")  # it would read by the locale
     try:
         document: Any = xacro.process_file(str(path), mappings=dict(mappings))
     except (xacro.XacroException, OSError) as error:

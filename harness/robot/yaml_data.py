@@ -4,22 +4,28 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
 from harness.core.errors import SpecError
 from harness.spec.source import Entry, Located, Source
-from harness.spec.yaml_file import parse_yaml, read_text
+from harness.spec.yaml_file import parse_yaml, read_text, require_key
 
 
-def read_data(path: Path) -> Located:
+def read_data(path: Path, keys: Sequence[str], kind: str) -> Located:
     """The one mapping of a file.
 
+    Args:
+        path: The file.
+        keys: It has one of these at least.
+        kind: What it should be, for messages.
+
     Raises:
-        SpecError: It is no YAML; at line and column.
+        SpecError: It is no such file, or no YAML; at line and column.
     """
     text = read_text(path)
+    require_key(text, keys, str(path), kind)
     return parse_yaml(text, Source.of_text(str(path), text))
 
 

@@ -8,12 +8,18 @@ from dataclasses import replace
 from harness.assertions.looks import looks_of_expectations
 from harness.assertions.placed import PlacedExpectation
 from harness.cell.program import Program
+from harness.core.activity import Activity, unobserved
 from harness.recording.looks import looks_of_steps, merged
 from harness.recording.run import Run
 
 
 def with_camera_pictures(
-    run: Run, program: Program, expectations: Sequence[PlacedExpectation], *, is_kept: bool
+    run: Run,
+    program: Program,
+    expectations: Sequence[PlacedExpectation],
+    *,
+    is_kept: bool,
+    activity: Activity = unobserved,
 ) -> Run:
     """The run with every picture that a verdict reads, and with those that only people look at.
 
@@ -22,6 +28,7 @@ def with_camera_pictures(
         program: With the robot's and the objects' looks.
         expectations: That will be judged.
         is_kept: Whether the run is written; else what no verdict reads is not drawn.
+        activity: Called for each picture and frame.
     """
     looked = looks_of_expectations(run, expectations)
     taken = looks_of_steps(run.steps)
@@ -35,8 +42,10 @@ def with_camera_pictures(
     from harness.cameras.videos import record_videos
 
     objects = program.all_objects()
-    captures, files = take_pictures(program.description, objects, run, looks)
-    films, film_files, notes = record_videos(program.description, objects, run, videos)
+    captures, files = take_pictures(program.description, objects, run, looks, activity)
+    films, film_files, notes = record_videos(
+        program.description, objects, run, videos, activity=activity
+    )
     return replace(
         run,
         captures=captures,

@@ -1,8 +1,8 @@
-"""What can be said of a scenario without physics: its problems, and what will fail."""
+"""What can be said of a scenario without stepping the physics: its problems, what will fail."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,8 +13,14 @@ from harness.engine.explain import explain
 from harness.engine.predict import predict, predict_with_poses, touches_at_start, unexpected
 from harness.ports import Touch
 from harness.reporting.explanation import explanation_lines
+from harness.session.physics import overlap_note, start_physics
 from harness.session.prepare import prepare
+from harness.spec.load import LoadedScenario
 from harness.spec.source import Loc
+from harness.spec.varied_paths import as_json, choices
+
+MOST_CHOICES = 20
+"""Words that `randomize` chooses among which are tried in turn; each takes half a second."""
 
 
 @dataclass(frozen=True)
@@ -44,8 +50,10 @@ def check_file(
     """Read, compile, and look for goals that are out of reach or in collision."""
     try:
         prepared = prepare(path, overrides, seed)
+        overlaps = start_physics(prepared).overlaps_at_start
     except SpecError as error:
         return CheckResult(path.name, problems=tuple(error.problems))
+    problems = _problems_of_choices(prepared.loaded, path, overrides, seed)
     program = prepared.program
     touches = touches_at_start(program, prepared.scene)
     records = predict(program, prepared.scene, prepared.kinematics, prepared.planner)
@@ -56,11 +64,36 @@ def check_file(
         predicted.setdefault(problem, explanation_lines(record.explanation, record.message))
     return CheckResult(
         program.title,
+        problems=problems,
         predicted=tuple(predicted),
         explanations=tuple(predicted.values()),
         steps=len(program.steps),
-        notes=(*prepared.notes, *map(_told, touches)),
+        notes=(
+            *(finding.message for finding in prepared.about_file),
+            *prepared.notes,
+            *(overlap_note(prepared, touch) for touch in overlaps),
+            *(_told(touch) for touch in touches if not _is_among(touch, overlaps)),
+        ),
     )
+
+
+def _is_among(touch: Touch, others: Sequence[Touch]) -> bool:
+    """Whether others have the same two bodies."""
+    return any({touch.first, touch.second} == {each.first, each.second} for each in others)
+
+
+def _problems_of_choices(
+    loaded: LoadedScenario, path: Path, overrides: Mapping[str, str] | None, seed: int | None
+) -> tuple[Problem, ...]:
+    """Mistakes of the words that `randomize` chooses among: names that nothing has."""
+    found: dict[Problem, None] = {}
+    for values in choices(loaded.written)[:MOST_CHOICES]:
+        chosen = {each.path: as_json(each.value.plain()) for each in values}
+        try:
+            prepare(path, {**chosen, **(overrides or {})}, seed)
+        except SpecError as error:
+            found.update(dict.fromkeys(error.problems))
+    return tuple(found)
 
 
 def _told(touch: Touch) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from harness.core.activity import Activity, unobserved
 from harness.core.world import WorldObject
 from harness.recording.run import Run, StepRecord
 from harness.robot.description import RobotDescription
@@ -21,7 +22,11 @@ def with_pictures(run: Run) -> Run:
 
 
 def draw_pictures(
-    description: RobotDescription, objects: Sequence[WorldObject], run: Run, folder: Path
+    description: RobotDescription,
+    objects: Sequence[WorldObject],
+    run: Run,
+    folder: Path,
+    activity: Activity = unobserved,
 ) -> None:
     """Draw what `with_pictures` has named, into a report's folder."""
     wanted = [step for step in run.steps if "picture" in step.explanation]
@@ -30,7 +35,8 @@ def draw_pictures(
     from harness.cameras.failure_pictures import draw_failure
 
     (folder / FOLDER).mkdir(parents=True, exist_ok=True)
-    for step in wanted:
+    for number, step in enumerate(wanted):
+        activity("drawing why steps failed", number, len(wanted))
         draw_failure(description, objects, run, step, folder / step.explanation["picture"])
 
 

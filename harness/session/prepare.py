@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from harness.cell.program import Program
+from harness.cell.scope import Part
 from harness.core.errors import Problem, RobotError, SpecError
 from harness.core.geometry import Mesh
 from harness.engine.compile import Sources, compile_scenario
@@ -16,8 +17,10 @@ from harness.planning.backend import make_planning
 from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
 from harness.planning.planner_names import check_planner
 from harness.ports import Kinematics, MotionPlanner, PlanningScene
+from harness.recording.run import Finding
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
+from harness.session.findings import about_file
 from harness.spec.load import (
     SDF_SUFFIXES,
     LoadedScenario,
@@ -27,7 +30,12 @@ from harness.spec.load import (
     read_scenario,
     world_path,
 )
+from harness.spec.mending import STAND_IN_ROBOT
+from harness.spec.scenario import RobotSpec
 from harness.spec.source import Loc
+
+ROBOT: frozenset[Part] = frozenset({"robot"})
+WORLD: frozenset[Part] = frozenset({"world"})
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +44,7 @@ class Prepared:
 
     Attributes:
         notes: What of the robot's and the world's files was left out or assumed.
+        about_file: What the scenario file allows and probably does not intend.
     """
 
     loaded: LoadedScenario
@@ -44,6 +53,7 @@ class Prepared:
     kinematics: Kinematics
     planner: MotionPlanner
     notes: tuple[str, ...] = ()
+    about_file: tuple[Finding, ...] = ()
 
 
 def prepare(
@@ -61,41 +71,55 @@ def prepare(
     if reading.loaded is None:
         raise SpecError(reading.problems)
     try:
-        prepared = _prepared(reading.loaded)
+        prepared = _prepared(reading.loaded, reading.missing)
     except SpecError as error:
-        raise SpecError(_together(reading, error.problems)) from error
+        problems = _together(reading, error.problems)
+        raise SpecError(_with_notes(problems, reading.loaded.notes)) from error
     if reading.problems:
         raise SpecError(reading.problems)
     return prepared
 
 
+def _with_notes(problems: Sequence[Problem], notes: Sequence[Problem]) -> list[Problem]:
+    """The problems, those in a place of which there is a note with the note's hint."""
+    hints = {(note.path, note.line, note.column): note.hint for note in notes}
+    return [
+        replace(problem, hint="; ".join(filter(None, (hint, problem.hint))))
+        if (hint := hints.get((problem.path, problem.line, problem.column)))
+        else problem
+        for problem in problems
+    ]
+
+
 def _together(reading: Reading, more: Sequence[Problem]) -> list[Problem]:
     """All problems, but those that may follow from another."""
-    lines = {problem.line for problem in reading.problems}
+    places = {(problem.path, problem.line, problem.column) for problem in reading.problems}
     return [
         *reading.problems,
         *(
             problem
             for problem in more
-            if problem.line not in lines
+            if (problem.path, problem.line, problem.column) not in places
             and not any(f"'{word}'" in problem.message for word in reading.doubtful)
         ),
     ]
 
 
-def _prepared(loaded: LoadedScenario) -> Prepared:
+def _prepared(loaded: LoadedScenario, missing: frozenset[Part]) -> Prepared:
     problems: list[Problem] = []
-    description = world = None
     try:
         description = _robot(loaded)
     except SpecError as error:
         problems += error.problems
+        missing |= ROBOT
+        description = load_robot(RobotSpec(model=STAND_IN_ROBOT), loaded.path.parent)
     try:
         world = _world(loaded)
     except SpecError as error:
         problems += error.problems
-    if description is None or world is None:
-        raise SpecError(problems)
+        missing |= WORLD
+        empty = load_world("empty", loaded.path.parent)
+        world = ImportedWorld(empty.model, empty.path)
     scene, kinematics, planner = make_planning(description)
     sources = Sources(
         scenario=loaded.scenario,
@@ -108,9 +132,17 @@ def _prepared(loaded: LoadedScenario) -> Prepared:
         check_planner=check_planner,
         checks_per_second=STATE_CHECKS_PER_SECOND,
         check_mesh=_check_mesh,
+        missing=missing,
     )
     notes = (*description.notes, *map(str, world.notes))
-    return Prepared(loaded, compile_scenario(sources), scene, kinematics, planner, notes)
+    try:
+        program = compile_scenario(sources)
+    except SpecError as error:
+        raise SpecError([*problems, *error.problems]) from error
+    if problems:
+        raise SpecError(problems)
+    about = about_file(program, loaded.notes)
+    return Prepared(loaded, program, scene, kinematics, planner, notes, about)
 
 
 def _robot(loaded: LoadedScenario) -> RobotDescription:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.metadata import version
 
 from harness.cell.program import Program
 from harness.engine.execute import Execution
-from harness.ports import Kinematics
+from harness.ports import Kinematics, Touch
 from harness.recording.run import (
+    Finding,
     GripperRecord,
     JointRecord,
     LinkPlacement,
@@ -18,7 +19,7 @@ from harness.recording.run import (
     Signals,
 )
 from harness.robot.description import RobotDescription
-from harness.session.findings import findings_of, told
+from harness.session.findings import findings_of, overlap_findings, told
 from harness.session.receipts import with_receipts
 
 LIBRARIES = ("armharness", "mujoco", "pin", "coal", "ompl", "toppra", "numpy")
@@ -108,6 +109,8 @@ def run_record(
     source: str,
     resolved: str,
     notes: tuple[str, ...] = (),
+    overlaps: Sequence[Touch] = (),
+    about_file: tuple[Finding, ...] = (),
 ) -> Run:
     """Everything that happened, in one noun."""
     robot = robot_record(program.description, kinematics)
@@ -125,7 +128,13 @@ def run_record(
         gravity=program.world.gravity,
         timestep=program.world.timestep,
         allowed_contacts=tuple(sorted(program.description.allowed_collisions)),
-        findings=(*told(notes), *findings_of(steps), *findings),
+        findings=(
+            *about_file,
+            *told(notes),
+            *overlap_findings(overlaps),
+            *findings_of(steps),
+            *findings,
+        ),
         source=source,
         resolved=resolved,
         versions=library_versions(),

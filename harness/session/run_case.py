@@ -12,9 +12,11 @@ from harness.assertions.judge import judge
 from harness.assertions.observations import merged
 from harness.assertions.placed import PlacedExpectation
 from harness.cell.program import Program, ProgramStep
-from harness.core.errors import HarnessError, Problem, RobotError, SpecError
+from harness.core.activity import Activity
+from harness.core.errors import HarnessError, Problem, SpecError
 from harness.core.types import FloatArray
 from harness.engine.execute import Execution, execute_program
+from harness.ports import Touch
 from harness.recording.digest import digest
 from harness.recording.run import Outcome, Run, Signals, StepRecord, Verdict
 from harness.recording.store import PAGE, StoredRun, write_run
@@ -25,6 +27,7 @@ from harness.session.beliefs import believed_poses
 from harness.session.camera_pictures import with_camera_pictures
 from harness.session.contacts import contact_records
 from harness.session.failure_pictures import draw_pictures, with_pictures
+from harness.session.physics import overlap_note, start_physics
 from harness.session.prepare import Prepared, prepare
 from harness.session.record import run_record
 from harness.session.timing import Clock
@@ -33,7 +36,11 @@ from harness.spec.resolve import resolved_text
 if TYPE_CHECKING:
     from harness.session.timed_simulator import TimedSimulator
 
+MOST_DRAWS = 100
+"""Draws of a sample, the first included, until no objects overlap."""
+
 Notify = Callable[[ProgressEvent], None]
+Redraw = Callable[[int], Mapping[str, str]]
 
 
 def run_case(
@@ -48,6 +55,7 @@ def run_case(
     case: str = "",
     only_failed: bool = False,
     text: str | None = None,
+    redraw: Redraw | None = None,
     on_progress: Notify = lambda _: None,
 ) -> CaseResult:
     """Compile, execute, judge and report one scenario.
@@ -63,12 +71,15 @@ def run_case(
         case: Name of the case; empty when the file has one.
         only_failed: Whether to write a report only where the case does not pass.
         text: What would stand in the file; None: what does.
+        redraw: Other overrides by the number of the draw, from 1, as long as objects overlap at the
+            start; None draws no others.
         on_progress: Told of every step.
     """
     clock = Clock()
     try:
         with clock.part("compile"):
-            prepared = prepare(path, overrides, seed, text)
+            prepared, simulator, redraws = _started(path, overrides, seed, text, clock, redraw)
+            overlaps = simulator.overlaps_at_start
     except SpecError as error:
         return CaseResult(
             str(path), case, path.name, "invalid", problems=tuple(error.problems),
@@ -76,13 +87,19 @@ def run_case(
         )  # fmt: skip
     program = prepared.program
     on_progress(ProgressEvent("compiled", 0, len(program.steps), program.title, "", 0.0, ""))
+
+    def activity(what: str, done: int, total: int) -> None:
+        on_progress(ProgressEvent("activity", done, total, what, "", 0.0, ""))
+
     try:
-        run = _execute(prepared, str(path), clock, on_progress, report_dir)
+        run = _execute(prepared, simulator, str(path), clock, on_progress, report_dir, activity)
+        del simulator  # frees the largest thing there is: the run has what it needs of its record
         run = replace(run, case=case)
         placed = _placed(program)
         bare, is_kept = run, report_dir is not None and not only_failed
         with clock.part("render"):
-            run = with_camera_pictures(bare, program, placed, is_kept=is_kept)
+            run = with_camera_pictures(bare, program, placed, is_kept=is_kept, activity=activity)
+        activity("judging", 0, 0)
         with clock.part("judge"):
             verdicts = judge(run, placed)
         outcome = _outcome(run, verdicts)
@@ -94,7 +111,10 @@ def run_case(
         if report_dir is not None:
             if only_failed:
                 with clock.part("render"):
-                    run = with_camera_pictures(bare, program, placed, is_kept=True)
+                    run = with_camera_pictures(
+                        bare, program, placed, is_kept=True, activity=activity
+                    )
+            activity("writing the report", 0, 0)
             with clock.part("write"):
                 run = with_pictures(run) if stills else run
                 notes = _write(
@@ -108,13 +128,9 @@ def run_case(
                     stills,
                     page,
                     bag,
+                    activity,
                 )
             on_progress(ProgressEvent("written", 0, 0, "", outcome, run_time(run), str(report_dir)))
-    except RobotError as error:
-        return CaseResult(
-            str(path), case, program.title, "invalid", seed=program.seed, message=str(error),
-            problems=(Problem(str(path), 0, 0, str(error)),), wall_times=clock.seconds,
-        )  # fmt: skip
     except HarnessError as error:
         return CaseResult(
             str(path), case, program.title, "error", seed=program.seed, message=str(error),
@@ -132,7 +148,13 @@ def run_case(
         page=str(report_dir / PAGE) if report_dir is not None and page else "",
         steps=tuple(step_line(step) for step in run.steps),
         verdicts=verdicts,
-        notes=notes,
+        notes=(
+            *(finding.message for finding in prepared.about_file),
+            *(overlap_note(prepared, touch) for touch in overlaps),
+            *notes,
+        ),
+        overlap=-overlaps[0].distance if overlaps else 0.0,
+        redraws=redraws,
         wall_times=clock.seconds,
     )
 
@@ -158,24 +180,58 @@ def step_line(step: StepRecord) -> StepLine:
     )
 
 
-def _execute(
-    prepared: Prepared, file: str, clock: Clock, on_progress: Notify, report_dir: Path | None
-) -> Run:
-    from harness.session.timed_simulator import TimedSimulator  # physics: no use to a check
+def _started(
+    path: Path,
+    overrides: Mapping[str, str] | None,
+    seed: int | None,
+    text: str | None,
+    clock: Clock,
+    redraw: Redraw | None,
+) -> tuple[Prepared, TimedSimulator, int]:
+    """The scenario at its start, and how often it was drawn again until no objects overlapped.
 
-    program = prepared.program
+    Raises:
+        SpecError: With every problem of the file; or objects overlap in every draw.
+    """
+    last: list[Problem] = []
+    for draw in range(MOST_DRAWS):
+        drawn = overrides if redraw is None or not draw else redraw(draw)
+        prepared = prepare(path, drawn, seed, text)
+        simulator = start_physics(prepared, clock, _observed_links(prepared.program))
+        if redraw is None or not simulator.overlaps_at_start:
+            return prepared, simulator, draw
+        last = [_no_free_draw(prepared, simulator.overlaps_at_start[0])]
+    raise SpecError(last)
+
+
+def _no_free_draw(prepared: Prepared, touch: Touch) -> Problem:
+    return prepared.loaded.lines.problem(
+        ("redraw_overlaps",),
+        f"objects overlap in each of {MOST_DRAWS} draws; in the last one {touch.first} and"
+        f" {touch.second} by {-1e3 * touch.distance:.3g} mm",
+        "widen the distributions of `randomize`, or move what does not vary",
+    )
+
+
+def _observed_links(program: Program) -> list[str]:
+    """Links whose poses the expectations need."""
     needed = merged(each.spec.observations() for each in _placed(program))
     links = set(program.description.link_names)
-    with clock.part("compile"):
-        simulator = TimedSimulator(
-            clock,
-            program.description,
-            [obj for obj in program.all_objects() if obj.in_simulation],
-            [obj.name for obj in program.world.objects if obj.in_simulation],
-            gravity=program.world.gravity,
-            timestep=program.world.timestep,
-            frames=[name for name in needed.frames if name in links],
-        )
+    return [name for name in needed.frames if name in links]
+
+
+def _execute(
+    prepared: Prepared,
+    simulator: TimedSimulator,
+    file: str,
+    clock: Clock,
+    on_progress: Notify,
+    report_dir: Path | None,
+    activity: Activity,
+) -> Run:
+    program = prepared.program
+    activity("setting up planning and physics", 0, 0)
+    needed = merged(each.spec.observations() for each in _placed(program))
     with clock.part("execute"):
         execution = execute_program(
             program,
@@ -185,6 +241,7 @@ def _execute(
             simulator,
             _step_teller(program, on_progress, simulator),
         )
+    activity("measuring distances and contacts", 0, 0)
     with clock.part("judge"):
         signals = simulator.finish()
         believed = believed_poses(execution.beliefs, signals.joint_positions, prepared.kinematics)
@@ -203,6 +260,8 @@ def _execute(
         source=prepared.loaded.text,
         resolved=resolved_text(prepared.loaded, seeds, folder=report_dir),
         notes=prepared.notes,
+        overlaps=simulator.overlaps_at_start,
+        about_file=prepared.about_file,
     )
     with clock.part("judge"):
         return _compared_with_plan(prepared, run, is_recorded=needed.planned_clearances)
@@ -289,6 +348,7 @@ def _write(
     stills: bool,
     page: bool,
     bag: bool,
+    activity: Activity,
 ) -> tuple[str, ...]:
     """Write the report folder; what a person should know of it comes back as notes."""
     from harness.session.visuals import mesh_records
@@ -297,12 +357,14 @@ def _write(
     stored = StoredRun(run, verdicts, outcome, fingerprint, dict(clock.seconds))
 
     def add(target: Path) -> tuple[str, ...]:
-        notes = _draw_stills(prepared.program, run, target) if stills else ()
+        notes = _draw_stills(prepared.program, run, target, activity) if stills else ()
         if page:
+            activity("writing the page", 0, 0)
             from harness.reporting.html.write import write_page
 
             write_page(target, stored)
         if bag:
+            activity("writing the bag", 0, 0)
             from harness.reporting.rosbag.write import BAG, write_bag
 
             write_bag(target / BAG, stored)
@@ -313,9 +375,10 @@ def _write(
     )  # fmt: skip
 
 
-def _draw_stills(program: Program, run: Run, target: Path) -> tuple[str, ...]:
+def _draw_stills(program: Program, run: Run, target: Path, activity: Activity) -> tuple[str, ...]:
     from harness.cameras.stills import save_stills
 
-    report = save_stills(program.description, program.all_objects(), run, target / "images")
-    draw_pictures(program.description, program.all_objects(), run, target)
+    objects = program.all_objects()
+    report = save_stills(program.description, objects, run, target / "images", activity=activity)
+    draw_pictures(program.description, objects, run, target, activity)
     return (report.note,) if report.note else ()

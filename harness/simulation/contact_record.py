@@ -19,6 +19,9 @@ ROWS = 4096
 CONTACTS_PER_ROW = 24
 """Contacts that fit into the first arrays for each sample; more make them grow sooner."""
 
+BLOCK = 2**19
+"""Contacts that are sorted at a time."""
+
 BYTES = 40
 """Of a contact in the arrays."""
 
@@ -51,27 +54,24 @@ class ContactRecord:
         self.count = end = begin + data.ncon
         self._end[row] = end
         if end > len(self._forces):
-            self._geoms = np.concatenate([self._geoms, np.empty_like(self._geoms)])
-            self._forces = np.concatenate([self._forces, np.empty_like(self._forces)])
-            self._normals = np.concatenate([self._normals, np.empty_like(self._normals)])
-            self._points = np.concatenate([self._points, np.empty_like(self._points)])
+            self._geoms = _doubled(self._geoms)
+            self._forces = _doubled(self._forces)
+            self._normals = _doubled(self._normals)
+            self._points = _doubled(self._points)
         if end > begin:
             contact = data.contact
             self._geoms[begin:end] = contact.geom
             self._normals[begin:end] = contact.frame[:, :3]
             self._points[begin:end] = contact.pos
-            data.efc_force.take(contact.efc_address, 0, self._forces[begin:end], "clip")
+            _normal_forces(data, self._forces[begin:end])
 
     def forces(self, first: int, last: int) -> dict[BodyPair, FloatArray]:
         """Normal force [N] of pairs that touch in samples first to last - 1, (samples,) each."""
-        begin = int(self._end[first - 1]) if first else 0
-        forces = self._forces[begin : self._end[last - 1]]
-        rows = self._rows(first, last)
-        found = {
-            self._pair(*numbers): np.bincount(rows[chosen], forces[chosen], minlength=last - first)
-            for numbers, chosen in self._by_pair(begin, int(self._end[last - 1]))
-        }
-        return {pair: found[pair].astype(np.float64) for pair in sorted(found)}
+        found: dict[BodyPair, FloatArray] = {}
+        for numbers, rows, contacts in self._by_pair(first, last):
+            sums = found.setdefault(self._pair(*numbers), np.zeros(last - first))
+            _add(sums, rows, self._forces[contacts])
+        return {pair: found[pair] for pair in sorted(found)}
 
     def presses(self, count: int) -> dict[BodyPair, FloatArray]:
         """Where a link of the robot presses on something else, and how.
@@ -84,29 +84,24 @@ class ContactRecord:
             their normal forces, in the world; then the sum of these forces on the other body, in
             world axes [N]. NaN where there is no force.
         """
-        end, rows, robot = (
-            int(self._end[count - 1]),
-            self._rows(0, count),
-            self._physics.robot_bodies,
-        )
+        robot = self._physics.robot_bodies
         found: dict[BodyPair, FloatArray] = {}
-        for (first, second), chosen in self._by_pair(0, end):
+        for (first, second), rows, contacts in self._by_pair(0, count):
             if (first in robot) == (second in robot):
                 continue
-            link = first if first in robot else second
-            where, force = rows[chosen], self._forces[:end][chosen]
-            # a contact's normal points from its first geom to its second
-            bodies = self._physics.model.geom_bodyid[self._geoms[:end][chosen, 0]]
-            signed = np.where(bodies == link, force, -force)
-            total = np.bincount(where, force, minlength=count)
-            weighted = [*(self._points[:end][chosen] * force[:, None]).T]
-            vectors = [*(self._normals[:end][chosen] * signed[:, None]).T]
-            sums = [np.bincount(where, values, minlength=count) for values in (*weighted, *vectors)]
+            sums = found.setdefault(self._pair(first, second), np.zeros((count, 7)))
+            force = self._forces[contacts]
+            signed = self._signs(contacts, first if first in robot else second) * force
+            weighted = [*(self._points[contacts] * force[:, None]).T]
+            vectors = [*(self._normals[contacts] * signed[:, None]).T]
+            for column, values in enumerate((*weighted, *vectors, force)):
+                _add(sums[:, column], rows, values)
+        for pair, sums in found.items():
             pressed = np.full((count, 6), np.nan)
-            there = total > 0
-            pressed[there] = np.stack(sums, axis=1)[there]
-            pressed[there, :3] /= total[there, None]
-            found[self._pair(first, second)] = pressed
+            there = sums[:, 6] > 0
+            pressed[there] = sums[there, :6]
+            pressed[there, :3] /= sums[there, 6:]
+            found[pair] = pressed
         return {pair: found[pair] for pair in sorted(found)}
 
     def support_forces(self, count: int) -> dict[BodyPair, FloatArray]:
@@ -115,34 +110,55 @@ class ContactRecord:
         Args:
             count: Samples, from the first on.
         """
-        end, rows = int(self._end[count - 1]), self._rows(0, count)
-        upward = self._forces[:end] * self._normals[:end, 2]
         names, robot = self._physics.body_names, self._physics.robot_bodies
         found: dict[BodyPair, FloatArray] = {}
-        for numbers, chosen in self._by_pair(0, end):
+        for numbers, rows, contacts in self._by_pair(0, count):
             if not robot.isdisjoint(numbers):
                 continue
             pair = self._pair(*numbers)
-            # a contact's normal points from its first geom to its second
-            bodies = self._physics.model.geom_bodyid[self._geoms[:end][chosen, 0]]
-            signs = np.where(bodies == names.index(pair[0]), 1.0, -1.0)
-            weights = (signs * upward[chosen]).astype(np.float64)
-            found[pair] = np.bincount(rows[chosen], weights, count).astype(np.float64)
+            below = next(number for number in numbers if names[number] == pair[0])
+            upward = self._forces[contacts] * self._normals[contacts, 2]
+            sums = found.setdefault(pair, np.zeros(count))
+            _add(sums, rows, self._signs(contacts, below) * upward)
         return {pair: found[pair] for pair in sorted(found)}
 
-    def _rows(self, first: int, last: int) -> Array:
-        """Of every contact in samples first to last - 1: its sample, from 0."""
-        begin = self._end[first - 1] if first else 0
-        per_row = np.diff(self._end[first:last], prepend=begin)
-        return np.repeat(np.arange(last - first), per_row)
+    def _by_pair(self, first: int, last: int) -> Iterator[tuple[tuple[int, int], Array, Array]]:
+        """Contacts of each pair of bodies in samples first to last - 1.
 
-    def _by_pair(self, begin: int, end: int) -> Iterator[tuple[tuple[int, int], Array]]:
-        """Numbers of two bodies that touch, the smaller first, and which contacts are theirs."""
+        Contacts are sorted by pair, some samples at a time: the time is linear in their number
+        however many pairs there are, and what is needed besides the record stays small.
+
+        Yields:
+            Numbers of two bodies, the smaller first; of each of their contacts in some samples, in
+            the order of recording, the sample counted from `first`, and its index.
+        """
+        ends = self._end[first:last]
+        row = 0
+        while row < len(ends):
+            begin = int(self._end[first + row - 1]) if first + row else 0
+            stop = max(row + 1, int(np.searchsorted(ends, begin + BLOCK, side="right")))
+            for numbers, contacts in self._sorted(begin, int(ends[stop - 1])):
+                yield numbers, np.searchsorted(ends, contacts, side="right"), contacts
+            row = stop
+
+    def _sorted(self, begin: int, end: int) -> Iterator[tuple[tuple[int, int], Array]]:
+        """Numbers of two bodies, the smaller first, and which of some contacts are theirs."""
+        if begin == end:
+            return
+        size = self._physics.model.nbody
         bodies = self._physics.model.geom_bodyid[self._geoms[begin:end]]
-        first, second = bodies.T
-        codes = np.minimum(first, second) * self._physics.model.nbody + np.maximum(first, second)
-        for code in np.unique(codes).tolist():
-            yield divmod(code, self._physics.model.nbody), codes == code
+        codes = bodies.min(axis=1) * size + bodies.max(axis=1)
+        order = np.argsort(codes, kind="stable")
+        pairs, starts = np.unique(codes[order], return_index=True)
+        parts = np.split(order + begin, starts[1:])
+        for code, contacts in zip(pairs.tolist(), parts, strict=True):
+            yield divmod(code, size), contacts
+
+    def _signs(self, contacts: Array, body: int) -> Array:
+        """1 where a contact's normal, from its first geom to its second, leaves a body; else -1."""
+        return np.where(
+            self._physics.model.geom_bodyid[self._geoms[contacts, 0]] == body, 1.0, -1.0
+        )
 
     def _pair(self, first: int, second: int) -> BodyPair:
         """Names of two bodies: a robot's link first, else sorted."""
@@ -153,3 +169,30 @@ class ContactRecord:
             )
         a, b = sorted((names[first], names[second]))
         return a, b
+
+
+def _add(sums: FloatArray, rows: Array, values: Array) -> None:
+    """Add values at their rows, which ascend."""
+    part = np.bincount(rows - rows[0], values)
+    sums[rows[0] : rows[0] + len(part)] += part
+
+
+def _doubled(values: Array) -> Array:
+    """The values in an array of twice the length, whose second half takes no memory until used."""
+    larger = np.empty((2 * len(values), *values.shape[1:]), values.dtype)
+    larger[: len(values)] = values
+    return larger
+
+
+def _normal_forces(data: mujoco.MjData, forces: FloatArray) -> None:
+    """Write the normal force [N] of every contact; one that only touches has no force.
+
+    Such a contact has no row among the constraints, which MuJoCo says with an address of -1; where
+    nothing else is constrained, as with an arm without a gripper, there are no rows at all.
+    """
+    if not data.nefc:
+        forces[:] = 0.0
+        return
+    address = data.contact.efc_address
+    data.efc_force.take(address, 0, forces, "clip")
+    forces[address < 0] = 0.0

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from harness.core.errors import RobotError
 from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
 from harness.robot.description import RobotDescription
+from harness.simulation.compiling import compile_model, refuse_unusable_masses
 from harness.simulation.geoms import Surfaces
 from harness.simulation.grasp_contacts import add_grasp_contacts
 from harness.simulation.robot_mjcf import add_robot, joint_range, link_friction
@@ -90,8 +90,12 @@ def build_model(
         gravity: [m/s^2].
         timestep: [s].
         frames: Links whose poses are recorded besides the TCP's.
+
+    Raises:
+        ModelRefused: MuJoCo cannot simulate one of the bodies.
     """
     simulated = [obj for obj in objects if obj.in_simulation]
+    refuse_unusable_masses(simulated)
     surfaces = Surfaces.of(
         [link_friction(description, link.name) for link in description.links]
         + [obj.friction_of(shape) for obj in simulated for shape in obj.shapes]
@@ -122,11 +126,7 @@ def build_model(
                 objtype=mujoco.mjtObj.mjOBJ_ACTUATOR,
                 objname=joint.name,
             )
-    try:
-        model = spec.compile()
-    except ValueError as error:
-        said = " ".join(str(error).removeprefix("Error: ").split())
-        raise RobotError(f"the physics cannot build this robot and world: {said}") from error
+    model = compile_model(spec)
     physics = _places(model, description, servos, simulated, tuple(frames))
     for name, place in physics.objects.items():
         set_presence(model, place, present=name in present)

@@ -9,7 +9,7 @@ from collections.abc import Collection, Sequence
 import mujoco
 import numpy as np
 
-from harness.core.errors import StepFailed
+from harness.core.errors import ModelRefused, StepFailed
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray, IntArray
@@ -22,6 +22,7 @@ from harness.simulation.faults import Faults
 from harness.simulation.gripper_drive import GripperDrive
 from harness.simulation.model import build_model
 from harness.simulation.objects import Objects
+from harness.simulation.overlaps import overlaps
 from harness.simulation.recording import Recording, refresh
 from harness.simulation.robot_mjcf import coupling
 from harness.simulation.servo import FeedForward
@@ -41,7 +42,11 @@ ABORT_HOLD = 0.2
 
 
 class MujocoSimulator:
-    """Physics of one run; equal calls give equal bits, in whatever pieces time is advanced."""
+    """Physics of one run; equal calls give equal bits, in whatever pieces time is advanced.
+
+    Attributes:
+        overlaps_at_start: Objects that are inside something at the start, the deepest pair first.
+    """
 
     def __init__(
         self,
@@ -62,6 +67,9 @@ class MujocoSimulator:
             gravity: [m/s^2].
             timestep: [s].
             frames: Links whose poses are recorded besides the TCP's.
+
+        Raises:
+            ModelRefused: MuJoCo cannot simulate one of the bodies.
         """
         self.physics = build_model(
             description, world_objects, present, gravity=gravity, timestep=timestep, frames=frames
@@ -81,9 +89,28 @@ class MujocoSimulator:
         self.faults = Faults(self, self.physics, self._data)
         self._recording = Recording(self.physics, self._data)
         refresh(self._model, self._data)
+        self._refuse_unusable_start()
+        self.overlaps_at_start = overlaps(self.physics, self._data)
         self._recording.start(self._command)
         self._objects = Objects(self.physics, self._data, self._recording, frozenset(present))
         self._gripper = None if description.gripper is None else GripperDrive(self, self._recording)
+
+    def _refuse_unusable_start(self) -> None:
+        """See that MuJoCo can step from the start state."""
+        for name, place in self.physics.objects.items():
+            pose = self._data.xpos[place.body]
+            if not (np.abs(pose) <= mujoco.mjMAXVAL).all():
+                far = float(np.abs(pose).max())
+                raise ModelRefused(
+                    name, f"it stands {far:.3g} m away; the physics takes {mujoco.mjMAXVAL:g} m"
+                )
+        beyond = np.flatnonzero(~(np.abs(self._data.qacc) <= mujoco.mjMAXVAL))
+        if len(beyond):
+            raise ModelRefused(
+                self.physics.body_names[self._model.dof_bodyid[beyond[0]]],
+                f"its acceleration at the start exceeds {mujoco.mjMAXVAL:g} m/s^2: its mass, its"
+                " inertia, its pose or gravity has a number that is too large or too small",
+            )
 
     @property
     def time(self) -> float:

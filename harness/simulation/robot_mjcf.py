@@ -15,6 +15,13 @@ from harness.simulation.geoms import Surfaces, add_collision_geom
 LINK_FRICTION = Friction()
 """Surface of robot links other than the finger pads."""
 
+TRIANGLE_MARGIN = 1e-9
+"""Part of the largest principal moment of inertia that the sum of the two others exceeds it by.
+
+MuJoCo refuses a body whose moments break the triangle inequality by a rounding error, and finds the
+moments with rounding errors of its own. A flat or a thin body lies on the edge of the inequality.
+"""
+
 MIMIC_SOLREF = (0.01, 1.0)
 """Time constant [s] and damping ratio of a mimic coupling.
 
@@ -63,12 +70,21 @@ def add_robot(spec: mujoco.MjSpec, description: RobotDescription, surfaces: Surf
 
 def set_inertia(body: mujoco.MjsBody, inertial: Inertial) -> None:
     """Give a body its mass, centre of mass and inertia explicitly."""
-    inertia = inertial.inertia
+    inertia = _inside_the_triangle(inertial.inertia)
     body.explicitinertial = True
     body.mass = inertial.mass
     body.ipos = inertial.center_of_mass
     rows, columns = [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]
     body.fullinertia = inertia[rows, columns]
+
+
+def _inside_the_triangle(inertia: FloatArray) -> FloatArray:
+    """The tensor, its smaller principal moments raised where they lack `TRIANGLE_MARGIN`."""
+    moments, axes = np.linalg.eigh(inertia)
+    lack = (1 + TRIANGLE_MARGIN) * moments[2] - moments[0] - moments[1]
+    if lack <= 0:
+        return inertia
+    return axes @ np.diag(moments + np.array([lack / 2, lack / 2, 0.0])) @ axes.T
 
 
 def joint_range(description: RobotDescription, joint: Joint) -> tuple[float, float]:

@@ -11,6 +11,7 @@ import numpy as np
 
 from harness.core.types import FloatArray
 from harness.robot.description import RobotDescription
+from harness.simulation.compiling import compile_model
 from harness.simulation.geoms import Surfaces
 from harness.simulation.robot_mjcf import add_robot, coupling, link_friction
 
@@ -69,7 +70,7 @@ def design_servos(description: RobotDescription, timestep: float) -> Servos:
     The inertia is the larger of that at all joints zero (UR and OpenMANIPULATOR-X arms are
     stretched there) and that at the start state, other joints at rest, plus the rotor's.
     """
-    model = bare_robot(description).compile()
+    model = compile_model(bare_robot(description))
     actuated = [joint for joint in description.movable_joints if joint.mimic is None]
     zero = description.with_mimics(np.zeros(len(description.joint_names)))
     inertia = np.maximum(
@@ -120,7 +121,7 @@ class FeedForward:
             | mujoco.mjtDisableBit.mjDSBL_LIMIT
         )
         set_rotor_inertia(spec, description, servos)
-        self._model = spec.compile()
+        self._model = compile_model(spec)
         self._data = mujoco.MjData(self._model)
         joints = [self._model.joint(name) for name in description.joint_names]
         self._positions = np.array([joint.qposadr[0] for joint in joints], dtype=np.intp)

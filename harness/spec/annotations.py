@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import types
+from collections.abc import Iterable
 from typing import Annotated, Any, TypeGuard, Union, get_args, get_origin
 
 from pydantic import BeforeValidator
@@ -39,19 +40,23 @@ def spelling(name: str, field: FieldInfo) -> str:
     return field.alias or name
 
 
+def units_of(annotation: Any, metadata: Iterable[Any] = ()) -> tuple[str, ...]:
+    """SI units of a number that may carry one; none of anything else.
+
+    Args:
+        annotation: Of a field, or of a part of one.
+        metadata: Of the field, where pydantic has taken it out of the annotation.
+    """
+    members = [each for each in branches(annotation) if each is not type(None)]
+    if len(members) == 1:
+        return units_of(members[0])
+    while get_origin(annotation) is Annotated:
+        annotation, *more = get_args(annotation)
+        metadata = (*more, *metadata)
+    functions = (item.func for item in metadata if isinstance(item, BeforeValidator))
+    return next((func.units for func in functions if hasattr(func, "units")), ())  # type: ignore[union-attr]
+
+
 def keys_of(model: type[SpecModel]) -> dict[str, FieldInfo]:
     """A model's fields by their key in the file."""
     return {spelling(name, field): field for name, field in model.model_fields.items()}
-
-
-def units_of(field: FieldInfo) -> tuple[str, ...]:
-    """The SI units in which a field's number may be written; empty where it has none."""
-    waiting: list[Any] = [*field.metadata, field.annotation]
-    for part in waiting:
-        if isinstance(part, BeforeValidator):
-            units: tuple[str, ...] | None = getattr(part.func, "units", None)
-            if units is not None:
-                return units
-        if get_origin(part) is Annotated or branches(part):
-            waiting += get_args(part)
-    return ()

@@ -15,6 +15,7 @@ from pydantic import (
     model_validator,
 )
 
+from harness.spec.colors import color_of_name
 from harness.spec.mistakes import MistakeError
 from harness.spec.units import quantity
 
@@ -92,6 +93,7 @@ Number = Annotated[float, Strict()]
 Count = Annotated[int, Strict()]
 Flag = Annotated[bool, Strict()]
 
+Share = Annotated[float, BeforeValidator(quantity("1"))]
 Rate = Annotated[float, BeforeValidator(quantity("Hz"))]
 Length = Annotated[float, BeforeValidator(quantity("m"))]
 Angle = Annotated[float, BeforeValidator(quantity("rad"))]
@@ -111,17 +113,13 @@ PositiveLength = Annotated[Length, Field(gt=0), AfterValidator(refuse_tiny)]
 NonNegativeLength = Annotated[Length, Field(ge=0)]
 NonNegativeAngle = Annotated[Angle, Field(ge=0)]
 PositiveDuration = Annotated[Duration, Field(gt=0)]
-Fraction = Annotated[Number, Field(gt=0, le=1)]
+Fraction = Annotated[Share, Field(gt=0, le=1)]
 
 Xyz = tuple[Length, Length, Length]
 Rpy = tuple[Angle, Angle, Angle]
 Quaternion = tuple[Number, Number, Number, Number]
-Color = tuple[
-    Annotated[Number, Field(ge=0, le=1)],
-    Annotated[Number, Field(ge=0, le=1)],
-    Annotated[Number, Field(ge=0, le=1)],
-    Annotated[Number, Field(ge=0, le=1)],
-]
+ColorPart = Annotated[Number, Field(ge=0, le=1)]
+Color = Annotated[tuple[ColorPart, ColorPart, ColorPart, ColorPart], BeforeValidator(color_of_name)]
 
 
 def kind_of(value: Any) -> str:

@@ -21,6 +21,8 @@ from harness.spec.yaml_file import LARGEST_TREE, parse_yaml, read_text
 INCLUDE = "include"
 KEYS = ("description", PARAMS, "steps")
 DEEPEST = 10
+PROJECT_MARKS = (".git", "pyproject.toml", "package.xml")
+"""A folder with one of these is a project; its scenarios may share steps."""
 
 
 class _Context(NamedTuple):
@@ -29,6 +31,20 @@ class _Context(NamedTuple):
     folder: Path
     params: Mapping[str, Entry]
     around: tuple[Path, ...]
+
+    @property
+    def root(self) -> Path:
+        """The folder that included files stand in."""
+        return project_folder(self.around[0].parent)
+
+
+def project_folder(folder: Path) -> Path:
+    """The nearest folder around that marks a project, or the folder itself."""
+    resolved = folder.resolve()
+    around = (resolved, *resolved.parents)
+    return next(
+        (each for each in around if any((each / mark).exists() for mark in PROJECT_MARKS)), resolved
+    )
 
 
 def with_includes(root: Located, path: Path, problems: list[Problem]) -> Located:
@@ -89,13 +105,19 @@ class _Expander:
             self.problems.append(file.place.problem(message, "include: approach.steps.yaml"))
             return nothing
         path = context.folder / file.value
+        if not path.resolve().is_relative_to(context.root):
+            message = f"'{file.value}' is outside '{context.root}' and is not read"
+            hint = "included files stand in the scenario's folder, in its project, or below"
+            self.problems.append(file.place.problem(message, hint))
+            return nothing
         around = " in ".join(f"'{each.name}'" for each in reversed(context.around))
         if path.resolve() in context.around or len(context.around) > DEEPEST:
             message = f"'{file.value}' is included in itself: it is here in {around}"
             self.problems.append(file.place.problem(message))
             return nothing
         try:
-            root = parse_yaml(text := read_text(path), Source.of_text(str(path), text))
+            text = read_text(path)
+            root = parse_yaml(text, Source.of_text(str(path), text), self.problems)
         except SpecError as error:
             self.problems += [
                 problem

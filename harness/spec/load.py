@@ -5,31 +5,32 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Generic, TypeVar, cast
+from typing import Any, Generic, Literal, TypeVar, cast
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from harness.core.errors import Problem, SpecError
 from harness.core.resources import data_folder
-from harness.spec.annotations import keys_of
 from harness.spec.base import SpecModel
 from harness.spec.includes import with_includes
-from harness.spec.mending import mended
+from harness.spec.mending import Mended, mended
 from harness.spec.mistakes import did_you_mean
-from harness.spec.params import override, substitute
+from harness.spec.overrides import from_options, override
+from harness.spec.params import substitute
 from harness.spec.scenario import Scenario
 from harness.spec.short_forms import models_shape
-from harness.spec.source import Located, Source, SourceMap
-from harness.spec.varied_paths import check_paths, values_of_case
+from harness.spec.source import Loc, Located, Source, SourceMap
+from harness.spec.varied_paths import check_variation, values_of_case
 from harness.spec.wording import problems_of
 from harness.spec.world import WorldSpec
-from harness.spec.yaml_file import parse_yaml, read_text
+from harness.spec.yaml_file import parse_yaml, read_text, require_key
 
 M = TypeVar("M", bound=SpecModel)
 
 WORLD_SUFFIXES = (".yaml", ".yml")
 SDF_SUFFIXES = (".sdf", ".world")
+MOST_REPAIRS = 3  # what is left out may leave something else incomplete
 SCENE_SUFFIX = ".scene"
 
 
@@ -43,6 +44,7 @@ class Loaded(Generic[M]):
         text: As read.
         lines: From a field of the model to its line and column.
         written: The file's values in its own short forms, parameters and overrides applied.
+        notes: What the file may say and probably does not intend.
     """
 
     model: M
@@ -50,6 +52,7 @@ class Loaded(Generic[M]):
     text: str
     lines: SourceMap
     written: Located
+    notes: tuple[Problem, ...] = ()
 
 
 class LoadedScenario(Loaded[Scenario]):
@@ -84,11 +87,13 @@ class Reading:
         loaded: The scenario; with problems, what remains of it; None when that is too little.
         problems: Mistakes found so far.
         doubtful: Words of what was left out; a mistake that speaks of one may follow from another.
+        missing: `robot` or `world`, where something else stands in for what cannot be read.
     """
 
     loaded: LoadedScenario | None
     problems: tuple[Problem, ...] = ()
     doubtful: frozenset[str] = frozenset()
+    missing: frozenset[Literal["robot", "world"]] = frozenset()
 
 
 def read_scenario(
@@ -106,25 +111,40 @@ def read_scenario(
         text: What would stand in the file; None: what does.
 
     Raises:
-        SpecError: The file is no YAML, or an override names nothing in it.
+        SpecError: The file is not YAML.
     """
     given = dict(overrides or {})
     if seed is not None:
         given["seed"] = str(seed)
     text = read_text(path) if text is None else text
     problems: list[Problem] = []
-    written = parse_yaml(text, Source.of_text(str(path), text))
-    written = override(written, given, keys_of(Scenario), values_of_case(written, given))
-    check_paths(written, tuple(keys_of(Scenario)), problems)
-    written = substitute(with_includes(written, path, problems), problems)
+    notes: list[Problem] = []
+    root = parse_yaml(text, Source.of_text(str(path), text), problems)
+    of_file = values_of_case(root, given)
+    options = {key: value for key, value in given.items() if key not in of_file}
+    root = override(root, [*of_file.values(), *from_options(options, problems)], problems)
+    check_variation(root, given, lambda varied: _problems_of(varied, path), problems)
+    written = substitute(with_includes(root, path, problems), problems)
     try:
-        model, lines = _model(written, Scenario, problems)
+        model, lines = _model(written, Scenario, problems, notes)
     except _BrokenError as error:
         if error.remains is None:
             return Reading(None, tuple(error.problems))
-        loaded = LoadedScenario(error.remains, path, text, error.lines, written)
-        return Reading(loaded, tuple(error.problems), error.doubtful)
-    return Reading(LoadedScenario(model, path, text, lines, written))
+        loaded = LoadedScenario(error.remains, path, text, error.lines, written, tuple(notes))
+        missing = frozenset(error.mended.missing)
+        return Reading(loaded, tuple(error.problems), frozenset(error.mended.words), missing)
+    return Reading(LoadedScenario(model, path, text, lines, written, tuple(notes)))
+
+
+def _problems_of(root: Located, path: Path) -> list[Problem]:
+    """The mistakes of a scenario's values."""
+    problems: list[Problem] = []
+    written = substitute(with_includes(root, path, problems), problems)
+    try:
+        _model(written, Scenario, problems)
+    except SpecError as error:
+        return error.problems
+    return []
 
 
 def load_scenario(
@@ -140,24 +160,20 @@ def load_scenario(
     Raises:
         SpecError: With every problem of the file and of the overrides.
     """
-    given = dict(overrides or {})
-    if seed is not None:
-        given["seed"] = str(seed)
-    return parse_scenario(read_text(path), path, given)
+    return _whole(read_scenario(path, overrides, seed))
 
 
 def parse_scenario(
     text: str, path: Path, overrides: Mapping[str, str] | None = None
 ) -> LoadedScenario:
     """As `load_scenario`, of a text that would stand in the file."""
-    problems: list[Problem] = []
-    written = parse_yaml(text, Source.of_text(str(path), text))
-    given = dict(overrides or {})
-    written = override(written, given, keys_of(Scenario), values_of_case(written, given))
-    check_paths(written, tuple(keys_of(Scenario)), problems)
-    written = substitute(with_includes(written, path, problems), problems)
-    model, lines = _model(written, Scenario, problems)
-    return LoadedScenario(model, path, text, lines, written)
+    return _whole(read_scenario(path, overrides, text=text))
+
+
+def _whole(reading: Reading) -> LoadedScenario:
+    if reading.problems or reading.loaded is None:
+        raise SpecError(reading.problems)
+    return reading.loaded
 
 
 def load_world(name_or_path: str, base_dir: Path) -> LoadedWorld:
@@ -174,7 +190,8 @@ def load_world(name_or_path: str, base_dir: Path) -> LoadedWorld:
     problems: list[Problem] = []
     try:
         text = read_text(path)
-        written = parse_yaml(text, Source.of_text(str(path), text))
+        require_key(text, ("world",), str(path), "world file")
+        written = parse_yaml(text, Source.of_text(str(path), text), problems)
     except SpecError as error:
         raise SpecError(_of_world(problem, name_or_path) for problem in error.problems) from error
     model, lines = _model(written, WorldSpec, problems)
@@ -230,7 +247,7 @@ class _BrokenError(SpecError):
     Attributes:
         lines: From a field of the model to its line and column.
         remains: A model of what could be read; None when too little could.
-        doubtful: Words of what could not.
+        mended: What was done to get it.
     """
 
     def __init__(
@@ -238,47 +255,64 @@ class _BrokenError(SpecError):
         problems: list[Problem],
         lines: SourceMap,
         remains: Any = None,
-        doubtful: frozenset[str] = frozenset(),
+        mended: Mended | None = None,
     ) -> None:
         super().__init__(problems)
-        self.lines, self.remains, self.doubtful = lines, remains, doubtful
+        self.lines, self.remains, self.mended = lines, remains, mended or Mended({})
 
 
-def _model(written: Located, model: type[M], problems: list[Problem]) -> tuple[M, SourceMap]:
+def _model(
+    written: Located, model: type[M], problems: list[Problem], notes: list[Problem] | None = None
+) -> tuple[M, SourceMap]:
     """The model of a file's values.
 
     Raises:
         SpecError: With the problems found before and all that are found here.
     """
-    lines = SourceMap(models_shape(written, model, problems))
+    lines = SourceMap(models_shape(written, model, problems, notes))
     data = lines.root.plain()
     try:
         loaded = model.model_validate(data)
     except ValidationError as error:
-        places = {(problem.line, problem.column) for problem in problems}
+        known = {(problem.path, problem.line, problem.column) for problem in problems}
         errors = error.errors(include_url=False)
-        for problem in problems_of(errors, lines):
-            if (problem.line, problem.column) not in places:  # else it follows from the first
-                problems.append(problem)
+        independent = [each for each in errors if not _contains(lines, each["loc"], known)]
+        problems += (
+            problem
+            for problem in problems_of(independent, lines)
+            if (problem.path, problem.line, problem.column) not in known
+        )
         raise _BrokenError(problems, lines, *_remains(data, model, errors)) from None
     if problems:
         raise _BrokenError(problems, lines, loaded)
     return loaded, lines
 
 
+def _contains(lines: SourceMap, loc: Loc, known: set[tuple[str, int, int]]) -> bool:
+    """Whether a value, or what it is directly made of, has a mistake that is known already."""
+    found = lines.find(loc)
+    nearby = [found.item]
+    for _ in range(2 if found.is_whole else 0):
+        nearby += [entry.value for item in nearby for entry in item.mapping().values()]
+        nearby += [child for item in nearby for child in item.items()]
+    places = [item.place for item in nearby]
+    return any((place.source.path, place.line, place.column) in known for place in places)
+
+
 def _remains(
     data: object, model: type[M], errors: Sequence[ErrorDetails]
-) -> tuple[M | None, frozenset[str]]:
-    """A model of what is not broken, and the words of what is."""
-    if not isinstance(data, dict):
-        return None, frozenset()
-    found = mended(cast("dict[str, Any]", data), [error["loc"] for error in errors])
-    if found is None:
-        return None, frozenset()
-    try:
-        return model.model_validate(found[0]), found[1]
-    except ValidationError:
-        return None, frozenset()
+) -> tuple[M | None, Mended | None]:
+    """A model of what is not broken, and what was taken out of it."""
+    if model is not Scenario or not isinstance(data, dict):
+        return None, None
+    places = [error["loc"] for error in errors]
+    for _ in range(MOST_REPAIRS):
+        found = mended(cast("dict[str, Any]", data), places)
+        try:
+            return model.model_validate(found.data), found
+        except ValidationError as error:
+            places += [each["loc"] for each in error.errors(include_url=False)]
+    return None, None
 
 
 def _of_world(problem: Problem, name: str) -> Problem:

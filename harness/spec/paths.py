@@ -48,8 +48,9 @@ def paths_from(root: Located, old: Path, new: Path) -> Located:
 
 
 def _is_folder(key: str, item: Located) -> bool:
-    return key in ("model", "ur_type", "gripper") and "/" in str(item.value)
+    is_part = key in ("model", "ur_type", "gripper")
+    return is_part and isinstance(item.value, str) and "/" in item.value
 
 
 def _is_world_file(item: Located) -> bool:
-    return Path(str(item.value)).suffix.lower() in WORLD_FILES
+    return isinstance(item.value, str) and Path(item.value).suffix.lower() in WORLD_FILES

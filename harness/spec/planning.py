@@ -16,11 +16,12 @@ from harness.spec.base import (
     Name,
     NonNegativeLength,
     Number,
+    Share,
     SpecModel,
 )
 from harness.spec.poses import Pose, Position
 
-Scaling = Annotated[Number, Field(ge=0.001, le=1)]
+Scaling = Annotated[Share, Field(ge=0.001, le=1)]
 """Share of a limit; below a thousandth a motion would take hours."""
 
 

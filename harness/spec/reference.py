@@ -18,7 +18,7 @@ from harness.spec.expectation import ExpectationFields
 from harness.spec.language import BESIDE_VERB
 from harness.spec.scenario import Scenario
 from harness.spec.step import STEPS, Step
-from harness.spec.units import MEANINGS
+from harness.spec.units import MEANINGS, SHARE
 from harness.spec.world import WorldSpec
 
 KINDS: dict[Any, str] = {str: "text", float: "number", int: "whole number", bool: "true or false"}
@@ -132,7 +132,12 @@ def _described(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
         annotation, *more = get_args(annotation)
         metadata = (*more, *metadata)
     for item in metadata:
-        units = getattr(item.func, "units", None) if isinstance(item, BeforeValidator) else None
+        function = item.func if isinstance(item, BeforeValidator) else None
+        units, said = getattr(function, "units", None), getattr(function, "words", None)
+        if said is not None:
+            return said
+        if units == SHARE:
+            return f"{MEANINGS['1'][0]} (`0.5`, `50 %`)"
         if units is not None:
             return " or ".join(f"{MEANINGS[unit][0]} [{unit}]" for unit in units)
     if annotation is Step:

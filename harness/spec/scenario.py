@@ -187,10 +187,16 @@ class Scenario(SpecModel):
         description="Cases: a grid `{robot.model: [ur3e, ur5e]}`, or a list of named ones.",
     )
     randomize: dict[str, Distribution] | None = Field(
-        default=None, description="Dotted path -> distribution of that value."
+        default=None,
+        description="Dotted path -> distribution of that value. Items of lists go by index or by"
+        " name: `objects.cube.pose.xyz.0`.",
     )
     samples: Annotated[Count, Field(ge=1, le=MOST_SAMPLES)] | None = Field(
         default=None, description="How many random cases; default 20 where something is random."
+    )
+    redraw_overlaps: Flag | None = Field(
+        default=None,
+        description="Draws a sample again, up to 100 times, while objects overlap at the start.",
     )
     expect_rate: Expected | None = Field(
         default=None, description="Of the samples; without it every one must pass."
@@ -200,6 +206,12 @@ class Scenario(SpecModel):
     def _rate_of_samples(self) -> Scenario:
         if self.expect_rate is not None and self.samples is None and self.randomize is None:
             raise ValueError("`expect_rate` is of `samples`: say how many, or what is random")
+        return self
+
+    @model_validator(mode="after")
+    def _redraws_of_random_values(self) -> Scenario:
+        if self.redraw_overlaps and self.randomize is None:
+            raise ValueError("`redraw_overlaps` draws the values of `randomize`: nothing is random")
         return self
 
     @model_validator(mode="after")

@@ -27,13 +27,15 @@ from harness.spec.language import (
 from harness.spec.plugin_field import MARK
 from harness.spec.scenario import Scenario
 from harness.spec.step import STEPS, Step
-from harness.spec.units import written
+from harness.spec.units import SHARE, written
 from harness.spec.world import WorldSpec
 
 Schema = dict[str, Any]
 
 REFERENCE: Schema = {"type": "string", "pattern": r"^\$\{[^{}]+\}$"}
 QUANTITY = r"^\s*([-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[A-Za-zµμ°].*|.*\$\{[^{}]+\}.*)$"
+EXPRESSION = QUANTITY[:-2] + r"|[-+*/().\deE\s]*(pi|π|tau)[-+*/().\deEpitauπ\s]*|.*\d\s*[*/].*)$"
+PERCENTAGE = r"^\s*([-+]?(\d+\.?\d*|\.\d+)\s*%|.*\$\{[^{}]+\}.*)$"
 BOUNDS = {
     "gt": "exclusiveMinimum",
     "ge": "minimum",
@@ -101,7 +103,10 @@ class _WithUnits(GenerateJsonSchema):
 
     def function_before_schema(self, schema: core_schema.BeforeValidatorFunctionSchema) -> Schema:
         written_schema = super().function_before_schema(schema)
-        units = getattr(schema["function"]["function"], "units", None)
+        function = schema["function"]["function"]
+        units, also = getattr(function, "units", None), getattr(function, "schema", None)
+        if also is not None:
+            return {"anyOf": [written_schema, also]}
         return written_schema if units is None else {**written_schema, "units": units}
 
 
@@ -158,8 +163,10 @@ def _with_references(schema: Schema) -> Schema:
     around = {key: schema.pop(key) for key in ("description", "default") if key in schema}
     if units is not None:
         unit = f"{' or '.join(units)} (as text: {written(units)})"
-        around["description"] = f"{around.get('description', '')} In {unit}.".strip()
-        return {**around, "anyOf": [schema, {"type": "string", "pattern": QUANTITY}]}
+        unit = "As a number, or a percentage" if units == SHARE else f"In {unit}"
+        around["description"] = f"{around.get('description', '')} {unit}.".strip()
+        pattern = EXPRESSION if "rad" in units else PERCENTAGE if units == SHARE else QUANTITY
+        return {**around, "anyOf": [schema, {"type": "string", "pattern": pattern}]}
     if schema.get("type") in ("number", "integer", "boolean", "array") or "enum" in schema:
         return {**around, "anyOf": [schema, REFERENCE]}
     return {**around, **schema}

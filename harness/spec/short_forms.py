@@ -7,10 +7,14 @@ is left out, so that pydantic goes on with the rest. Every value keeps its place
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
 from typing import Any, get_args, get_origin
 
+from pydantic.fields import FieldInfo
+
 from harness.core.errors import Problem
-from harness.spec.annotations import bare, branches, is_model, keys_of
+from harness.spec.annotations import bare, branches, is_model, keys_of, units_of
 from harness.spec.base import SpecModel
 from harness.spec.expectation import CHECK, ExpectationFields, PredicateFields
 from harness.spec.language import (
@@ -25,19 +29,35 @@ from harness.spec.mistakes import describe, did_you_mean, nearest
 from harness.spec.scenario import RobotSpec
 from harness.spec.source import Entry, Located
 from harness.spec.step import STEPS, TAG, Step
-from harness.spec.words import UNTIL_USAGE, Words, take_apart
+from harness.spec.words import UNTIL_USAGE, Words, take_apart, wrong_way_round
+
+TURN = 6.283186  # [rad], rounded up
 
 
-def models_shape(item: Located, model: type[SpecModel], problems: list[Problem]) -> Located:
-    """A file's values in the shape of its model; mistakes are added to `problems`."""
-    return _Shaper(problems).model(item, model)
+def models_shape(
+    item: Located,
+    model: type[SpecModel],
+    problems: list[Problem],
+    notes: list[Problem] | None = None,
+) -> Located:
+    """A file's values in the shape of its model.
+
+    Args:
+        item: The file.
+        model: Its model.
+        problems: Gets the mistakes.
+        notes: Gets what is allowed and probably not intended.
+    """
+    return _Shaper(problems, [] if notes is None else notes).model(item, model)
 
 
 class _Shaper:
-    def __init__(self, problems: list[Problem]) -> None:
+    def __init__(self, problems: list[Problem], notes: list[Problem]) -> None:
         self.problems = problems
+        self.notes = notes
 
-    def shape(self, item: Located, annotation: Any) -> Located:
+    def shape(self, item: Located, annotation: Any, metadata: Iterable[Any] = ()) -> Located:
+        self._note_angle(item, annotation, metadata)
         annotation = bare(annotation)
         if annotation is Step:
             return self.step(item)
@@ -64,9 +84,22 @@ class _Shaper:
             return Located(entries, item.place)
         return item
 
+    def field(self, item: Located, field: FieldInfo) -> Located:
+        return self.shape(item, field.annotation, field.metadata)
+
+    def _note_angle(self, item: Located, annotation: Any, metadata: Iterable[Any]) -> None:
+        """Note numbers that are degrees in all likelihood."""
+        number = item.value
+        if isinstance(number, bool) or not isinstance(number, int | float) or abs(number) <= TURN:
+            return
+        if "rad" in units_of(annotation, metadata):
+            message = f"{number:g} is an angle in radians, {math.degrees(number):.1f} degrees"
+            hint = f"write `{number:g} deg` for degrees"
+            self.notes.append(item.place.problem(message, hint))
+
     def model(self, item: Located, model: type[SpecModel], **names: str) -> Located:
         """A mapping with the model's keys; `names` says how to speak of it."""
-        item = _expanded(item, model)
+        item = expanded(item, model)
         if not isinstance(item.value, dict):
             return item
         keys = keys_of(model)
@@ -74,7 +107,7 @@ class _Shaper:
         entries: dict[str, Entry] = {}
         for key, entry in item.value.items():
             if key in inside:
-                shaped = self.shape(entry.value, keys[key].annotation)
+                shaped = self.field(entry.value, keys[key])
                 entries[key] = Entry(entry.key, shaped)
             elif key in keys and "verb" in names:
                 message = f"`{key}` stands beside `{names['verb']}`, not inside it"
@@ -87,7 +120,7 @@ class _Shaper:
                 self.problems.append(entry.key.problem(message, hint))
                 meant = nearest(key, inside)
                 if meant is not None and meant not in item.value:  # go on as if it said so
-                    shaped = self.shape(entry.value, keys[meant].annotation)
+                    shaped = self.field(entry.value, keys[meant])
                     entries[meant] = Entry(entry.key, shaped)
         return Located(entries, item.place)
 
@@ -101,7 +134,7 @@ class _Shaper:
             self._not_content(found, content, model)
             content = Located({}, content.place)
         beside = {
-            key: Entry(entry.key, self.shape(entry.value, keys_of(model)[key].annotation))
+            key: Entry(entry.key, self.field(entry.value, keys_of(model)[key]))
             for key, entry in found.beside.items()
         }
         return _tagged(TAG, found, content.mapping() | beside)
@@ -130,6 +163,12 @@ class _Shaper:
 
     def _predicate(self, found: Words) -> Located:
         model = EXPECTATIONS[found.word]
+        meant = wrong_way_round(found.word, found.entry.value) if found.word in PREDICATES else None
+        if meant is not None:
+            place = found.entry.value.place
+            message = f"a temporal word stands before its predicate, not in `{found.word}`"
+            self.problems.append(place.problem(message, f"write `{meant}`"))
+            return _stand_in(found.entry.value, CHECK, "within_limits", {})
         content = self.model(_content(found.entry), model, word=found.word)
         if not isinstance(content.value, dict):
             self._not_content(found, content, model)
@@ -175,7 +214,7 @@ class _Shaper:
             entries[key] = entry
 
 
-def _expanded(item: Located, model: type[SpecModel]) -> Located:
+def expanded(item: Located, model: type[SpecModel]) -> Located:
     """A bare value as the field it is short for; a mapping as it is."""
     if issubclass(model, RobotSpec):
         return course_words(item)

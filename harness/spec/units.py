@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable
 from typing import Any
 
+from harness.core.quantity import constant_of
 from harness.spec.mistakes import MistakeError, describe, nearest
 
 DEFINITIONS = (
@@ -57,8 +58,11 @@ MEANINGS = {
     "rad/s**2": ("a turning acceleration", "rad/s**2, deg/s**2"),
     "m/s**3": ("a jerk", "m/s**3"),
     "rad/s**3": ("a turning jerk", "rad/s**3, deg/s**3"),
+    "1": ("a share", "%"),
 }
 """SI unit -> what it measures, and what a person would write."""
+
+SHARE = ("1",)
 
 COMMON = {
     "m": {"m": 1.0, "cm": 0.01, "mm": 0.001},
@@ -74,7 +78,7 @@ COMMON = {
 0.06 s, a tenth of `harness check`."""
 
 NUMBER_AND_UNIT = re.compile(
-    r"\s*(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>|[^\W\d].*?|°.*?)\s*",
+    r"\s*(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>|[^\W\d].*?|°.*?|%)\s*",
     re.DOTALL,
 )
 UNIT = re.compile(r"[A-Za-zµμ°_]+(?:\s*(?:\*\*|[*/^·])?\s*(?:[A-Za-zµμ°_]+|-?[1-4]))*")
@@ -84,15 +88,15 @@ LONGEST = 60
 def quantity(*units: str) -> Callable[[Any], float]:
     """A validator that turns `5 cm` into a number of the first unit that fits; numbers pass.
 
+    Where an angle fits, so do expressions such as `pi/2`; where a share is meant, percentages.
+
     Args:
         units: SI units accepted here, told apart by dimension (a joint is `rad` or `m`).
     """
 
     def parse(value: Any) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float | str):
-            raise MistakeError(
-                f"{expected(units)} is a number, not {describe(value)}", usage(units)
-            )
+            raise MistakeError(_no_number(value, units), usage(units))
         return in_si(value, units) if isinstance(value, str) else value
 
     parse.units = units  # type: ignore[attr-defined]  # read by schema and reference
@@ -105,13 +109,23 @@ def in_si(text: str, units: tuple[str, ...]) -> float:
     Raises:
         MistakeError: No number, no unit, an unknown one, or one that measures something else.
     """
+    constant = constant_of(text) if "rad" in units else None
+    if constant is not None:
+        return constant
     match = NUMBER_AND_UNIT.fullmatch(text) if len(text) <= LONGEST else None
     if match is None:
-        raise MistakeError(f"{expected(units)} is a number, not {describe(text)}", usage(units))
+        raise MistakeError(_no_number(text, units), usage(units))
     number, unit = float(match["number"]), match["unit"]
     if not unit:
+        if units == SHARE:
+            hint = f"write {match['number']} without quotes, or a percentage: `90 %`"
+            raise MistakeError(f"is the text {describe(text)}, not a number", hint)
         hint = f"write {match['number']} without quotes for {units[0]}, or give a unit"
         raise MistakeError(f"`{text}` is text without a unit", f"{hint}: {written(units)}")
+    if unit == "%":
+        if units == SHARE:
+            return number / 100
+        raise MistakeError(f"`{text}` is a share; {expected(units)} is meant", usage(units))
     for target in units:
         if unit in COMMON.get(target, {}):
             return number * COMMON[target][unit]
@@ -129,6 +143,12 @@ def in_si(text: str, units: tuple[str, ...]) -> float:
     raise MistakeError(f"`{text}` is {_measured(given)}; {expected(units)} is meant", usage(units))
 
 
+def _no_number(value: Any, units: tuple[str, ...]) -> str:
+    if units == SHARE:
+        return f"is a number or a percentage, not {describe(value)}"
+    return f"{expected(units)} is a number, not {describe(value)}"
+
+
 def expected(units: tuple[str, ...]) -> str:
     """`an angle or a length`."""
     return " or ".join(MEANINGS[unit][0] for unit in units)
@@ -141,6 +161,8 @@ def written(units: tuple[str, ...]) -> str:
 
 def usage(units: tuple[str, ...]) -> str:
     """What may be written where these units are meant."""
+    if units == SHARE:
+        return "write a number, or a percentage: `90 %`"
     return f"write a number in {' or '.join(units)}, or one with a unit: {written(units)}"
 
 

@@ -9,9 +9,9 @@ from pydantic import AfterValidator, Field, model_validator
 
 from harness.core.quantity import split_quantity
 from harness.core.variation import MOST_CASES, count_of
-from harness.spec.base import Fraction, Number, SpecModel
+from harness.spec.base import Fraction, Share, SpecModel
 
-VARIATION_KEYS = ("parametrize", "randomize", "samples", "expect_rate")
+VARIATION_KEYS = ("parametrize", "randomize", "samples", "redraw_overlaps", "expect_rate")
 """Keys that say which cases there are; a case itself has none of them."""
 
 
@@ -72,10 +72,12 @@ class Distribution(SpecModel):
 
 
 class Expected(SpecModel):
-    """A success rate to be shown by random cases."""
+    """A success rate to be shown by random cases: `90 %` is short for `{at_least: 90 %}`."""
+
+    short = "at_least"
 
     at_least: Fraction = Field(description="Share of the samples that pass.")
-    confidence: Annotated[Number, Field(gt=0.5, lt=1)] = Field(
+    confidence: Annotated[Share, Field(gt=0.5, lt=1)] = Field(
         default=0.95, description="With which this is to be shown."
     )
     stop_early: bool = Field(
@@ -84,6 +86,8 @@ class Expected(SpecModel):
 
 
 def _grid_or_cases(value: object) -> object:
+    if not value:
+        raise ValueError("there is no case; `parametrize` is a grid, or a list of named cases")
     if isinstance(value, dict):
         grid = cast("dict[str, Any]", value)
         for path, values in grid.items():

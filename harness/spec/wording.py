@@ -40,15 +40,15 @@ def _problem(error: ErrorDetails, lines: SourceMap) -> Problem:
     place = found.item.place
     if error["type"] == "missing":
         return place.problem(*_missing(loc, found))
-    if loc and loc[-1] == "[key]" and found.key is not None:
+    is_key = bool(loc) and loc[-1] == "[key]" and found.key is not None
+    if is_key and found.key is not None:
         place = found.key
     word = WORDINGS.get(error["type"], _as_said)
     message, hint = word(error, error.get("ctx", {}), describe(error["input"]))
     raised = error.get("ctx", {}).get("error")
     if isinstance(raised, MistakeError) and raised.span is not None:
         place = place.part(str(found.item.plain()), *raised.span)
-    if error["type"] != "value_error":
-        is_key = place is found.key
+    if error["type"] != "value_error" or message.startswith("is "):
         message = f"a name {message}" if is_key else f"`{_subject(found)}` {message}"
     return place.problem(message, hint)
 

@@ -8,9 +8,34 @@ from typing import NamedTuple
 from harness.core.errors import Problem
 from harness.core.registry import broken_plugins
 from harness.spec.annotations import is_model, keys_of
-from harness.spec.language import EXPECTATIONS, UNTIL
+from harness.spec.language import EXPECTATIONS, PREDICATES, UNTIL
 from harness.spec.mistakes import describe, did_you_mean, nearest
 from harness.spec.source import Entry, Located, Place
+
+TEMPORAL_WORDS = {
+    **dict.fromkeys(("no", "not", "non", "never", "none", "without", "avoid", "free"), "never"),
+    **dict.fromkeys(("always", "stays", "stay", "remains", "keep", "keeps", "kept"), "always"),
+    **dict.fromkeys(("eventually", "finally", "sometimes", "once"), "eventually"),
+}
+"""What people write in or after a predicate's name -> the temporal word in front of it."""
+
+ALONE = ("never", "no", "not", "none", "always", "eventually")
+"""Those that name no object and no state when they stand in the place of one."""
+
+SYNONYMS = {
+    **dict.fromkeys(("contact", "contacts", "touch", "touching"), "in_contact"),
+    **dict.fromkeys(("collide", "collides", "colliding", "collisions"), "collision"),
+    **dict.fromkeys(("held", "holding"), "grasped"),
+    "inside": "in",
+}
+"""Words that are near no predicate's name, or too near to another's."""
+
+BOUNDS = ("slip", "tracking_error", "effort")
+"""Predicates that demand a small value by themselves: `never: slip` would demand slip."""
+
+OPPOSITES = {"grasped": "released", "released": "grasped", "static": "displaced",
+             "displaced": "static"}  # fmt: skip
+"""Predicate -> the predicate that holds at the end where it does not."""
 
 UNTIL_USAGE = "`- {always: A, until: B}`: A holds until B does"
 
@@ -35,9 +60,9 @@ def take_apart(
     if isinstance(item.value, str):
         if item.value in words:
             return Words(item.value, Entry(item.place, Located(None, item.place)), {})
-        meant = _unknown(item.value, item.place, words, kind, problems)
-        nothing = Entry(item.place, Located(None, item.place))
-        return None if meant is None else Words(meant, nothing, {})
+        nothing = Located(None, item.place)
+        meant = _unknown(item.value, item.place, nothing, words, kind, problems)
+        return None if meant is None else Words(meant, Entry(item.place, nothing), {})
     if not isinstance(item.value, dict):
         message = f"{_a(whole)} is a {kind} with its content, not {describe(item.plain())}"
         problems.append(item.place.problem(message, _all(words, kind)))
@@ -48,7 +73,7 @@ def take_apart(
     rest = {key: entry for key, entry in item.value.items() if key in beside}
     if not said and others:
         wrong = max(others, key=lambda key: nearest(key, words) is not None)
-        meant = _unknown(wrong, item.value[wrong].key, words, kind, problems)
+        meant = _unknown(wrong, *item.value[wrong], words, kind, problems)
         return None if meant is None else Words(meant, item.value[wrong], rest)
     if not said:
         message = f"{_a(whole)} has one {kind}; this one has none"
@@ -65,9 +90,25 @@ def take_apart(
 
 
 def _unknown(
-    word: str, place: Place, words: Mapping[str, object], kind: str, problems: list[Problem]
+    word: str,
+    place: Place,
+    content: Located,
+    words: Mapping[str, object],
+    kind: str,
+    problems: list[Problem],
 ) -> str | None:
     """Refuse a word; the nearest valid one, to go on as if the file said that."""
+    temporal = with_temporal_word(word) if kind == "predicate" else None
+    if temporal is not None:
+        before, predicate = temporal
+        hint = f"write `{before}: {_with_content(predicate, content)}`"
+        if before == "never" and predicate in BOUNDS:
+            hint = f"write `{predicate}`: it holds while the value is at most its limit"
+        elif before == "never" and predicate in OPPOSITES:
+            other = _with_content(OPPOSITES[predicate], content).strip("{}")
+            hint += f", which excludes it at every moment, or `{other}`"
+        problems.append(place.problem(f"no predicate is called `{word}`", hint))
+        return predicate
     if word in EXPECTATIONS and kind == "predicate":
         message = f"`{word}` cannot stand inside a temporal word; a predicate can"
     elif word in ("do", "check"):
@@ -77,6 +118,46 @@ def _unknown(
     hints = [did_you_mean(word, words, f"{kind}s"), *broken_plugins()]
     problems.append(place.problem(message, "; ".join(hints)))
     return nearest(word, words)
+
+
+def with_temporal_word(word: str) -> tuple[str, str] | None:
+    """Temporal word and predicate that a joined word means: `no_collision` is never, collision."""
+    parts = word.lower().replace("-", "_").replace(" ", "_").split("_")
+    for count in range(1, len(parts)):
+        for said, rest in (
+            ("_".join(parts[:count]), parts[count:]),
+            ("_".join(parts[-count:]), parts[:-count]),
+        ):
+            name = "_".join(rest)
+            predicate = SYNONYMS.get(name) or nearest(name, PREDICATES)
+            if said in TEMPORAL_WORDS and predicate is not None:
+                return TEMPORAL_WORDS[said], predicate
+    return None
+
+
+def _with_content(predicate: str, content: Located) -> str:
+    """A predicate with its content, as it stands behind a temporal word."""
+    value = content.plain()
+    if value is None:
+        model = PREDICATES[predicate]
+        field = keys_of(model).get(model.short)
+        if field is None or not field.is_required():
+            return predicate
+        value = (
+            [word.upper() for word in ("one", "other")] if model.short == "between" else "OBJECT"
+        )
+    if isinstance(value, dict):
+        return f"{{{predicate}: {{...}}}}"
+    said = f"[{', '.join(map(str, value))}]" if isinstance(value, list) else str(value)
+    return f"{{{predicate}: {said}}}"
+
+
+def wrong_way_round(word: str, content: Located) -> str | None:
+    """What `collision: never`, or `collision: false`, is meant to be; None of other content."""
+    said = "no" if content.value is False else content.value
+    if not isinstance(said, str) or said.lower() not in ALONE:
+        return None
+    return f"{TEMPORAL_WORDS[said.lower()]}: {_with_content(word, Located(None, content.place))}"
 
 
 def _misplaced(

@@ -23,6 +23,8 @@ from harness.spec.cameras import CameraSpec
 from harness.spec.markers import MarkerSpec
 from harness.spec.poses import Pose
 
+COLOR = "Red, green, blue, opacity from 0 to 1; or a name as in CSS: `red`."
+
 
 class BoxSpec(SpecModel):
     """Full size along x, y, z [m]."""
@@ -94,7 +96,7 @@ class ShapeSpec(SpecModel):
 
     name: Name | None = Field(default=None, description="For people.")
     pose: Pose = Field(default=Pose(), description="On the object; its frame word is ignored.")
-    color: Color | None = Field(default=None, description="Red, green, blue, opacity from 0 to 1.")
+    color: Color | None = Field(default=None, description=COLOR)
     friction: SurfaceFriction | None = Field(
         default=None, description="Where it differs from its object's."
     )
@@ -160,7 +162,7 @@ class ObjectSpec(SpecModel):
     friction: SurfaceFriction | None = Field(
         default=None, description="Sliding friction alone, or all three."
     )
-    color: Color | None = Field(default=None, description="Red, green, blue, opacity from 0 to 1.")
+    color: Color | None = Field(default=None, description=COLOR)
     in_: Literal["planning", "simulation", "both"] = Field(
         default="both",
         alias="in",
@@ -187,9 +189,7 @@ class LightSpec(SpecModel):
     direction: tuple[Number, Number, Number] = Field(
         default=(-0.5, 0.1, -0.9), description="Where it shines to."
     )
-    diffuse: Color = Field(
-        default=(0.8, 0.8, 0.8, 1.0), description="Red, green, blue, opacity from 0 to 1."
-    )
+    diffuse: Color = Field(default=(0.8, 0.8, 0.8, 1.0), description=COLOR)
     casts_shadow: Flag = Field(default=True, description="In pictures.")
 
 

@@ -20,6 +20,9 @@ MOST_ATTRIBUTES = 200
 """Of one element; MuJoCo's reader takes hours for a million."""
 
 DEEPEST = 200
+QUOTED_ROOTS = ("robot", "mujoco", "mujocoinclude", "sdf", "world", "model")
+"""Root elements of robots and worlds. A scenario can name any file of the machine, so messages
+quote only files that are of these kinds."""
 
 PLACE_ATTRIBUTE = "harness-place"
 """`file:line:column` of the file that a rendered element comes from; see `mark_places`."""
@@ -178,7 +181,7 @@ class _Reader:
         try:
             self._parser.Parse(self._content, True)
         except expat.ExpatError as error:
-            place = Place(self._source, error.lineno, error.offset + 1)
+            place = Place(self._quoted(), error.lineno, error.offset + 1)
             reason = expat.errors.messages.get(error.code, "")
             told = f"not well-formed XML: {reason or expat.ErrorString(error.code)}"
             raise SpecError([place.problem(told, self._still_open())]) from error
@@ -186,14 +189,19 @@ class _Reader:
         return self._root
 
     def _still_open(self) -> str:
-        if not self._open:
+        if not self._open or not self._quoted().lines:
             return ""
         last = self._open[-1]
         return f"<{last.tag}> of line {last.place.line} is not closed before this"
 
-    def _here(self) -> Place:
+    def _quoted(self, tag: str = "") -> Source:
+        """The file; without its text, which messages quote, unless it is of a kind that is read."""
+        root = self._root.tag if self._root is not None else tag
+        return self._source if root in QUOTED_ROOTS else Source(self._source.path)
+
+    def _here(self, tag: str = "") -> Place:
         parser = self._parser
-        return Place(self._source, parser.CurrentLineNumber, parser.CurrentColumnNumber + 1)
+        return Place(self._quoted(tag), parser.CurrentLineNumber, parser.CurrentColumnNumber + 1)
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         self._count += 1
@@ -203,7 +211,7 @@ class _Reader:
             self._refuse(f"<{tag}> has more than {MOST_ATTRIBUTES} attributes")
         if len(self._open) >= DEEPEST:
             self._refuse(f"elements are nested more than {DEEPEST} deep")
-        here = self._here()
+        here = self._here(tag)
         place = Place(here.source, here.line, here.column + 1, len(tag))  # behind the bracket
         mark = attributes.pop(PLACE_ATTRIBUTE, "")
         if mark:
@@ -232,7 +240,14 @@ class _Reader:
             self._open[-1].text += data
 
     def _doctype(self, *_declaration: object) -> None:
-        self._refuse("a DOCTYPE, and with it entities, is not read", "remove it")
+        """Refuse it; what it declares is not quoted, as the kind of file is not known yet."""
+        here = self._here()
+        shown = "<!DOCTYPE".ljust(here.column - 1) + "..."
+        lines = ("",) * (here.line - 1) + (shown,)
+        place = Place(Source(here.source.path, lines), here.line, here.column, 3)
+        raise SpecError(
+            [place.problem("a DOCTYPE, and with it entities, is not read", "remove it")]
+        )
 
     def _refuse(self, message: str, hint: str = "") -> NoReturn:
         raise SpecError([self._here().problem(message, hint)])

@@ -7,8 +7,9 @@ level and ends the process on a file of brackets, resolves scalars by YAML 1.1 (
 
 from __future__ import annotations
 
+import re
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -64,12 +65,31 @@ def read_text(
         raise SpecError([source.end_of(before).problem("not UTF-8 text", hint)]) from error
 
 
-def parse_yaml(text: str, source: Source) -> Located:
-    """The one document of a text; a mapping.
+def require_key(text: str, keys: Sequence[str], name: str, kind: str) -> None:
+    """See that a text has a key of its kind of file, before any of it is quoted in a message.
+
+    A scenario can name any file of the machine, and its messages may be read by somebody else.
 
     Raises:
-        SpecError: With every duplicate key, tag and number that cannot be; with a syntax error
-            alone, as nothing behind it can be trusted.
+        SpecError: It has none of the keys; the message has nothing of the text.
+    """
+    words = "|".join(map(re.escape, keys))
+    if re.search(rf"""(?:^|[{{,\s])["']?(?:{words})["']?\s*:""", text, re.MULTILINE) is None:
+        found = " or ".join(f"`{key}`" for key in keys)
+        raise SpecError([Problem(name, 0, 0, f"this is no {kind}: it has no key {found}")])
+
+
+def parse_yaml(text: str, source: Source, problems: list[Problem] | None = None) -> Located:
+    """The one document of a text; a mapping.
+
+    Args:
+        text: Of the file.
+        source: The file.
+        problems: Gets every duplicate key, tag and number that is not finite, so that the rest of
+            the file can be read as well; None: they are raised.
+
+    Raises:
+        SpecError: A syntax error, after which nothing can be trusted, or no mapping.
     """
     composer = _Composer(source)
     try:
@@ -79,13 +99,16 @@ def parse_yaml(text: str, source: Source) -> Located:
     except yaml.reader.ReaderError as error:
         place = source.end_of(text[: error.position])
         raise SpecError([place.problem("a control character cannot be in YAML text")]) from error
-    if composer.problems:
+    is_mapping = root is not None and isinstance(root.value, dict)
+    if composer.problems and (problems is None or not is_mapping):
         raise SpecError(composer.problems)
     if root is None:
         raise SpecError([Problem(source.path, 0, 0, "the file is empty")])
-    if not isinstance(root.value, dict):
+    if not is_mapping:
         message = "a file is a mapping: lines of `key: value`"
         raise SpecError([root.place.problem(message)])
+    if problems is not None:
+        problems += composer.problems
     return root
 
 

@@ -121,6 +121,7 @@ def _check_blends(step: Sequence, group: str, at: At) -> None:
             at.key("items", last, "blend_radius"),
             "the last motion of a sequence has nothing to blend into",
             "leave its `blend_radius` out",
+            needs=(),
         )
     places = [_place(item.motion, group, scope) for item in step.items]
     for index, (first, second) in enumerate(pairwise(step.items)):

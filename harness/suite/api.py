@@ -163,6 +163,8 @@ def _job(
         seed if chosen.sample is None else None,
         case=chosen.name,
         text=text,
+        redraw=chosen.redraw,
+        fixed=overrides,
     )
 
 

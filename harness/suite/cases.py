@@ -9,13 +9,14 @@ import time
 import traceback
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from harness.core.errors import SpecError
 from harness.reporting.result import CaseResult, ProgressEvent
-from harness.suite.environment import use_one_thread
+from harness.suite.environment import prepare_process
 from harness.suite.leftovers import clean_leftovers
+from harness.suite.variation import Redraw
 from harness.suite.warm import Ended, Heard, WarmServer
 
 HARD_CAP_SECONDS = 600.0
@@ -42,6 +43,8 @@ class CaseJob:
         case: Name of the case; empty when the file has one.
         only_failed: Whether a report is written only where the case does not pass.
         text: What would stand in the file; None: what does.
+        redraw: Draws the sample again while objects overlap at the start; None: it is drawn once.
+        fixed: Those of `overrides` that no draw changes.
     """
 
     file: Path
@@ -54,6 +57,13 @@ class CaseJob:
     case: str = ""
     only_failed: bool = False
     text: str | None = None
+    redraw: Redraw | None = None
+    fixed: Mapping[str, str] = field(default_factory=dict[str, str])
+
+    def overrides_of_draw(self, draw: int) -> Mapping[str, str]:
+        """Overrides of the sample as it is drawn again."""
+        assert self.redraw is not None
+        return {**self.redraw.again(draw).overrides, **self.fixed}
 
 
 Function = Callable[[CaseJob, Callable[[ProgressEvent], None]], CaseResult]
@@ -72,10 +82,10 @@ def nobody_watches(_index: int, _event: ProgressEvent) -> None:
 
 def run_case(job: CaseJob, notify: Callable[[ProgressEvent], None]) -> CaseResult:
     """Run a case in this process."""
-    use_one_thread()
+    prepare_process()
     from harness.session import run_case as session
 
-    return session.run_case(
+    result = session.run_case(
         job.file,
         overrides=job.overrides,
         seed=job.seed,
@@ -86,8 +96,12 @@ def run_case(job: CaseJob, notify: Callable[[ProgressEvent], None]) -> CaseResul
         case=job.case,
         only_failed=job.only_failed,
         text=job.text,
+        redraw=None if job.redraw is None else job.overrides_of_draw,
         on_progress=notify,
     )
+    if job.redraw is None or not result.redraws:
+        return result
+    return replace(result, values=job.redraw.again(result.redraws).values)
 
 
 def read_ahead(words: Collection[str]) -> None:
@@ -110,6 +124,7 @@ def run_here(
     for index, job in enumerate(jobs):
         if is_needless(index):
             continue
+        _clean(job)
         try:
             result = function(job, lambda event, index=index: watch(index, event))
         except Exception:  # noqa: BLE001 - whatever breaks is this case's outcome
@@ -244,6 +259,8 @@ def describe(event: ProgressEvent) -> str:
         number = f" {event.index + 1}/{event.total}" if event.index >= 0 else ""
         after = "after " if event.kind == "step_finished" else ""
         return f"{after}step{number}: {event.step}"
+    if event.kind == "activity":
+        return event.step
     return {"compiled": "the first step", "judged": "the report", "written": "the end"}[event.kind]
 
 

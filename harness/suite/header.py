@@ -13,7 +13,7 @@ from harness.suite.variation import ONE_CASE, Variation
 if TYPE_CHECKING:
     from harness.spec.source import Located
 
-VARIED = ("parametrize", "randomize", "samples", "expect_rate", "seed")
+VARIED = ("parametrize", "randomize", "samples", "redraw_overlaps", "expect_rate", "seed")
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What processes that were killed while writing a report left beside it."""
+"""What processes that were killed while writing a report left in its folder."""
 
 from __future__ import annotations
 
@@ -7,22 +7,52 @@ import re
 import shutil
 from pathlib import Path
 
+_TEMPORARY = re.compile(r"\.(?P<name>.+)\.(?P<kind>writing|old)\.(?P<pid>\d+)\.\d+")
+
 
 def clean_leftovers(folder: Path) -> None:
-    """Remove the temporary folders of dead processes beside a report folder.
+    """Remove the temporary folders of processes that are gone next to one report's folder.
 
     `recording.store` writes under `.NAME.writing.PID.N` and keeps the older report in
     `.NAME.old.PID.N` while it swaps the two; an older report that lost its place is put back.
     """
-    pattern = re.compile(rf"\.{re.escape(folder.name)}\.(writing|old)\.(\d+)\.\d+")
-    if not folder.parent.is_dir():
-        return
-    for sibling in sorted(folder.parent.iterdir()):
-        match = pattern.fullmatch(sibling.name)
-        if match is None or _is_alive(int(match[2])):
+    _clean(folder.parent, only=folder.name)
+
+
+def clean_report_folder(root: Path) -> None:
+    """Remove them everywhere below the folder that reports are written to.
+
+    Folders with files are reports, or somebody else's, and are not entered.
+    """
+    waiting = [root]
+    while waiting:
+        folder = waiting.pop()
+        try:
+            with os.scandir(folder) as entries:
+                found = list(entries)
+        except OSError:
             continue
-        older = sibling / folder.name
-        if match[1] == "old" and older.is_dir() and not folder.exists():
+        if folder != root and any(not each.is_dir(follow_symlinks=False) for each in found):
+            continue
+        _clean(folder)
+        waiting += [
+            Path(each.path)
+            for each in found
+            if each.is_dir(follow_symlinks=False) and not each.name.startswith(".")
+        ]
+
+
+def _clean(parent: Path, only: str | None = None) -> None:
+    try:
+        siblings = sorted(parent.iterdir())
+    except OSError:
+        return
+    for sibling in siblings:
+        match = _TEMPORARY.fullmatch(sibling.name)
+        if match is None or only not in (None, match["name"]) or _is_alive(int(match["pid"])):
+            continue
+        older, folder = sibling / match["name"], parent / match["name"]
+        if match["kind"] == "old" and older.is_dir() and not folder.exists():
             older.rename(folder)
         shutil.rmtree(sibling, ignore_errors=True)
 

@@ -141,4 +141,6 @@ def _job(file: Path, case: Case, folder: Path | None, wanted: Wanted) -> CaseJob
         bag=wanted.bag,
         case=case.name,
         only_failed=keep == "failed",
+        redraw=case.redraw,
+        fixed=wanted.overrides,
     )

@@ -85,16 +85,19 @@ class Tally:
             verdict = decided(self.passed, self.total, self._at_least, self._confidence)
             self.is_decided = verdict != "open"
 
-    def rate(self, wanted: int) -> Rate:
-        """What the samples show.
+    def rate(self, wanted: int, invalid: int = 0) -> Rate:
+        """What the samples show; none show nothing.
 
         Args:
             wanted: How many there would be without an early end.
+            invalid: Samples that could not be run, which do not count.
         """
         passed, total, asked = self.passed, self.total, self._at_least
         low, high = wilson_interval(passed, total, self._confidence)
         verdict: RateVerdict = "open"
-        if asked is None:
+        if not total:
+            verdict = "open"
+        elif asked is None:
             verdict = "shown" if passed == total else "refuted"
         elif self.is_decided:
             verdict = decided(passed, total, asked, self._confidence)
@@ -103,4 +106,4 @@ class Tally:
         elif high < asked:
             verdict = "refuted"
         early = self.is_decided and total < wanted
-        return Rate(passed, total, low, high, self._confidence, asked, verdict, early)
+        return Rate(passed, total, low, high, self._confidence, asked, verdict, early, invalid)

@@ -45,7 +45,7 @@ class Sampling:
         """Every group with its rate, from the samples that came in without a gap."""
         found: list[SampledRate] = []
         for key, group in self._groups.items():
-            rate = group.tally.rate(group.wanted)
+            rate = group.tally.rate(group.wanted, group.invalid)
             outcome: Outcome = "passed" if rate.verdict == "shown" else "failed"
             found.append(SampledRate(*key, rate, outcome))
         return found
@@ -68,7 +68,8 @@ class _Group:
 
     Attributes:
         wanted: How many there are.
-        tally: Of those that came in without a gap.
+        tally: Of those that came in without a gap, invalid ones left out.
+        invalid: Samples that could not be run; they are no evidence about the rate.
     """
 
     def __init__(self, sample: PlannedCase) -> None:
@@ -77,16 +78,18 @@ class _Group:
         self.tally = Tally(said.at_least, said.confidence, stop_early=said.stop_early)
         self._outcomes: dict[int, Outcome] = {}
         self._next = 0
-        self._is_invalid = False
+        self.invalid = 0
 
     def note(self, place: int, outcome: Outcome) -> None:
         self._outcomes[place] = outcome
-        self._is_invalid |= outcome == "invalid"
+        self.invalid += outcome == "invalid"
         while self._next in self._outcomes:
-            self.tally.add(self._outcomes[self._next] == "passed")
+            counted = self._outcomes[self._next]
+            if counted != "invalid":
+                self.tally.add(counted == "passed")
             self._next += 1
 
     def is_needless(self, place: int) -> bool:
-        if self._is_invalid:
+        if self.invalid:
             return place not in self._outcomes
         return self.tally.is_decided and place >= self.tally.total

@@ -12,6 +12,7 @@ from typing import Any, cast
 
 from harness import __version__
 from harness.core.errors import HarnessError
+from harness.core.printable import json_printable
 from harness.recording.plain import from_plain, to_plain
 from harness.reporting.result import CaseResult
 from harness.suite.cases import CaseJob
@@ -72,7 +73,8 @@ class Stream:
         """
         line = {"format": FORMAT, "key": fingerprint(job), "result": to_plain(result)}
         try:
-            self._file.write(json.dumps(line, ensure_ascii=False, allow_nan=False) + "\n")
+            text = json.dumps(line, ensure_ascii=False, allow_nan=False)
+            self._file.write(f"{json_printable(text)}\n")
             self._file.flush()
         except OSError as error:
             raise HarnessError(f"'{self.path}' cannot be written: {error.strerror}") from error

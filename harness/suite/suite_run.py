@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from harness.recording.run import Outcome
-from harness.reporting.result import CaseResult
-from harness.reporting.sampled import SampledRate
+from harness.reporting.result import CaseResult, ProgressEvent
+from harness.reporting.sampled import SampledRate, with_starts
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.suite.cases import Watcher, nobody_watches, run_here, run_isolated
 from harness.suite.outcome import EXIT_CODES, INTERRUPTED_EXIT_CODE, exit_code
@@ -51,7 +52,8 @@ class SuiteRun:
         jobs: Their runs: with repetitions, `repeat` of each case side by side.
         results: By index into `jobs`; of samples, those that count.
         resumed: How many results are from an earlier run.
-        is_interrupted: Whether Ctrl-C ended it early.
+        is_interrupted: Whether Ctrl-C or SIGTERM ended it early.
+        unfinished: The last event of each run that has begun and not ended, by index into `jobs`.
     """
 
     def __init__(self, plan: Sequence[PlannedCase], how: How) -> None:
@@ -63,13 +65,14 @@ class SuiteRun:
         self.results: dict[int, CaseResult] = {}
         self.resumed = 0
         self.is_interrupted = False
+        self.unfinished: dict[int, ProgressEvent] = {}
         self._how = how
         self._sampling = Sampling(plan)
 
     def collect(
         self, server: WarmServer, watch: Watcher = nobody_watches, told: Told = lambda *_: None
     ) -> None:
-        """Run what is wanted; Ctrl-C leaves what is done.
+        """Run what is requested; an interruption keeps the results that there are.
 
         Args:
             server: Open, unless the cases run in this process.
@@ -79,12 +82,18 @@ class SuiteRun:
         Raises:
             HarnessError: The stream cannot be written.
         """
+
+        def watched(index: int, event: ProgressEvent) -> None:
+            self.unfinished[index] = event
+            watch(index, event)
+
         try:
             with ExitStack() as stack:
                 if self._repetitions is not None:
                     stack.enter_context(self._repetitions)
                 stream = self._stream(stack)
-                for index, result in self._arriving(server, watch):
+                for index, result in self._arriving(server, watched):
+                    self.unfinished.pop(index, None)
                     kept = self._take(index, result)
                     if stream is not None:
                         stream.write(self.jobs[index], kept)
@@ -151,7 +160,20 @@ class SuiteRun:
     @property
     def rates(self) -> list[SampledRate]:
         """Success rates of the parametrised cases that are sampled."""
-        return self._sampling.groups() if self._is_sampled else []
+        if not self._is_sampled:
+            return []
+        starts: dict[tuple[str, str] | None, list[CaseResult]] = {}
+        for index, result in self.results.items():
+            starts.setdefault(self.plan[index].rate_key, []).append(result)
+        return [
+            replace(group, rate=with_starts(group.rate, starts.get((group.file, group.group), [])))
+            for group in self._sampling.groups()
+        ]
+
+    def values(self, index: int) -> Mapping[str, Any]:
+        """What varies in a run, as it was drawn at last."""
+        drawn = self.results[index].values if index in self.results else {}
+        return {**self.plan[index // self._how.repeat].values, **drawn}
 
     @property
     def record(self) -> SuiteRecord:
@@ -159,7 +181,9 @@ class SuiteRun:
         cases: list[SuiteCase] = []
         for index, result in self.results.items():
             case = self.plan[index // self._how.repeat]
-            cases.append(SuiteCase(result, case.values, case.header.tags, case.header.verifies))
+            cases.append(
+                SuiteCase(result, self.values(index), case.header.tags, case.header.verifies)
+            )
         return SuiteRecord(self.outcome, cases, self.rates, self.is_interrupted)
 
     def repetitions(self) -> list[list[CaseResult]]:

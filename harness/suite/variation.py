@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from statistics import NormalDist
 from typing import Any, cast
 
-from harness.core.quantity import split_quantity
+from harness.core.quantity import share_of, split_quantity
 from harness.core.variation import MOST_CASES, MOST_SAMPLES, Cases, count_of
 
 DEFAULT_SAMPLES = 20
@@ -35,6 +35,7 @@ class Case:
         values: What varies, for tables: path -> value.
         group: Name of the parametrised case that a sample belongs to; samples share a rate.
         sample: Its number from 0; None when nothing is random.
+        redraw: Draws it again; None where the file does not say so.
     """
 
     name: str = ""
@@ -42,6 +43,7 @@ class Case:
     values: Mapping[str, Any] = field(default_factory=dict[str, Any])
     group: str = ""
     sample: int | None = None
+    redraw: Redraw | None = None
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,7 @@ class Variation:
         confidence: With which.
         stop_early: Whether a sequential test may end the sampling.
         seed: Of the file.
+        redraw_overlaps: Whether a sample is drawn again while objects overlap at the start.
     """
 
     parametrize: Cases | None = None
@@ -65,6 +68,7 @@ class Variation:
     confidence: float = 0.95
     stop_early: bool = True
     seed: int = 0
+    redraw_overlaps: bool = False
 
     @classmethod
     def of(cls, values: Mapping[str, Any]) -> Variation:
@@ -79,16 +83,19 @@ class Variation:
         randomize = dict(values.get("randomize") or {})
         for distribution in randomize.values():
             _drawn(distribution, random.Random(0))
-        rate = cast("dict[str, Any]", values.get("expect_rate") or {})
+        said = values.get("expect_rate")
+        rate = cast("dict[str, Any]", said) if isinstance(said, dict) else {"at_least": said}
+        at_least = rate.get("at_least")
         default = DEFAULT_SAMPLES if randomize else 0
         variation = cls(
             parametrize=values.get("parametrize"),
             randomize=randomize,
             samples=int(values.get("samples") or default),
-            at_least=float(rate["at_least"]) if "at_least" in rate else None,
-            confidence=float(rate.get("confidence", 0.95)),
+            at_least=None if at_least is None else share_of(at_least),
+            confidence=share_of(rate.get("confidence", 0.95)),
             stop_early=bool(rate.get("stop_early", True)),
             seed=int(values.get("seed") or 0),
+            redraw_overlaps=values.get("redraw_overlaps") is True,
         )
         list(itertools.islice(variation.cases(), 3))
         if count_of(variation.parametrize) > MOST_CASES or variation.count > MOST_SAMPLES:
@@ -136,9 +143,9 @@ class Variation:
                 taken.add(name)
                 yield _case(name, chosen)
 
-    def _sample(self, case: Case, index: int, base: int) -> Case:
+    def _sample(self, case: Case, index: int, base: int, draw: int = 0) -> Case:
         """A case with random values, and a seed of its own that everything random follows from."""
-        seed = _seed(f"{base}:{case.name}:{index}")
+        seed = _seed(f"{base}:{case.name}:{index}{f':{draw}' if draw else ''}")
         rng = random.Random(seed)
         drawn = {path: _drawn(each, rng) for path, each in self.randomize.items()}
         prefix = f"{case.name}-" if case.name else ""
@@ -148,7 +155,29 @@ class Variation:
             values={**case.values, **drawn},
             group=case.name,
             sample=index,
+            redraw=Redraw(self, case, index, base) if self.redraw_overlaps and not draw else None,
         )
+
+
+@dataclass(frozen=True)
+class Redraw:
+    """Draws a sample again.
+
+    Attributes:
+        variation: Of its file.
+        case: The parametrised case it is a sample of.
+        index: Its number.
+        base: The seed of all samples.
+    """
+
+    variation: Variation
+    case: Case
+    index: int
+    base: int
+
+    def again(self, draw: int) -> Case:
+        """The sample as it is drawn next, by the number of the draw from 1."""
+        return self.variation._sample(self.case, self.index, self.base, draw)  # noqa: SLF001
 
 
 ONE_CASE = Variation()

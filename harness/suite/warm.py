@@ -19,7 +19,7 @@ from types import TracebackType
 from typing import IO, Any
 
 from harness.core.errors import HarnessError
-from harness.suite.environment import use_one_thread
+from harness.suite.environment import server_environment, use_one_thread
 from harness.suite.server import receive, send
 
 RUN_MODULES = (
@@ -128,7 +128,7 @@ class WarmServer:
                 [sys.executable, "-P", "-c", code,
                  str(theirs.fileno()), paths, json.dumps(self._modules)],
                 stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                pass_fds=[theirs.fileno()], start_new_session=True,
+                pass_fds=[theirs.fileno()], start_new_session=True, env=server_environment(),
             )  # fmt: skip
 
     def prepare(self, function: Callable[..., None], *arguments: object) -> None:

@@ -1,13 +1,13 @@
 import io
-import os
-import pty
 import re
 import subprocess
 import sys
 
-from harness.cli.progress import ProgressLines
+from harness.cli.output import Output
+from harness.cli.progress import ProgressLines, remaining
 from harness.reporting.result import CaseResult, ProgressEvent
 from harness.reporting.terminal import Style
+from tests.cli.run_in_terminal import run_in_terminal, screen_lines
 
 SCENARIO = """\
 scenario: Too short
@@ -35,11 +35,11 @@ def event(kind, sim_time, wall_time, index=0):
 
 def told(stream, *events):
     """Lines of progress of one case."""
-    lines = ProgressLines(stream, ["a"], is_side_by_side=False, style=Style())
+    lines = ProgressLines(Output(stream), ["a"], is_side_by_side=False, style=Style())
     for each in events:
         lines.step(0, each)
     lines.result(0, CaseResult("a", "", "Pick", "passed"))
-    return stream.getvalue().splitlines()
+    return screen_lines(stream.getvalue())[:-1]
 
 
 def test_a_step_has_its_own_speed_also_around_steps_nested_in_it():
@@ -60,28 +60,12 @@ def test_piped_a_case_is_one_line():
     assert lines[0].startswith("a  passed  Pick")
 
 
-def on_terminal(folder):
-    """Exit code and everything that a run writes to a terminal of 100 columns."""
-    ours, theirs = pty.openpty()
-    with subprocess.Popen(
-        RUN, cwd=folder, stdout=theirs, stderr=theirs, env={**os.environ, "TERM": "xterm"}
-    ) as process:
-        os.close(theirs)
-        said = b""
-        while True:
-            try:
-                said += os.read(ours, 65536)
-            except OSError:  # Linux: the other end is gone
-                break
-    os.close(ours)
-    return process.returncode, said.decode()
-
-
 def test_a_terminal_sees_steps_and_both_see_failures_last(tmp_path, monkeypatch):
     monkeypatch.delenv("NO_COLOR", raising=False)
     (tmp_path / "short.scenario.yaml").write_text(SCENARIO)
-    code, seen = on_terminal(tmp_path)
-    assert code == 1
+    session = run_in_terminal(["run", "short.scenario.yaml", "--no-page"], tmp_path, columns=100)
+    seen = session.text
+    assert session.code == 1
     assert "\x1b[2K    1/2  wait 0.3 s …  t=0.00 s" in seen, "the step that is under way"
     assert re.search(r"1/2  wait 0.3 s\S*  t=0.30 s\S*  \S*[\d.]+x real time", seen)
     assert float(re.search(r"([\d.]+)x real time", seen)[1]) < 1000, "as the run went, not the pipe"
@@ -97,7 +81,72 @@ def test_a_terminal_sees_steps_and_both_see_failures_last(tmp_path, monkeypatch)
     assert "failed by 0.6 s" in lines[3]
     again = "  again:  harness run short.scenario.yaml"
     report = "reports/short"
-    for text in (lines, re.sub(r"\x1b\]8;;.*?\x1b\\|\x1b\[\d+m", "", seen).splitlines()):
+    for text in (lines, session.lines[:-1]):
         assert again in text
         assert any(line.startswith("  report: ") and report in line for line in text[-5:])
         assert text[-2].startswith("1 failed of 1 case in ")
+
+
+CAMERAS = """\
+scenario: A long film of two cameras with a title that does not fit into eighty columns at all
+robot: open_manipulator_x
+cameras:
+  - name: overhead
+    pose: {xyz: [0.3, 0.0, 0.7]}
+    look_at: [0.2, 0.001, 0]
+    image: {width: 320, height: 240}
+  - name: side
+    pose: {xyz: [0.2, 0.6, 0.3]}
+    look_at: [0.2, 0, 0.1]
+    image: {width: 320, height: 240}
+videos: [{camera: overhead, rate: 10 Hz}, {camera: side, rate: 10 Hz}]
+objects:
+  - {name: red_box, box: {size: [3 cm, 3 cm, 3 cm]}, pose: {xyz: [0.2, 0.1, 0.015]}, mass: 50 g}
+steps:
+  - gripper: open
+  - move_to: home
+  - {capture: {camera: overhead}}
+  - wait: 1 s
+expect:
+  - duration: {at_least: 100 s}
+"""
+
+
+def test_no_terminal_is_silent_for_two_seconds_and_no_line_wraps(tmp_path):
+    (tmp_path / "film.scenario.yaml").write_text(CAMERAS)
+    session = run_in_terminal(["run", "film.scenario.yaml"], tmp_path)
+    assert session.code == 1, session.text
+    assert session.longest_silence < 2.0
+    assert max(map(len, session.lines)) <= 80, max(session.lines, key=len)
+    assert max(len(screen_lines(line)[0]) for line in session.rewritten) <= 80
+    said = "\n".join(session.rewritten)
+    assert re.search(r"recording the video of camera side, \d+ of 11", said)
+    assert "drawing a picture of each step" in said
+
+
+def test_a_suite_on_a_terminal_says_how_many_runs_are_done(tmp_path):
+    for name in ("first", "second", "third"):
+        (tmp_path / f"{name}.scenario.yaml").write_text(SCENARIO)
+    session = run_in_terminal(["run", ".", "-j", "2", "--no-page"], tmp_path)
+    assert session.longest_silence < 2.0
+    counts = [line[:20].strip() for line in session.rewritten if "runs done" in line]
+    assert counts[0].startswith("0 of 3 runs done")
+    assert counts[-1].startswith("2 of 3 runs done")
+    assert not [line for line in session.lines if "runs done" in line], "it is rewritten"
+
+
+def test_a_terminal_without_control_sequences_gets_none(tmp_path):
+    (tmp_path / "short.scenario.yaml").write_text(SCENARIO)
+    session = run_in_terminal(["run", "short.scenario.yaml", "--no-page"], tmp_path, TERM="dumb")
+    assert session.code == 1
+    assert "\x1b" not in session.text
+    assert "1/2  wait 0.3 s" in session.text
+
+
+def test_the_time_left_is_estimated_at_the_pace_so_far():
+    assert remaining(0.0, 10.0, 10.0, 1, 5) == ", about 40 s left"
+    assert remaining(0.0, 10.0, 15.0, 1, 5) == ", about 35 s left"
+    assert remaining(0.0, 300.0, 300.0, 10, 40) == ", about 15 min left"
+    assert remaining(0.0, 2.0, 2.0, 1, 5) == "", "too early to say"
+    assert remaining(0.0, 10.0, 10.0, 0, 5) == ""
+    assert remaining(0.0, 10.0, 99.0, 5, 5) == ""

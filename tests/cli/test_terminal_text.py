@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 from harness.core.errors import Problem
+from harness.core.printable import terminal_text
 from harness.recording.run import Measure, Verdict
 from harness.reporting.json_text import json_text
 from harness.reporting.result import CaseResult, ProgressEvent, StepLine
@@ -139,7 +140,7 @@ def test_a_finished_case_is_one_line():
 
 
 def test_colours_take_no_room():
-    line = case_line(result(), COLORED)
+    line = terminal_text(case_line(result(), COLORED))
     assert (
         line.replace("\x1b[32m", "")
         .replace("\x1b[1m", "")
@@ -151,7 +152,7 @@ def test_colours_take_no_room():
 def test_the_summary_counts_the_gravest_first():
     results = [result(), result("error"), result()]
     assert summary(results, 2.0) == "1 error, 2 passed of 3 cases in 2.0 s"
-    assert "\x1b[31m1 error\x1b[0m" in summary(results, 2.0, COLORED)
+    assert "\x1b[31m1 error\x1b[0m" in terminal_text(summary(results, 2.0, COLORED))
     assert summary([], 0.0).startswith("nothing was run")
 
 

@@ -24,7 +24,8 @@ def test_the_caret_stands_under_the_place():
 
 def test_the_caret_stands_under_the_place_behind_tabs_and_wide_characters():
     lines = str(Problem("a.yaml", 1, 4, "x", "", "\t日本x", 1)).splitlines()
-    assert lines[2] == "      | \t    ^"
+    assert lines[1] == "    1 |     日本x"
+    assert lines[2] == "      |         ^"
 
 
 def test_a_long_line_is_cut_around_the_place():

@@ -7,7 +7,7 @@ import cv2
 
 from harness.session.run_case import run_case
 from tests.docs.generated import ROOT
-from tests.reporting.browser import launched
+from tests.reporting.browser import launched, wait_for
 
 FOLDER = ROOT / "reports/gallery"
 LESSONS = ROOT / "scenarios/lessons"
@@ -38,7 +38,7 @@ def photograph(page, place, file):
     with launched() as browser:
         tab = browser.new_page(viewport=WINDOW, color_scheme="light")
         tab.goto(f"{page.as_uri()}{place}")
-        tab.wait_for_function("document.documentElement.dataset.ready === 'yes'")
+        wait_for(tab, "document.documentElement.dataset.ready === 'yes'")
         tab.wait_for_timeout(8000)  # the film strip is drawn when nothing else is to do
         tab.screenshot(path=file)
 

@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import time
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -38,6 +39,14 @@ def browser():
         yield browser
 
 
+def wait_for(page, expression, seconds=30.0):
+    """Wait until an expression is true in a page, whose policy keeps it from evaluating any."""
+    end = time.monotonic() + seconds
+    while not page.evaluate(expression):
+        assert time.monotonic() < end, f"not within {seconds} s: {expression}"
+        page.wait_for_timeout(20)
+
+
 class Visit:
     """An open page, and everything that went wrong or went out."""
 
@@ -71,7 +80,7 @@ def visit(browser):
         opened.append((context, visit))
         visit.page.goto(f"{Path(file).as_uri()}{place}")
         if scripts:
-            visit.page.wait_for_function("document.documentElement.dataset.ready === 'yes'")
+            wait_for(visit.page, "document.documentElement.dataset.ready === 'yes'")
         return visit
 
     yield open_page

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from harness.recording.store import read_run
+from tests.reporting.browser import wait_for
 
 PICTURE = """() => {
   const canvas = document.querySelector('#view canvas');
@@ -43,7 +44,7 @@ def opened(shared):
     number = shared.page.evaluate("window.visits = (window.visits ?? 0) + 1")
     shared.page.evaluate(f"location.hash = '#t=0&tab=expect&visit={number}'")
     shared.page.evaluate("document.querySelector('#unzoom').click()")
-    shared.page.wait_for_function("document.querySelector('#track').ariaValueNow === '0.000'")
+    wait_for(shared.page, "document.querySelector('#track').ariaValueNow === '0.000'")
     return shared
 
 
@@ -86,8 +87,8 @@ def test_playing_moves_the_time_and_stops_at_the_end(opened):
     page.select_option("#speed", "10")
     page.keyboard.press("Escape")
     page.click("#play")
-    page.wait_for_function("document.querySelector('#play').ariaLabel === 'Pause'")
-    page.wait_for_function("document.querySelector('#play').ariaLabel === 'Play'")
+    wait_for(page, "document.querySelector('#play').ariaLabel === 'Pause'")
+    wait_for(page, "document.querySelector('#play').ariaLabel === 'Play'")
     end = float(page.get_attribute("#track", "aria-valuemax"))
     assert opened.time() == pytest.approx(end, abs=1e-3)
 
@@ -104,9 +105,9 @@ def test_keys_seek_play_and_go_to_failures(opened):
     page.keyboard.press("n")
     assert "expect=" in page.url
     page.keyboard.press(" ")
-    page.wait_for_function("document.querySelector('#play').ariaLabel === 'Pause'")
+    wait_for(page, "document.querySelector('#play').ariaLabel === 'Pause'")
     page.keyboard.press(" ")
-    page.wait_for_function("document.querySelector('#play').ariaLabel === 'Play'")
+    wait_for(page, "document.querySelector('#play').ariaLabel === 'Play'")
 
 
 def test_dragging_over_the_timeline_scrubs(opened):
@@ -276,7 +277,7 @@ def test_a_browser_without_webgl_still_shows_the_rest(failed_run, visit):
     page = opened.page
     page.add_init_script(NO_WEBGL)
     page.reload()
-    page.wait_for_function("document.documentElement.dataset.ready === 'yes'")
+    wait_for(page, "document.documentElement.dataset.ready === 'yes'")
     assert page.locator(".no-view").is_visible()
     page.click(".verdict >> nth=0")
     assert opened.time() > 0

@@ -23,6 +23,7 @@ from tests.assertions.synthetic_run import (
     make_run,
     step,
 )
+from tests.reporting.browser import wait_for
 
 RED, GREEN = (0, 0, 255), (0, 255, 0)  # BGR
 
@@ -82,7 +83,7 @@ def test_pictures_and_videos_follow_the_clock(visit, tmp_path):
     for moment, colour, label in ((0.7, 0, "wrist · look"), (1.7, 1, "wrist · look again")):
         page.evaluate(f"location.hash = '#t={moment}'")
         for number in (0, 1):
-            page.wait_for_function(f"({SHOWN})({number})[{colour}] > 180")
+            wait_for(page, f"({SHOWN})({number})[{colour}] > 180")
             shown = page.evaluate(SHOWN, number)
             assert shown[1 - colour] < 90, (moment, number, shown)
         assert captions.nth(1).inner_text() == label

@@ -84,9 +84,12 @@ def test_position_only_ik_frees_the_orientation(tmp_path, only):
         ({"joint_limits": LIMITS.replace("1.5", "fast")}, ["joint_limits.yaml:5:19", "'fast'"]),
         ({"joint_limits": LIMITS.replace("1.5", "-1")}, [":5:19", "above zero"]),
         ({"joint_limits": LIMITS.replace("-1.0", "5")}, [":9:5", "nothing is between 5 and 2"]),
-        ({"joint_limits": "joints: {}"}, ["has `joint_limits` at the top"]),
+        ({"joint_limits": "joints: {}"}, ["no joint_limits.yaml", "no key `joint_limits`"]),
         ({"kinematics": KINEMATICS.format(only="yes")}, [":4:21", "true or false"]),
-        ({"kinematics": "arm: {}"}, ["kinematics.yaml:1:1", "no group 'arm'", "ur_manipulator"]),
+        (
+            {"kinematics": "arm: {kinematics_solver: x}"},
+            ["kinematics.yaml:1:1", "no group 'arm'", "ur_manipulator"],
+        ),
     ],
 )
 def test_what_the_robot_has_not_is_told_at_its_place(tmp_path, files, words):

@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import binomtest
 
-from harness.suite.rates import decided, wilson_interval
+from harness.reporting.sampled import rate_line
+from harness.suite.rates import Tally, decided, wilson_interval
 from tests.suite.samples import rate_of
 
 
@@ -57,3 +58,9 @@ def test_too_few_samples_show_nothing_either_way():
 def test_a_rate_of_one_cannot_be_shown_and_is_refuted_by_one_failure():
     assert rate_of([True] * 100, 1.0, 0.95, stop_early=True).verdict == "open"
     assert rate_of([True] * 9 + [False], 1.0, 0.95, stop_early=True).verdict == "refuted"
+
+
+def test_samples_none_of_which_can_be_run_show_no_rate():
+    rate = Tally(None, 0.95, stop_early=True).rate(3, invalid=2)
+    assert (rate.verdict, rate.total) == ("open", 0)
+    assert rate_line("x", rate).endswith("no rate, 2 samples invalid")

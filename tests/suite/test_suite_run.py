@@ -193,6 +193,38 @@ def test_a_mistake_in_one_value_is_told_of_its_cases_alone(varied):
     assert "2 invalid, 4 passed of 6 cases" in ran.stdout
 
 
+SOMETIMES_INVALID = """\
+scenario: Sometimes too light to be
+robot: open_manipulator_x
+seed: 5
+objects:
+  - {name: ball, sphere: {radius: 1 cm}, mass: 1, pose: {xyz: [0.3, 0.3, 0.01]}}
+steps:
+  - wait: 0.05 s
+expect:
+  - duration: {at_most: 1 s}
+randomize:
+  objects.ball.mass: {normal: {mean: 1, std: 0.7}}
+samples: 12
+"""
+
+
+def test_samples_that_cannot_be_run_do_not_count_in_the_rate(varied):
+    path = varied(SOMETIMES_INVALID)
+    done = harness("run", path, "--no-page", cwd=path.parent)
+    assert done.returncode == 2
+    found = json.loads((path.parent / "reports" / "results.json").read_text())
+    outcomes = [case["outcome"] for case in found["cases"]]
+    [rate] = [each["rate"] for each in found["rates"]]
+    assert rate["invalid"] == outcomes.count("invalid") > 0
+    assert rate["total"] == rate["passed"] == outcomes.count("passed") > 0
+    said = f"{rate['passed']} of {rate['passed']} samples passed, 100.0%"
+    assert said in done.stdout
+    assert "1 sample invalid and not counted" in done.stdout
+    assert f"{path}:11:22: `mass` must be more than 0, not `-" in done.stdout
+    assert "--set" not in done.stdout
+
+
 def test_a_mistake_of_the_file_is_told_once_not_for_every_sample(varied):
     path = varied(VARIED.replace("wait:", "wiat:"))
     done = harness("run", path, "--no-report", cwd=path.parent)

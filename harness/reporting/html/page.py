@@ -8,6 +8,7 @@ from string import Template
 
 from harness.recording.store import StoredRun
 from harness.reporting.html import bundle
+from harness.reporting.html.content_policy import content_policy
 from harness.reporting.html.groups import pack_groups
 from harness.reporting.html.packing import Packer
 from harness.reporting.html.paths import pack_plan, pack_tcp_path
@@ -33,10 +34,12 @@ def page_html(stored: StoredRun, pictures: Sequence[Picture] = ()) -> str:
         stored: The run, judged.
         pictures: For the summary.
     """
-    text = Template(bundle.skeleton()).substitute(
+    skeleton, style, script = bundle.skeleton(), bundle.style(), bundle.script()
+    text = Template(skeleton).substitute(
+        policy=content_policy(skeleton, script=script, style=style),
         title=escape(f"{stored.outcome}: {stored.run.scenario}"),
-        style=bundle.style(),
-        script=bundle.script(),
+        style=style,
+        script=script,
         summary=summary_html(stored, pictures),
         pill=outcome_pill(stored),
         name=escape(stored.run.scenario),

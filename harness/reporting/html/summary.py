@@ -76,7 +76,8 @@ def header_facts(stored: StoredRun) -> list[tuple[str, str]]:
 
 def _facts(stored: StoredRun) -> str:
     held = sum(verdict.status == "passed" for verdict in stored.verdicts)
-    facts = [*header_facts(stored), ("expectations that hold", f"{held} of {len(stored.verdicts)}")]
+    said = f"{held} of {len(stored.verdicts)}" if stored.verdicts else "none is stated"
+    facts = [*header_facts(stored), ("expectations that hold", said)]
     cells = "".join(
         f"<span>{escape(name)} <b>{escape(value)}</b></span> " for name, value in facts if value
     )

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import cv2
+import numpy as np
 
 from harness.recording.store import PAGE, StoredRun, blames_changes, read_run
 from harness.reporting.html.page import page_html
@@ -70,7 +71,9 @@ def _spread(numbers: Sequence[int], count: int) -> list[int]:
 
 
 def _small(file: Path) -> bytes | None:
-    picture = cv2.imread(str(file))
+    if not file.is_file():
+        return None
+    picture = cv2.imdecode(np.frombuffer(file.read_bytes(), dtype=np.uint8), cv2.IMREAD_COLOR)
     if picture is None:
         return None
     picture = picture[: round(picture.shape[0] * (1 - CAPTION_SHARE))]

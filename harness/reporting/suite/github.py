@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from harness.core.errors import HarnessError, Problem
+from harness.core.printable import printable, printable_lines
 from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import missed, rate_text
@@ -68,11 +69,11 @@ def _command(file: str, line: int, column: int, title: str, said: str) -> str:
 
 
 def _data(text: str) -> str:
-    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+    return printable_lines(text).replace("%", "%25").replace("\n", "%0A")
 
 
 def _property(text: str) -> str:
-    return _data(text).replace(":", "%3A").replace(",", "%2C")
+    return _data(printable(text)).replace(":", "%3A").replace(",", "%2C")
 
 
 def job_summary(record: SuiteRecord) -> str:
@@ -107,7 +108,7 @@ def _row(result: CaseResult) -> str:
 
 def _cell(text: str) -> str:
     """Text that stays text in a table of Markdown."""
-    text = " ".join(text.split()).replace("\\", "\\\\")
+    text = printable(" ".join(text.split())).replace("\\", "\\\\")
     for sign in "|<>`*_[]":
         text = text.replace(sign, f"\\{sign}")
     return text

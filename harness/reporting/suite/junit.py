@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
+from harness.core.printable import printable, printable_lines
 from harness.recording.run import Verdict
 from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import CaseResult
@@ -21,8 +22,8 @@ from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.reporting.terminal import causes, report_link
 
 NAME = "armharness"
-ILLEGAL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
-"""What XML 1.0 cannot hold."""
+ATTACHMENT = "[[ATTACHMENT|"
+"""How a file's name begins in `system-out`, for Jenkins and GitLab."""
 
 SAMPLE = re.compile(r"(?:^|-)sample\d+$")
 """What the name of a sample adds to its group's."""
@@ -41,7 +42,7 @@ def junit_xml(record: SuiteRecord) -> str:
     for file, cases in files.items():
         rates = [each for each in record.rates if each.file == file]
         counts = _counts(cases, rates)
-        suite = ET.SubElement(suites, "testsuite", {"name": _legal(file), **counts})
+        suite = ET.SubElement(suites, "testsuite", {"name": printable(file), **counts})
         for case in cases:
             _add_case(suite, case, rates)
         for rate in rates:
@@ -78,7 +79,7 @@ def _may_fail(result: CaseResult, rates: Sequence[SampledRate]) -> bool:
 def _element(suite: ET.Element, file: str, name: str, seconds: float) -> ET.Element:
     place = ".".join(Path(file).with_suffix("").with_suffix("").parts).strip("./")
     said = {"name": name, "classname": place, "file": file, "time": f"{seconds:.3f}"}
-    return ET.SubElement(suite, "testcase", {key: _legal(value) for key, value in said.items()})
+    return ET.SubElement(suite, "testcase", {key: printable(each) for key, each in said.items()})
 
 
 def _add_rate(suite: ET.Element, sampled: SampledRate) -> None:
@@ -88,7 +89,7 @@ def _add_rate(suite: ET.Element, sampled: SampledRate) -> None:
     for key, value in (("passed", rate.passed), ("samples", rate.total)):
         ET.SubElement(properties, "property", name=key, value=str(value))
     if sampled.outcome != "passed":
-        said = _legal(rate_text(f"{sampled.file} {sampled.group}".strip(), rate))
+        said = printable(rate_text(f"{sampled.file} {sampled.group}".strip(), rate))
         ET.SubElement(element, "failure", message=said, type="success rate").text = said
 
 
@@ -98,18 +99,19 @@ def _add_case(suite: ET.Element, case: SuiteCase, rates: Sequence[SampledRate]) 
     element = _element(suite, result.file, name, _seconds(result))
     properties = ET.SubElement(element, "properties")
     for key, value in case_properties(case):
-        ET.SubElement(properties, "property", name=_legal(key), value=_legal(value))
+        ET.SubElement(properties, "property", name=printable(key), value=printable(value))
     cause, lines = cause_of(result), list[str]()
     if cause is not None and _may_fail(result, rates):
         lines += ["failed, as samples may; their rate is judged", *causes(result)]
     elif cause is not None:
         kind = "failure" if result.outcome == "failed" else "error"
-        told = ET.SubElement(element, kind, message=_legal(cause.said), type=_legal(cause.group))
-        told.text = _legal("\n".join(causes(result)))
+        group, said = printable(cause.group), printable(cause.said)
+        ET.SubElement(element, kind, message=said, type=group).text = "\n".join(causes(result))
     if result.report_dir:
-        lines += [f"report: {report_link(result)}", *_attachments(result)]
+        lines.append(f"report: {report_link(result)}")
     if lines:
-        ET.SubElement(element, "system-out").text = _legal("\n".join(lines))
+        said = printable_lines("\n".join(lines)).replace(ATTACHMENT, f"[ {ATTACHMENT[1:]}")
+        ET.SubElement(element, "system-out").text = "\n".join([said, *_attachments(result)])
 
 
 def _seconds(result: CaseResult) -> float:
@@ -164,8 +166,4 @@ def _margin(verdict: Verdict) -> str:
 
 def _attachments(result: CaseResult) -> list[str]:
     """Files of the report, in the form that Jenkins and GitLab show as attachments."""
-    return [f"[[ATTACHMENT|{Path(result.page).resolve()}]]"] if result.page else []
-
-
-def _legal(text: str) -> str:
-    return ILLEGAL.sub("\N{REPLACEMENT CHARACTER}", text)
+    return [f"{ATTACHMENT}{printable(str(Path(result.page).resolve()))}]]"] if result.page else []

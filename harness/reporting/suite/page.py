@@ -12,6 +12,7 @@ from string import Template
 from urllib.parse import quote
 
 from harness.reporting.html import bundle
+from harness.reporting.html.content_policy import content_policy
 from harness.reporting.margins import allowance_used, margin_share, worst
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate, missed, rate_text, table_lines
@@ -41,10 +42,13 @@ def suite_html(
     results = [case.result for case in record.cases]
     passed = sum(result.outcome == "passed" for result in results)
     rows = [_row(i, case, folder, history) for i, case in enumerate(record.cases)]
-    return Template(_read("suite.html")).substitute(
+    skeleton, script = _read("suite.html"), _read("suite.js")
+    style = bundle.theme() + _read("suite.css")
+    return Template(skeleton).substitute(
+        policy=content_policy(skeleton, script=script, style=style),
         title="; ".join(filter(None, (f"{passed} of {len(results)} passed", missed(record.rates)))),
-        style=bundle.theme() + _read("suite.css"),
-        script=_read("suite.js"),
+        style=style,
+        script=script,
         pill="good" if record.outcome == "passed" else "bad",
         outcome=escape(record.outcome),
         interrupted=" · interrupted" if record.is_interrupted else "",
@@ -113,7 +117,11 @@ def _rate(sampled: SampledRate) -> str:
 
 def _varied(cases: Sequence[SuiteCase]) -> str:
     """A block for each quantity that varies; they flow side by side."""
-    told = [(each.values, each.result.outcome == "passed") for each in cases if each.values]
+    told = [
+        (each.values, each.result.outcome == "passed")
+        for each in cases
+        if each.values and each.result.outcome != "invalid"
+    ]
     blocks: list[str] = []
     for line in table_lines(told, SIGNS):
         if line.startswith(" "):

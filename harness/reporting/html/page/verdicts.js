@@ -11,7 +11,10 @@ const WORST_SHOWN = 3;
  * @returns {HTMLElement}
  */
 export function verdictList({ run }, select) {
-  if (!run.verdicts.length) return element("p.empty", {}, "The file expects nothing beyond what its steps say.");
+  if (!run.verdicts.length) {
+    const note = run.findings.find(({ kind }) => kind === "nothing_expected");
+    return element("p.empty", {}, note ? `Note: ${note.message}.` : "The file expects nothing beyond what its steps say.");
+  }
   const order = run.verdicts.map((_, index) => index);
   order.sort((a, b) => Number(run.verdicts[a].status === "passed") - Number(run.verdicts[b].status === "passed"));
   return element(

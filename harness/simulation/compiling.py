@@ -1,0 +1,68 @@
+"""Compiling a MuJoCo specification: what MuJoCo refuses is an error with the body's name."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+import mujoco
+import numpy as np
+
+from harness.core.errors import ModelRefused
+from harness.core.world import WorldObject
+
+SMALLEST_MASS = 1e-14
+"""Mass of an object that moves at least [kg]; MuJoCo refuses less than 1e-15."""
+
+SMALLEST_MOMENT = 2e-14
+"""Its principal moments of inertia at least [kg m^2]; MuJoCo refuses less than 1e-14."""
+
+ELEMENT = re.compile(r"Element name '(?P<name>.*)', id \d+")
+"""The part of MuJoCo's message that names what cannot be compiled."""
+
+
+def compile_model(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """The compiled model.
+
+    Raises:
+        ModelRefused: With the body that MuJoCo refuses, or that has the geom it refuses.
+    """
+    try:
+        return spec.compile()
+    except ValueError as error:
+        message = str(error)
+        reason, *_ = message.removeprefix("Error: ").splitlines()
+        found = ELEMENT.search(message)
+        element = found["name"] if found else ""
+        bodies = {body.name for body in spec.bodies} - {"world"}
+        owner = re.sub(r" \d+$", "", element)  # the geoms of a body are numbered
+        body = next((name for name in (element, owner) if name in bodies), "")
+        about = f" ('{element}')" if element and not body else ""
+        raise ModelRefused(body, f"the physics refuses it: {reason}{about}") from error
+
+
+def refuse_unusable_masses(objects: Iterable[WorldObject]) -> None:
+    """Refuse objects that move and are too light for the physics, or heavier than any number.
+
+    Raises:
+        ModelRefused: With the first such object.
+    """
+    for obj in objects:
+        if obj.is_static:
+            continue
+        if not np.isfinite([obj.mass, *obj.inertia.ravel()]).all():
+            raise ModelRefused(obj.name, "its mass or its inertia is larger than any number")
+        if obj.mass < SMALLEST_MASS:
+            raise ModelRefused(
+                obj.name,
+                f"a mass of {obj.mass:.3g} kg; the physics needs at least {SMALLEST_MASS:g} kg",
+            )
+        least = float(np.linalg.eigvalsh(obj.inertia)[0])
+        if least < SMALLEST_MOMENT:
+            raise ModelRefused(
+                obj.name,
+                f"its smallest principal moment of inertia is {least:.3g} kg m^2; the physics needs"
+                f" at least {SMALLEST_MOMENT:g} kg m^2",
+            )

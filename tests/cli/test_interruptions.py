@@ -1,0 +1,185 @@
+"""Commands that are interrupted, killed, or have nowhere to write to."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from harness.suite.leftovers import clean_report_folder
+from tests.cli.run_in_terminal import HARNESS, run_in_terminal
+
+LONG = """\
+scenario: Long
+robot: open_manipulator_x
+steps:
+  - wait: 0.1 s
+  - wait: 500 s
+    id: sleep
+expect:
+  - duration: {at_least: 1 s}
+"""
+SCRIPT = [sys.executable, "-c", "from harness.cli.main import entry; entry()"]
+SHORT = LONG.replace("500 s", "0.1 s")
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "long.scenario.yaml").write_text(LONG)
+    (tmp_path / "short.scenario.yaml").write_text(SHORT)
+    return tmp_path
+
+
+def once(words, number):
+    """Send a signal when a command has written some words."""
+    sent = []
+
+    def send(process, text):
+        if words in text and not sent:
+            sent.append(number)
+            process.send_signal(number)
+
+    return send
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_an_interrupted_run_says_where_it_stood(folder, number):
+    session = run_in_terminal(
+        ["run", "long.scenario.yaml"], folder, on_text=once("2/2  wait 500 s", number)
+    )
+    assert session.code == 130, session.text
+    said = " ".join(session.text.split())
+    assert re.search(r"interrupted after [\d.]+ s, during step 2/2: wait 500 s: the run did", said)
+    assert "Traceback" not in said
+    assert "0 cases" not in said
+    assert not list(folder.glob("reports/**/.*")), "nothing half written"
+
+
+def test_an_interrupted_suite_counts_what_is_missing(folder):
+    session = run_in_terminal(
+        ["run", "short.scenario.yaml", "long.scenario.yaml", "--no-page"], folder,
+        on_text=once("2/2  wait 500 s", signal.SIGTERM),
+    )  # fmt: skip
+    assert session.code == 130
+    lines = "\n".join(session.lines)
+    assert "1 failed of 1 case" in lines
+    assert re.search(r"interrupted after [\d.]+ s: 1 of 2 runs did not finish", lines)
+    assert "long.scenario.yaml: during step 2/2: wait 500 s" in lines
+    assert "--resume" in lines
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_at_any_moment_ends_a_command_without_a_traceback(folder, number):
+    for delay in (0.02, 0.05, 0.1, 0.15, 0.3, 0.6, 1.2):
+        with subprocess.Popen(
+            [*SCRIPT, "run", "long.scenario.yaml", "--no-report"], cwd=folder,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        ) as process:  # fmt: skip
+            time.sleep(delay)
+            process.send_signal(number)
+            said, _ = process.communicate(timeout=60)
+        if b"cli/main.py" not in said and process.returncode in (-number, 1):
+            continue  # Python itself was starting; nothing of the program had run
+        assert process.returncode == 130, (delay, said)
+        assert b"Traceback" not in said, (delay, said)
+
+
+@pytest.mark.parametrize(
+    ("redirection", "code"),
+    [(">&-", 1), ("2>&-", 1), ("<&-", 1), ("<&- >&- 2>&-", 1), (">/dev/full", 3),
+     ("2>/dev/full", 1), (">/dev/full 2>&1", 3)],
+)  # fmt: skip
+def test_a_stream_that_takes_nothing_is_no_failed_scenario(folder, redirection, code):
+    words = " ".join(HARNESS)
+    done = subprocess.run(
+        f"{words} run short.scenario.yaml --no-report {redirection}",
+        cwd=folder, shell=True, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == code, done.stderr
+    assert "Traceback" not in done.stdout + done.stderr
+    if redirection == ">/dev/full":
+        assert "standard output cannot be written: No space left on device" in done.stderr
+
+
+@pytest.mark.parametrize("command", ["--help", "list planners", "check short.scenario.yaml --json"])
+@pytest.mark.parametrize("is_unbuffered", ["1", ""])
+def test_no_command_that_cannot_write_says_failed(folder, command, is_unbuffered):
+    done = subprocess.run(
+        f"{' '.join(HARNESS)} {command} >/dev/full",
+        cwd=folder, shell=True, capture_output=True, text=True, check=False,
+        env={**os.environ, "PYTHONUNBUFFERED": is_unbuffered},
+    )  # fmt: skip
+    assert done.returncode == 3
+    assert done.stderr == ("harness: standard output cannot be written: No space left on device\n")
+
+
+@pytest.mark.parametrize("library", ["xyz", "osmesa", "egl", "disable"])
+def test_a_graphics_library_that_is_missing_stops_no_run(folder, library):
+    for more in ([], ["--in-process"]):
+        done = subprocess.run(
+            [*HARNESS, "run", "short.scenario.yaml", *more],
+            cwd=folder, capture_output=True, text=True, check=False,
+            env={**os.environ, "MUJOCO_GL": library},
+        )  # fmt: skip
+        assert done.returncode == 1, done.stderr
+        assert "1 failed of 1 case" in done.stdout
+        assert done.stderr == ""
+
+
+def leftover(folder, name, pid, kind="writing"):
+    place = folder / f".{name}.{kind}.{pid}.0"
+    (place / "images").mkdir(parents=True)
+    (place / "run.json").write_text("{}")
+    return place
+
+
+def dead_process():
+    with subprocess.Popen(["true"]) as process:
+        process.wait()
+    return process.pid
+
+
+def test_every_run_cleans_the_whole_report_folder(folder):
+    reports = folder / "reports"
+    dead = dead_process()
+    gone = [leftover(reports, "short", dead), leftover(reports, "other", dead),
+            leftover(reports / "deep" / "er", "third", dead)]  # fmt: skip
+    alive = leftover(reports / "deep", "busy", os.getpid())
+    older = reports / f".lost.old.{dead}.1" / "lost"
+    older.mkdir(parents=True)
+    (older / "run.json").write_text("{}")
+    foreign = reports / "mine"
+    foreign.mkdir()
+    (foreign / "notes.txt").write_text("mine")
+    kept = leftover(foreign, "x", dead)
+    subprocess.run(
+        [*HARNESS, "run", "short.scenario.yaml", "--no-page", "--in-process"],
+        cwd=folder, capture_output=True, check=False,
+    )  # fmt: skip
+    assert not [place for place in gone if place.exists()]
+    assert alive.exists()
+    assert (reports / "lost" / "run.json").is_file(), "the older report has its place again"
+    assert kept.exists(), "a folder with files of somebody else is not entered"
+    assert (reports / "short" / "run.json").is_file()
+
+
+def test_a_killed_run_leaves_nothing_after_the_next_one(folder):
+    (folder / "film.scenario.yaml").write_text(SHORT)
+    with subprocess.Popen([*HARNESS, "run", "film.scenario.yaml"], cwd=folder,
+                          stdout=subprocess.DEVNULL) as process:  # fmt: skip
+        end = time.monotonic() + 120
+        while not (found := list(Path(folder, "reports").glob(".film.writing.*"))):
+            assert time.monotonic() < end
+            assert process.poll() is None
+            time.sleep(0.002)
+        process.kill()
+    writer = int(found[0].name.split(".")[3])
+    while Path(f"/proc/{writer}").exists():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+    clean_report_folder(folder / "reports")
+    assert not list(Path(folder, "reports").glob(".film.*"))
