@@ -1,4 +1,4 @@
-"""collision: contacts that nothing excuses.
+"""Which contacts are collisions: those that nothing excuses.
 
 A contact of two bodies is no collision where
 - the pair is allowed for the run, or by the `allow_collisions` step it happens in, unless
@@ -16,183 +16,25 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.assertions.contact import bodies
 from harness.assertions.contacts import (
     attached,
+    bodies,
     debounced,
     finger_links,
     force_between,
     held_by_fingers,
 )
-from harness.assertions.registry import Evidence, MarginSignal, signal
 from harness.assertions.support import is_below
 from harness.assertions.temporal import episodes
-from harness.assertions.text import amount
-from harness.assertions.window import Window
-from harness.core.types import BoolArray, FloatArray
-from harness.recording.run import Measure, Run
-from harness.spec.checks import Collision
+from harness.core.types import BoolArray
+from harness.recording.run import Run
 
 BRIDGE = 0.1
 """[s]"""
-LEAST_DISTANCE = 1e-6
-"""A recorded distance of zero without contact is still none [m]."""
 GRIPPING_VERBS = ("gripper", "grasp", "release")
 RESTING_VERBS = (*GRIPPING_VERBS, "wait", "settle")
 
 Pair = tuple[str, str]
-
-
-@signal.handles(Collision)
-def collision(check: Collision, window: Window) -> MarginSignal:
-    """Positive while the bodies collide.
-
-    Value and margin are the largest force of all collisions in the window [N], the same at each of
-    their samples, so that the first contact decides. Where there is none the margin is the distance
-    that was left [m] if it was recorded, else 1. Where bodies overlap when the run begins it is
-    their depth [m].
-    """
-    run = window.run
-    pairs = _pairs(run, check)
-    allowed_too = check.count_allowed
-    guilty = {pair: window.cut(colliding(run, pair, allowed_too)) for pair in pairs}
-    unknown = np.zeros(len(window.times), dtype=bool)
-    for pair in pairs:
-        unknown |= np.isnan(window.cut(run.signals.contact_forces[pair]))
-    if unknown.any():
-        values = np.where(unknown, np.nan, -1.0)
-        return MarginSignal(values, "1", lambda _: Evidence("contacts are not known"))
-    forces = {
-        pair: np.where(guilty[pair], window.cut(run.signals.contact_forces[pair]), 0.0)
-        for pair in pairs
-        if guilty[pair].any()
-    }
-    overlaps = _overlaps_at_start(window, forces)
-    if overlaps:
-        return _overlapped(forces, overlaps)
-    if forces:
-        return _collided(window, forces)
-    distance, name = _distance(window, check, pairs)
-    if distance is None:
-        values = np.full(len(window.times), -1.0)
-        return MarginSignal(values, "1", lambda _: Evidence("no collision", is_moment=False))
-    spoken = np.nan_to_num(distance, nan=np.inf)
-
-    def evidence(index: int) -> Evidence:
-        left = amount(float(distance[index]), "m")
-        measure = Measure(
-            "clearance", float(distance[index]), 0.0, ">=", "m", window.time(index), name
-        )
-        return Evidence(f"no collision; {left} were left between {name}", (measure,))
-
-    return MarginSignal(-np.maximum(spoken, LEAST_DISTANCE), "m", evidence)
-
-
-def _overlaps_at_start(window: Window, forces: dict[Pair, FloatArray]) -> dict[Pair, float]:
-    """Depths [m] of the colliding pairs that overlap when the run begins, the deepest first."""
-    found: dict[Pair, float] = {}
-    for finding in window.run.findings if window.time(0) == 0.0 else ():
-        if finding.kind == "overlap":
-            first, second = finding.values["pair"]
-            pair = next((each for each in forces if set(each) == {first, second}), None)
-            if pair is not None and forces[pair][0] > 0:
-                found[pair] = float(finding.values["depth"])
-    return found
-
-
-def _overlapped(forces: dict[Pair, FloatArray], depths: dict[Pair, float]) -> MarginSignal:
-    """Positive as in `_collided`, by the depth [m]: the forces are those of no real contact."""
-    total = np.max(list(forces.values()), axis=0)
-    names = [f"{first} and {second}" for first, second in depths]
-    measures = tuple(
-        Measure("clearance", -depth, 0.0, ">=", "m", 0.0, name)
-        for name, depth in zip(names, depths.values(), strict=True)
-    )
-    texts = [
-        f"{name} overlap by {amount(depth, 'm')} at the start"
-        for name, depth in zip(names, depths.values(), strict=True)
-    ]
-
-    def evidence(index: int) -> Evidence:
-        if total[index] <= 0:
-            return Evidence("no collision at this moment", measures)
-        more = f"; and {len(texts) - 2} more pairs" if len(texts) > 2 else ""
-        return Evidence("; ".join(texts[:2]) + more, measures[:4], is_moment=False)
-
-    values = np.where(total > 0, max(depths.values()), -LEAST_DISTANCE)
-    return MarginSignal(values, "m", evidence)
-
-
-def _collided(window: Window, forces: dict[Pair, FloatArray]) -> MarginSignal:
-    total = np.max(list(forces.values()), axis=0)
-    peak = float(total.max())
-    values = np.where(total > 0, peak, -1.0)
-
-    def evidence(index: int) -> Evidence:
-        measures: list[Measure] = []
-        texts: list[str] = []
-        first = {pair: int(np.argmax(force > 0)) for pair, force in forces.items()}
-        for pair in sorted(forces, key=lambda pair: (first[pair], pair)):
-            start, stop = episodes(forces[pair] > 0)[0]
-            largest = float(forces[pair].max())
-            lasted = window.time(stop - 1) - window.time(start)
-            names = f"{pair[0]} and {pair[1]}"
-            measures.append(
-                Measure("contact force", largest, 0.0, "<=", "N", window.time(start), names)
-            )
-            texts.append(
-                f"{names} collide from t={window.time(start):.3f} s for {amount(lasted, 's')},"
-                f" with up to {amount(largest, 'N')}"
-            )
-        if total[index] <= 0:
-            return Evidence("no collision at this moment", tuple(measures))
-        more = f"; and {len(texts) - 2} more pairs" if len(texts) > 2 else ""
-        return Evidence("; ".join(texts[:2]) + more, tuple(measures[:4]), is_moment=False)
-
-    return MarginSignal(values, "N", evidence)
-
-
-def _pairs(run: Run, check: Collision) -> list[Pair]:
-    """Pairs that ever touched and that the expectation speaks of."""
-    every = sorted(run.signals.contact_forces)
-    if check.between is None:
-        return every
-    first, second = (bodies(run, word) for word in check.between)
-    return [
-        (a, b) for a, b in every if (a in first and b in second) or (b in first and a in second)
-    ]
-
-
-def _distance(window: Window, check: Collision, pairs: list[Pair]) -> tuple[FloatArray | None, str]:
-    """The smallest recorded distance that the expectation speaks of and nothing excuses.
-
-    Only distances to what is in the physics count: nothing can collide with a belief.
-    """
-    run = window.run
-    links = bodies(run, "robot")
-    real = {"robot", *(record.name for record in run.objects if record.in_simulation)}
-    if check.between is None:
-        first, second = links, bodies(run, "any")
-    else:
-        first, second = (bodies(run, word) for word in check.between)
-    excused = {frozenset("robot" if name in links else name for name in pair) for pair in pairs}
-    best: FloatArray | None = None
-    lowest, name = np.inf, ""
-    if "clearances" in run.unrecorded:
-        return None, ""
-    distances = run.signals.clearances
-    for a, b in sorted(distances):
-        sets = [links if word == "robot" else frozenset({word}) for word in (a, b)]
-        meant = any(x <= first and y <= second for x, y in (sets, sets[::-1]))
-        if not meant or not {a, b} <= real or frozenset((a, b)) in excused:
-            continue
-        cut = window.cut(distances[a, b])
-        if np.isnan(cut).all():
-            continue
-        if float(np.nanmin(cut)) < lowest:
-            lowest, name = float(np.nanmin(cut)), f"{a} and {'itself' if a == b else b}"
-        best = cut if best is None else np.fmin(best, cut)
-    return best, name
 
 
 def colliding(run: Run, pair: Pair, count_allowed: bool = False) -> BoolArray:

@@ -193,3 +193,40 @@ def in_hand(run: Run, name: str) -> BoolArray:
     """Samples at which an object is attached, or between all finger sides, shape (N,)."""
     mask = attached(run, name)
     return mask if run.robot.gripper is None else mask | held_by_fingers(run, name)
+
+
+def robot_contact(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
+    """Debounced force of all links on an object [N], and 1 where it is attached, (N,) each."""
+    links = set(run.robot.link_names)
+    force = np.zeros(len(run.signals.times))
+    for touching in bodies_touching(run, name, among=links).values():
+        force = force + touching
+    return force, attached(run, name).astype(float)
+
+
+def bodies(run: Run, word: str) -> frozenset[str]:
+    """Links and objects that a word of `between` means: `robot`, `gripper`, `any`, or a name.
+
+    Raises:
+        NotObservable: The run knows no such body.
+    """
+    robot = run.robot
+    links = frozenset(robot.link_names)
+    objects = frozenset(record.name for record in run.objects)
+    match word:
+        case "robot":
+            return links
+        case "gripper" if robot.gripper is not None:
+            return finger_links(robot.gripper) | ({robot.gripper.palm_link} - {""})
+        case "any":
+            return links | objects | {name for pair in run.signals.contact_forces for name in pair}
+        case _ if word in links or word in objects:
+            return frozenset({word})
+        case _:
+            raise NotObservable(f"there is no body '{word}' in this run")
+
+
+def sample_time(run: Run) -> float:
+    """Between two samples of a run [s]; 0 when it has one."""
+    times = run.signals.times
+    return float(np.median(np.diff(times))) if len(times) > 1 else 0.0

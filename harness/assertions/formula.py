@@ -37,6 +37,17 @@ from harness.recording.run import Measure, Verdict, VerdictStatus
 from harness.spec.formula import Comparison, Interval, Logic, Node, Signal, Temporal, signals_of
 from harness.spec.formula_parser import parse_formula
 
+PLOTS = {
+    "position": "position",
+    "command": "position",
+    "velocity": "velocity",
+    "effort": "effort",
+    "force": "contact",
+    "distance": "clearance",
+    "speed": "displacement",
+}
+"""The plot that the report shows for a comparison of a signal, by the signal's name."""
+
 TINY = float(np.nextafter(0.0, 1.0))
 """Stands for a margin of zero on the side that the comparison says."""
 
@@ -91,6 +102,7 @@ def formula_verdict(text: str, window: Window) -> Verdict:
         ">=" if above else "<=",
         unit,
         time,
+        plot=next((PLOTS.get(each.name, "") for each in signals_of(comparison.left)), ""),
     )
     status: VerdictStatus = "passed" if holds else "failed"
     return Verdict(

@@ -6,18 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from harness.assertions.clearance import recorded_distances
-from harness.assertions.contact import bodies
-from harness.assertions.contacts import force_between
+from harness.assertions.contacts import bodies, force_between
+from harness.assertions.distances import recorded_distances
 from harness.assertions.joints import joint_column, unit_of
-from harness.assertions.poses import frame_poses, physical_poses, speeds
+from harness.assertions.poses import UP, frame_poses, physical_poses, speeds
 from harness.assertions.window import NotObservable, Window
 from harness.core.pose_arrays import angle_between, rotate
 from harness.core.types import FloatArray
 from harness.recording.run import JointRecord
 from harness.spec.formula import Arithmetic, Const, Number, Signal
-
-UP = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,6 @@
-"""joints, named_target, gripper: joint positions against where they should be.
+"""Joints of a run: their columns, those that may rest on their stops, and distance from targets.
 
-A tolerance that the file does not give is meant for angles. For joints that slide, and for widths,
+A tolerance that the file does not give is one of angles. For joints that slide, and for widths,
 `SLIDING_TOLERANCE` stands in for it: 0.01 of a metre is a third of a small gripper's travel.
 """
 
@@ -10,15 +10,21 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from harness.assertions.contacts import finger_gap, gripper_of
-from harness.assertions.registry import MarginSignal, Part, all_of, signal
+from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import amounts
-from harness.assertions.window import NotObservable, NotReached, Window
+from harness.assertions.window import NotObservable, Window
+from harness.core.types import FloatArray
 from harness.recording.run import JointRecord, Measure, Run
-from harness.spec.checks import GripperState, Joints, NamedTarget
+from harness.spec.expectation import Quantity
 
 SLIDING_TOLERANCE = 0.002
 """[m]"""
+ROUNDING = 1e-9
+"""Share of a limit that is rounding: an effort that saturates is at its limit, not beyond."""
+
+POSITION_ERROR = Quantity(
+    "joint position error", "rad or m", "at most `tolerance`, for each joint", "position"
+)
 
 
 def joint_column(run: Run, name: str) -> tuple[int, JointRecord]:
@@ -38,30 +44,54 @@ def unit_of(joint: JointRecord) -> str:
     return "m" if joint.kind == "prismatic" else "rad"
 
 
-@signal.handles(Joints)
-def joints(check: Joints, window: Window) -> MarginSignal:
-    """The worst joint's distance from its position [rad or m]."""
-    return _near(window, check.positions, check.tolerance, "tolerance" in check.model_fields_set)
+def gripper_joints(run: Run) -> frozenset[str]:
+    """Joints of the gripper's group, and those that follow them."""
+    hand = run.robot.gripper
+    if hand is None:
+        return frozenset()
+    mimics = {joint.name for joint in run.robot.joints if joint.is_mimic}
+    return frozenset(run.robot.groups.get(hand.group, ())) | {hand.joint} | mimics
 
 
-@signal.handles(NamedTarget)
-def named_target(check: NamedTarget, window: Window) -> MarginSignal:
-    """The worst joint's distance from the named state [rad or m]."""
-    robot = window.run.robot
-    hand = "" if robot.gripper is None else robot.gripper.group
-    candidates = [check.group] if check.group is not None else [robot.arm_group, hand]
-    candidates += [] if check.group is not None else sorted(robot.named_states)
-    for group in candidates:
-        state = robot.named_states.get(group, {}).get(check.state)
-        if state is not None:
-            given = "tolerance" in check.model_fields_set
-            return _near(window, state, check.tolerance, given)
-    raise NotObservable(f"there is no named state '{check.state}' in this run")
+def resting_joints(run: Run) -> frozenset[str]:
+    """Joints that may lean on their stops: the gripper's, followers, and idle ones off the arm."""
+    names = gripper_joints(run) | {joint.name for joint in run.robot.joints if joint.is_mimic}
+    if "joint_commands" in run.unrecorded:
+        return names
+    others = names | set(run.robot.groups.get(run.robot.arm_group, ()))
+    for column, joint in enumerate(run.robot.joints):
+        if joint.name in others:
+            continue
+        commands = run.signals.joint_commands[:, column]
+        if commands.size and (commands == commands[0]).all():
+            names |= {joint.name}
+    return names
 
 
-def _near(
+def is_measured(recorded: FloatArray, joint: JointRecord, what: str) -> bool:
+    """Whether something is known of a joint in a run; one that follows another has no sensor.
+
+    Raises:
+        NotObservable: Nothing is, of a joint of its own.
+    """
+    if not np.isnan(recorded).all():
+        return True
+    if joint.is_mimic:
+        return False
+    raise NotObservable(f"the {what} of {joint.name} was not recorded")
+
+
+def near(
     window: Window, targets: Mapping[str, float], tolerance: float, is_given: bool
 ) -> MarginSignal:
+    """The worst joint's distance from its position [rad or m].
+
+    Args:
+        window: Where it is judged.
+        targets: Position of each joint by its name.
+        tolerance: Of each joint.
+        is_given: Whether the file gives the tolerance.
+    """
     parts: list[Part] = []
     for name in sorted(targets):
         column, joint = joint_column(window.run, name)
@@ -70,56 +100,11 @@ def _near(
             error = np.arctan2(np.sin(error), np.cos(error))
         slides = joint.kind == "prismatic" and not is_given
         limit = min(tolerance, SLIDING_TOLERANCE) if slides else tolerance
-        unit = unit_of(joint)
-        parts.append(Part("joint position error", np.abs(error), limit, "<=", unit, detail=name))
+        off, unit = np.abs(error), unit_of(joint)
+        parts.append(Part(POSITION_ERROR, off, limit, "<=", detail=name, measured_unit=unit))
 
     def text(_: int, measure: Measure) -> str:
         off, limit = amounts(measure.value, measure.limit, measure.unit)
         return f"{measure.detail} is off its target by {off} of {limit}"
 
     return all_of(window, parts, text)
-
-
-@signal.handles(GripperState)
-def gripper_state(check: GripperState, window: Window) -> MarginSignal:
-    """The gripper's joint, or the gap between its pads, or what its last step reported."""
-    run = window.run
-    hand = gripper_of(run)
-    given = "tolerance" in check.model_fields_set
-    if check.stalled is not None:
-        return _stalled(check.stalled, window)
-    if check.named_target is not None:
-        state = run.robot.named_states.get(hand.group, {}).get(check.named_target)
-        if state is None:
-            raise NotObservable(f"there is no named state '{check.named_target}' of the gripper")
-        return _near(window, state, check.tolerance, given)
-    if check.position is not None:
-        return _near(window, {hand.joint: check.position}, check.tolerance, given)
-    width = check.width or 0.0
-    gap = window.cut(finger_gap(run))
-    limit = check.tolerance if given else SLIDING_TOLERANCE
-    part = Part("gap error", np.abs(gap - width), limit, "<=", "m")
-
-    def text(index: int, _: Measure) -> str:
-        actual, required = amounts(float(gap[index]), width, "m")
-        return f"the gap is {actual}, {required} required"
-
-    return all_of(window, [part], text)
-
-
-def _stalled(expected: bool, window: Window) -> MarginSignal:
-    """What the last finished gripper step had reported by each sample."""
-    run = window.run
-    reported = np.full(len(run.signals.times), np.nan)
-    for step in run.steps:
-        if step.status != "not_reached" and isinstance(step.result.get("stalled"), bool):
-            reported[max(step.end_index - 1, 0) :] = float(step.result["stalled"])
-    reported = window.cut(reported)
-    if np.isnan(reported).all():
-        raise NotReached("no gripper step has reported yet")
-    part = Part("stalled", reported, float(expected), "==", "1")
-
-    def text(_: int, measure: Measure) -> str:
-        return "the gripper stalled" if measure.value == 1 else "the gripper did not stall"
-
-    return all_of(window, [part], text, present=~np.isnan(reported))

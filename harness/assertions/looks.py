@@ -6,12 +6,12 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from harness.assertions.expectation import Expectation, Predicate
 from harness.assertions.placed import PlacedExpectation
 from harness.assertions.window import NotReached, Window, window_of
 from harness.core.camera import Camera
 from harness.recording.looks import Look
 from harness.recording.run import Run
-from harness.spec.checks import Sees
 
 WATCH_RATE = 5.0
 """Pictures a second at most of a camera that an expectation watches [Hz]: each costs 0.2 s."""
@@ -27,7 +27,7 @@ def period(camera: Camera, window: Window) -> float:
 
 
 def looks_of_expectations(run: Run, expectations: Sequence[PlacedExpectation]) -> tuple[Look, ...]:
-    """What to draw so that every `sees` can be judged.
+    """What to draw so that every expectation can be judged that reads pictures.
 
     The last sample of its window; beside a temporal word, `for` or `within` the first one too and
     samples between them, one period apart.
@@ -35,35 +35,30 @@ def looks_of_expectations(run: Run, expectations: Sequence[PlacedExpectation]) -
     cameras = {camera.name: camera for camera in run.cameras}
     found: list[Look] = []
     for placed in expectations:
-        for spec, is_watched in _sees_in(placed):
+        for predicate, is_watched in _predicates_in(placed.spec):
+            requests = predicate.observations().pictures
             try:
-                window = window_of(run, _step_of(placed, spec))
+                step = placed.spec.during or predicate.during or placed.step
+                window = window_of(run, step) if requests else None
             except NotReached:
                 continue
-            camera = cameras.get(spec.camera)
-            if camera is None:
-                continue
-            samples = [window.stop - 1]
-            if is_watched:
-                samples = _watched(window, period(camera, window))
-            kind = "color" if spec.object is None else "segmentation"
-            found += [Look(spec.camera, sample, (kind,)) for sample in samples]
+            for camera_name, kind in sorted(requests):
+                camera = cameras.get(camera_name)
+                if camera is None or window is None:
+                    continue
+                samples = [window.stop - 1]
+                if is_watched:
+                    samples = _watched(window, period(camera, window))
+                found += [Look(camera_name, sample, (kind,)) for sample in samples]
     return tuple(found)
 
 
-def _sees_in(placed: PlacedExpectation) -> Iterator[tuple[Sees, bool]]:
-    """Every `sees` of an expectation, and whether it is about more than the window's end."""
-    spec = placed.spec
-    if isinstance(spec, Sees):
+def _predicates_in(spec: Expectation) -> Iterator[tuple[Predicate, bool]]:
+    """Every predicate of an expectation, and whether it is about more than the window's end."""
+    if isinstance(spec, Predicate):
         yield spec, spec.for_ is not None or spec.within is not None
-    for key in ("predicate", "until"):
-        inner = getattr(spec, key, None)
-        if isinstance(inner, Sees):
-            yield inner, True
-
-
-def _step_of(placed: PlacedExpectation, spec: Sees) -> str:
-    return getattr(placed.spec, "during", None) or spec.during or placed.step
+    for inner in spec.predicates().values():
+        yield inner, True
 
 
 def _watched(window: Window, every: float) -> list[int]:

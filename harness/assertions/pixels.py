@@ -10,33 +10,29 @@ from typing import Any
 
 import numpy as np
 
-from harness.spec.checks import HueRange
 from harness.spec.markers import MarkerName
 
-HUES = {
-    "red": (340.0, 18.0),
-    "orange": (18.0, 45.0),
-    "yellow": (45.0, 75.0),
-    "green": (75.0, 165.0),
-    "cyan": (165.0, 200.0),
-    "blue": (200.0, 255.0),
-    "purple": (255.0, 295.0),
-    "pink": (295.0, 340.0),
-}
-"""From, to on the colour circle [deg]."""
 
+def blob_pixels(
+    file: bytes, hues: tuple[float, float], min_saturation: float, min_value: float
+) -> int:
+    """Pixels of the largest connected blob of a colour.
 
-def blob_pixels(file: bytes, colour: HueRange) -> int:
-    """Pixels of the largest connected blob of a colour."""
+    Args:
+        file: An image file.
+        hues: From, to on the colour circle [deg].
+        min_saturation: From 0 to 1.
+        min_value: From 0 to 1.
+    """
     import cv2
 
     picture = _decoded(file, cv2.IMREAD_COLOR)
     hue, saturation, value = cv2.split(
         cv2.cvtColor(picture.astype(np.float32) / 255.0, cv2.COLOR_BGR2HSV)
     )
-    low, high = _hues(colour)
+    low, high = hues
     is_hue = (hue >= low) & (hue <= high) if low <= high else (hue >= low) | (hue <= high)
-    mask = is_hue & (saturation >= colour.min_saturation) & (value >= colour.min_value)
+    mask = is_hue & (saturation >= min_saturation) & (value >= min_value)
     _, _, stats, _ = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)
     return int(stats[1:, cv2.CC_STAT_AREA].max(initial=0))
 
@@ -63,13 +59,6 @@ def label_pixels(file: bytes, label: int) -> int:
     import cv2
 
     return int(np.count_nonzero(_decoded(file, cv2.IMREAD_UNCHANGED) == label))
-
-
-def _hues(colour: HueRange) -> tuple[float, float]:
-    if colour.named is not None:
-        return HUES[colour.named]
-    low, high = colour.hue or (0.0, 2 * math.pi)
-    return math.degrees(low) % 360.0, math.degrees(high) % 360.0
 
 
 def _decoded(file: bytes, flags: int) -> Any:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.assertions.temporal import TIME_RESOLUTION
-from harness.assertions.window import NotObservable, object_record
+from harness.assertions.temporal import TIME_RESOLUTION, trailing_max
+from harness.assertions.window import NotObservable, Window, object_record
 from harness.core.pose_arrays import IDENTITY
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import Run
 
+UP = np.array([0.0, 0.0, 1.0])
+STILL = 0.05
+"""What moves at no time during so long is still; a turning point of a swing is not [s]."""
 JUMP = 0.005
 """An object that a scene step moves further than this between two samples was put there [m]."""
 SCENE_VERBS = ("add_object", "remove_object", "move_object", "clear_objects")
@@ -114,3 +117,9 @@ def speeds(run: Run, poses: FloatArray) -> tuple[FloatArray, FloatArray]:
         linear[1:][appeared] = angular[1:][appeared] = 0.0
     linear[np.isnan(poses[:, 0])] = angular[np.isnan(poses[:, 0])] = np.nan
     return linear, angular
+
+
+def calm(window: Window, speed: FloatArray) -> FloatArray:
+    """The largest speed of the last `STILL` seconds of the window; NaN where it is not known."""
+    known = trailing_max(np.nan_to_num(speed, nan=0.0), window.times, STILL)
+    return np.where(np.isnan(speed), np.nan, known)

@@ -1,10 +1,10 @@
-"""A run whose signals refuse to be read where nobody recorded them."""
+"""A run that refuses to be read where nothing was recorded."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any, cast
+from typing import Any, NoReturn, cast
 
 from harness.assertions.window import NotObservable
 from harness.recording.run import AttachmentRecord, Run, Signals
@@ -22,6 +22,51 @@ WORDS = {
 }
 
 
+class Unreadable:
+    """Stands for a collection that was not recorded: every way to read it raises the same error."""
+
+    def __init__(self, error: Exception) -> None:
+        object.__setattr__(self, "_error", error)
+
+    def _refuse(self) -> NoReturn:
+        raise object.__getattribute__(self, "_error")
+
+    def __getattribute__(self, name: str) -> Any:
+        if name in ("__class__", "_refuse"):
+            return object.__getattribute__(self, name)
+        return self._refuse()
+
+    def __iter__(self) -> Iterator[Any]:
+        self._refuse()
+
+    def __len__(self) -> int:
+        self._refuse()
+
+    def __bool__(self) -> bool:
+        self._refuse()
+
+    def __contains__(self, _: object) -> bool:
+        self._refuse()
+
+    def __getitem__(self, _: object) -> Any:
+        self._refuse()
+
+    def __reversed__(self) -> Iterator[Any]:
+        self._refuse()
+
+    def __add__(self, _: object) -> Any:
+        self._refuse()
+
+    def __radd__(self, _: object) -> Any:
+        self._refuse()
+
+    def __eq__(self, _: object) -> bool:
+        self._refuse()
+
+    def __hash__(self) -> int:
+        self._refuse()
+
+
 class _Guarded:
     """Signals; reading one that is missing raises NotObservable."""
 
@@ -35,19 +80,11 @@ class _Guarded:
         return getattr(self._signals, name)
 
 
-class _NoAttachments(tuple[AttachmentRecord, ...]):
-    """What the planner attached, where nobody recorded it; looking at it raises NotObservable."""
-
-    __slots__ = ()
-
-    def __iter__(self) -> Iterator[AttachmentRecord]:
-        raise NotObservable("what the planning scene attached was not recorded")
-
-
 def guarded(run: Run) -> Run:
-    """The same run; a signal that it does not have cannot be read as if nothing had happened."""
+    """The same run; what it does not have cannot be read as if nothing had happened."""
     if not run.unrecorded:
         return run
     if "attachments" in run.unrecorded:
-        run = replace(run, attachments=_NoAttachments())
+        error = NotObservable("what the planning scene attached was not recorded")
+        run = replace(run, attachments=cast("tuple[AttachmentRecord, ...]", Unreadable(error)))
     return replace(run, signals=cast("Signals", _Guarded(run.signals, run.unrecorded)))

@@ -39,6 +39,11 @@ class Window:
         """Of the window's samples [s], shape (n,)."""
         return self.run.signals.times[self.start : self.stop]
 
+    @property
+    def tcp_position(self) -> FloatArray:
+        """Positions of the TCP in the world [m], shape (n, 3)."""
+        return self.cut(self.run.signals.tcp_pose)[:, :3]
+
     def cut(self, values: np.ndarray[Any, D]) -> np.ndarray[Any, D]:
         """The window's part of an array over the run's samples."""
         return values[self.start : self.stop]
@@ -98,3 +103,13 @@ def object_record(run: Run, name: str) -> ObjectRecord:
         if record.name == name:
             return record
     raise NotObservable(f"there is no object '{name}' in this run")
+
+
+def refuse_unrecorded_steps(run: Run) -> None:
+    """Tell a run in which no step reported something from one whose steps are not known.
+
+    Raises:
+        NotObservable: The steps were not recorded.
+    """
+    if "steps" in run.unrecorded:
+        raise NotObservable("what the steps reported was not recorded")

@@ -2,74 +2,59 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, cast
 
 from pydantic import BaseModel
 
+from harness.assertions.expectation import Expectation, Predicate
 from harness.assertions.text import amount
-from harness.spec.checks import AnyExpectation
+from harness.spec.annotations import units_of
+from harness.spec.expectation import ExpectationFields
 
-UNITS = {
-    "above": "m",
-    "at_most": "s",
-    "max_slip": "m",
-    "max_distance": "m",
-    "max_deviation": "m",
-    "max_rotation": "rad",
-    "max_velocity": "m/s",
-    "max_angular_velocity": "rad/s",
-    "min_force": "N",
-    "width": "m",
-    "for_": "s",
-    "within": "s",
-}
-"""Of numbers whose key alone gives them; `at_least` depends on the predicate."""
-AT_LEAST = {"clearance": "m", "displaced": "m", "duration": "s", "path_length": "m"}
-SUBJECTS = ("object", "state", "named_target", "between", "formula")
-SILENT = ("check", "points", "name", "predicate", "until", *SUBJECTS)
+OMITTED = ("points", "name")
 
 
-def describe(spec: AnyExpectation) -> str:
+def describe(spec: ExpectationFields) -> str:
     """What is expected, in the file's words, with everything that the file says about it."""
     text = _described(spec)
-    name = getattr(spec, "name", None)
-    return f"{name} ({text})" if name else text
+    return f"{spec.name} ({text})" if spec.name else text
 
 
-def _described(spec: BaseModel) -> str:
-    check = str(getattr(spec, "check", ""))
-    inner = getattr(spec, "predicate", None)
-    if isinstance(inner, BaseModel):
-        text = f"{check}: {_described(inner)}"
-        other = getattr(spec, "until", None)
-        if isinstance(other, BaseModel):
-            text += f" until {_described(other)}"
-    else:
-        text = " ".join([check, *_subjects(spec)])
+def _described(spec: ExpectationFields) -> str:
+    inside = spec.predicates() if isinstance(spec, Expectation) else None
+    predicates: Mapping[str, Predicate] = inside or {}
+    subject = spec.subject_field()
+    text = spec.word
+    if predicates:
+        first, *others = predicates.items()
+        text += f": {_described(first[1])}"
+        text += "".join(f" {key} {_described(inner)}" for key, inner in others)
+    elif subject and getattr(spec, subject) is not None:
+        text += f" {_subject(subject, getattr(spec, subject))}"
     said = [
-        f"{_key(key)} {_value(check, key, getattr(spec, key))}"
+        f"{_key(key)} {_value(spec, key)}"
         for key in type(spec).model_fields
-        if key in spec.model_fields_set and key not in SILENT and getattr(spec, key) is not None
+        if key in spec.model_fields_set
+        and key not in (*OMITTED, *predicates, subject)
+        and getattr(spec, key) is not None
     ]
     return ", ".join([text, *said])
 
 
-def _subjects(spec: BaseModel) -> list[str]:
-    words: list[str] = []
-    for key in SUBJECTS:
-        value = getattr(spec, key, None)
-        if key == "between" and value:
-            words.append(f"between {value[0]} and {value[1]}")
-        elif value:
-            words.append(str(value))
-    return words
+def _subject(key: str, value: Any) -> str:
+    if isinstance(value, tuple):
+        return f"{_key(key)} {' and '.join(map(str, cast('tuple[Any, ...]', value)))}"
+    return str(value)
 
 
 def _key(key: str) -> str:
     return key.rstrip("_").replace("_", " ")
 
 
-def _value(check: str, key: str, value: Any) -> str:
+def _value(spec: ExpectationFields, key: str) -> str:
+    """A field's value with the unit of the field; without one where it depends on the joint."""
+    value = getattr(spec, key)
     if isinstance(value, BaseModel):
         return _fields(value)
     if isinstance(value, dict):
@@ -78,10 +63,10 @@ def _value(check: str, key: str, value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
-        unit = AT_LEAST.get(check, "1") if key == "at_least" else UNITS.get(key, "")
-        if key == "at_most":
-            unit = AT_LEAST.get(check, "s")
-        return amount(value, unit) if unit else f"{value:.6g}"
+        field = type(spec).model_fields[key]
+        units = units_of(field.annotation, field.metadata)
+        has_unit = len(units) == 1 and units != ("1",)
+        return amount(value, units[0]) if has_unit else f"{value:.6g}"
     return str(value)
 
 

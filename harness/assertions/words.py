@@ -3,50 +3,63 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from harness.assertions import temporal
+from harness.assertions.margins import MarginSignal
 from harness.assertions.orientation import against
-from harness.assertions.registry import MarginSignal
 from harness.assertions.temporal import Decision, TooShort, later, longest_hold, with_future
 from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, NotReached, Window
 from harness.core.types import FloatArray
 from harness.recording.run import Verdict, VerdictStatus
-from harness.spec.checks import Always, AnyPredicate, Eventually, Never
-
-WORDS = (Always, Never, Eventually)
+from harness.spec.expectation import PredicateFields, TemporalFields
 
 
 @dataclass(frozen=True)
 class Terms:
-    """An expectation taken apart: the predicate, its temporal word and the words beside both."""
+    """How a predicate is judged: its temporal word, and the words next to both.
 
-    predicate: AnyPredicate
+    Attributes:
+        word: `always`, `never`, `eventually`, or `at_end` of a bare predicate.
+        hold: How long it must hold without a break [s].
+        within: The latest beginning after the window's start [s].
+        step: The step it is judged over; empty for the whole run.
+        is_opposed: Whether the predicate's measures show what speaks against it.
+    """
+
     word: str
     hold: float | None
     within: float | None
     step: str
+    is_opposed: bool = False
 
 
-def terms_of(spec: AnyPredicate | Always | Never | Eventually, step: str) -> Terms:
+def terms_of(
+    word: str, fields: Sequence[PredicateFields | TemporalFields], step: str, *, is_opposed: bool
+) -> Terms:
     """Words inside and outside a temporal word both count; of two numbers the stricter one.
+
+    Args:
+        word: The temporal word, or the `judged` word of a bare predicate.
+        fields: The temporal word, if there is one, and the predicate.
+        step: The step where the expectation stands.
+        is_opposed: As in `Terms`.
 
     Raises:
         NotObservable: It names two steps.
     """
-    predicate = spec.predicate if isinstance(spec, WORDS) else spec
-    word = spec.check if isinstance(spec, WORDS) else predicate.judged
-    holds = [value for value in (spec.for_, predicate.for_) if value is not None]
-    withins = [value for value in (spec.within, predicate.within) if value is not None]
+    holds = [each.for_ for each in fields if each.for_ is not None]
+    withins = [each.within for each in fields if each.within is not None]
     return Terms(
-        predicate,
         word,
         max(holds, default=None),
         min(withins, default=None),
-        one_step((spec.during, predicate.during), step),
+        one_step(tuple(each.during for each in fields), step),
+        is_opposed,
     )
 
 
@@ -107,7 +120,7 @@ def decide(terms: Terms, window: Window, margins: MarginSignal) -> Verdict:
     reason = evidence.text + (f" at t={time:.3f} s" if evidence.is_moment else "")
     reason += _held(terms, values, times, decision)
     measures = tuple(evidence.measures)
-    if terms.word == "never" or terms.predicate.check == "collision":
+    if terms.word == "never" or terms.is_opposed:
         measures = against(measures, is_passed=decision.holds)
     return Verdict("", status, margin + 0.0, unit, time, reason=reason, measures=measures)
 

@@ -10,7 +10,7 @@ from harness.core.camera import Camera
 from harness.core.world import World, WorldObject
 from harness.ports import PlanningOptions
 from harness.robot.description import RobotDescription
-from harness.spec.checks import AnyExpectation
+from harness.spec.expectation import ExpectationFields
 from harness.spec.source import Loc
 from harness.spec.step import Step
 
@@ -54,7 +54,7 @@ class ProgramStep:
 class ProgramExpectation:
     """An expectation and where it stands; `step` is empty for the whole run."""
 
-    spec: AnyExpectation
+    spec: ExpectationFields
     step: str
     line: int
 

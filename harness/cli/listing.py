@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import inspect
 from collections.abc import Callable, Iterable
-from typing import Any, get_args
 
 from harness.cli.output import complain, guarded, say
 
@@ -48,29 +46,25 @@ def _scenarios() -> Rows:
 
 
 def _steps() -> Rows:
-    from harness.core.registry import broken_plugins
-    from harness.spec.reference import sentence
-    from harness.spec.step import STEPS
-
-    for broken in broken_plugins():
-        complain(f"harness: {broken}")
-    return [
-        (verb, STEPS.package_of(verb), sentence(model).split("\n")[0])
-        for verb, model in STEPS.items()
-    ]
+    return _plugins("step")
 
 
 def _expectations() -> Rows:
-    from harness.assertions.judge import EXECUTED
-    from harness.spec.checks import Always, AnyPredicate, Eventually, Formula, Never, Until
-
-    models = (*get_args(AnyPredicate), Always, Never, Eventually, Until, Formula)
-    return [_row(model, "check", model in EXECUTED) for model in models]
+    return _plugins("expectation")
 
 
-def _row(model: Any, tag: str, is_available: bool) -> tuple[str, str]:
-    said = inspect.cleandoc(model.__doc__).splitlines()[0]
-    return model.model_fields[tag].default, said if is_available else f"{said} (not yet available)"
+def _plugins(kind: str) -> Rows:
+    """Name, package and first sentence of every plug-in of a kind."""
+    from harness.core.registry import broken_plugins, registry
+    from harness.spec.reference import sentence
+
+    for broken in broken_plugins():
+        complain(f"harness: {broken}")
+    registered = registry(kind)
+    return [
+        (name, registered.package_of(name), sentence(model).split("\n")[0])
+        for name, model in registered.items()
+    ]
 
 
 def _planners() -> Rows:

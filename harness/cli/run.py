@@ -247,6 +247,8 @@ def _command(arguments: argparse.Namespace, job: CaseJob) -> str:
         words += ["--set", f"{path}={value}"]
     for folder in arguments.package_folders:
         words += ["--package-path", str(folder)]
+    for module in arguments.plugins:
+        words += ["--plugin", module]
     if arguments.seed is not None:
         words += ["--seed", str(arguments.seed)]
     if arguments.samples is not None:

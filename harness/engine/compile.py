@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from harness.assertions.placed import as_expectation, check_expectation
 from harness.cell.program import Program, ProgramExpectation, ProgramStep, step_seed
 from harness.cell.scope import At, Part, Problems, Scope
 from harness.core.errors import RobotError
@@ -13,12 +14,11 @@ from harness.core.geometry import Mesh
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.engine.cameras import all_cameras, check_cameras, check_videos
-from harness.engine.checks import check_expectation
 from harness.engine.objects import ObjectUnusableError, resolve_object, resolve_world
 from harness.engine.options import CheckPlanner, check_planning, merged_options
 from harness.ports import Kinematics, PlanningOptions
 from harness.robot.description import RobotDescription
-from harness.spec.checks import AnyExpectation
+from harness.spec.expectation import ExpectationFields
 from harness.spec.planning import Planning
 from harness.spec.scenario import Scenario
 from harness.spec.source import Loc, SourceMap
@@ -41,7 +41,6 @@ class Sources:
         world_dir: Folder of the world file.
         description: The robot it names.
         kinematics: Of that robot.
-        judged: Expectation models that can be judged.
         check_planner: Normalises a planner's name and knows its parameters.
         checks_per_second: What a second of `planning_time` buys, in state checks.
         check_mesh: Raises RobotError for a mesh file that cannot be used.
@@ -56,7 +55,6 @@ class Sources:
     world_dir: Path
     description: RobotDescription
     kinematics: Kinematics
-    judged: frozenset[type]
     check_planner: CheckPlanner
     checks_per_second: int
     check_mesh: Callable[[Mesh], None]
@@ -82,7 +80,7 @@ class _Compiler:
         self.step_locs: dict[str, Loc] = {}
         self.object_locs: dict[str, Loc] = {}
         self.expectations: list[ProgramExpectation] = []
-        self.pending: list[tuple[AnyExpectation, Loc]] = []
+        self.pending: list[tuple[ExpectationFields, Loc]] = []
 
     def compile(self) -> Program:
         sources, scenario = self.sources, self.sources.scenario
@@ -97,7 +95,7 @@ class _Compiler:
         for index, expectation in enumerate(scenario.expect):
             self._expectation(expectation, ("expect", index), "")
         for expectation, loc in self.pending:
-            check_expectation(expectation, loc, self.scope, sources.judged)
+            check_expectation(as_expectation(expectation), loc, self.scope)
         check_cameras(sources.world.cameras, scenario.cameras, self.scope)
         videos = check_videos(scenario.videos, self.scope)
         if len(objects) + len(self.later) > MOST_OBJECTS:
@@ -308,7 +306,7 @@ class _Compiler:
         except ValueError:  # reported where it is said
             return name
 
-    def _expectation(self, spec: AnyExpectation, loc: Loc, step: str) -> None:
+    def _expectation(self, spec: ExpectationFields, loc: Loc, step: str) -> None:
         self.pending.append((spec, loc))
         line, _ = self.sources.lines.line_of(loc)
         self.expectations.append(ProgramExpectation(spec, step, line))

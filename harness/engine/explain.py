@@ -13,9 +13,9 @@ from harness.core.world import World
 from harness.ports import PlanningOptions
 from harness.recording.run import StepRecord
 from harness.robot.description import RobotDescription
-from harness.spec.checks import AnyExpectation
+from harness.spec.expectation import ExpectationFields
 
-Describe = Callable[[AnyExpectation], str]
+Describe = Callable[[ExpectationFields], str]
 
 
 def explain(

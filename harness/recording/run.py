@@ -237,6 +237,7 @@ class Measure:
         actual: Where it was (xyz).
         ceiling: The largest value that can be measured, in `unit`, as 1 is of a share; inf where
             there is none.
+        plot: The plot of the report that shows the quantity; empty where none does.
     """
 
     name: str
@@ -249,6 +250,7 @@ class Measure:
     expected: Floats = ()
     actual: Floats = ()
     ceiling: float = float("inf")
+    plot: str = ""
 
     def __str__(self) -> str:
         where = f" ({self.detail})" if self.detail else ""

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from harness.assertions.judge import judge
-from harness.assertions.observations import Observations, observations
+from harness.assertions.observations import Observations, merged
 from harness.assertions.placed import PlacedExpectation
 from harness.importers.bag.content import BagTopics
 from harness.importers.bag.recorded_run import Recorded, run_of_bag
 from harness.recording.run import Run, Verdict
 from harness.session.prepare import Prepared, prepare
 from harness.session.record import robot_record
-from harness.spec.checks import AnyExpectation, Clearance, Formula
 
 
 @dataclass(frozen=True)
@@ -83,8 +82,10 @@ def grade_bag(
     """
     prepared = prepare(scenario, overrides)
     program = prepared.program
-    specs = [expectation.spec for expectation in program.expectations]
-    needed = observations(specs)
+    placed = [
+        PlacedExpectation.of(item.spec, item.step, item.line) for item in program.expectations
+    ]
+    needed = merged(expectation.spec.observations() for expectation in placed)
     links = set(program.description.link_names)
     known = Recorded(
         robot=robot_record(program.description, prepared.kinematics),
@@ -97,9 +98,8 @@ def grade_bag(
         gravity=program.world.gravity,
     )
     run = run_of_bag(bag, topics or BagTopics(), known)
-    if _speaks_of_distance(specs):
+    if needed.reads_distances:
         run = _with_distances(prepared, run, needed)
-    placed = [PlacedExpectation(item.spec, item.step, item.line) for item in program.expectations]
     verdicts = [_honest(verdict) for verdict in judge(run, placed)]
     notes = tuple(finding.message for finding in run.findings)
     return Grade(run, graded(verdicts), notes)
@@ -130,14 +130,6 @@ def _steps(prepared: Prepared) -> dict[str, tuple[int, str]]:
     return known
 
 
-def _speaks_of_distance(specs: Iterable[AnyExpectation]) -> bool:
-    return any(
-        isinstance(model, Clearance) or (isinstance(model, Formula) and "distance" in model.formula)
-        for spec in specs
-        for model in (spec, getattr(spec, "predicate", None), getattr(spec, "until", None))
-    )
-
-
 def _with_distances(prepared: Prepared, run: Run, needed: Observations) -> Run:
     """With distances from joints and poses, where all joints are known."""
     if np.isnan(run.signals.joint_positions).any():
@@ -146,6 +138,6 @@ def _with_distances(prepared: Prepared, run: Run, needed: Observations) -> Run:
 
     there = [obj for obj in run.objects if obj.pose or obj.name in run.signals.object_poses]
     observer = CoalClearance(prepared.program.description)
-    signals = observer.observe(run.signals, there, (), needed.clearance_cutoff)
+    signals = observer.observe(run.signals, there, (), needed.recorded_cutoff)
     missing = tuple(name for name in run.unrecorded if name != "clearances")
     return replace(run, signals=signals, unrecorded=missing)

@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from harness.assertions.judge import EXECUTED
 from harness.cell.program import Program
 from harness.cell.scope import Part
 from harness.core.errors import Problem, RobotError, SpecError
@@ -130,7 +129,6 @@ def _prepared(loaded: LoadedScenario, missing: frozenset[Part]) -> Prepared:
         world_dir=world.path.parent,
         description=description,
         kinematics=kinematics,
-        judged=EXECUTED,
         check_planner=check_planner,
         checks_per_second=STATE_CHECKS_PER_SECOND,
         check_mesh=_check_mesh,

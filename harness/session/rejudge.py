@@ -72,10 +72,10 @@ def expectations_of(loaded: LoadedScenario) -> list[PlacedExpectation]:
             step_id = f"{step.id}{block.suffix}" if step.id else path
             for number, spec in enumerate(step.expect):
                 line, _ = loaded.lines.line_of((*loc, "expect", number))
-                found.append(PlacedExpectation(spec, step_id, line))
+                found.append(PlacedExpectation.of(spec, step_id, line))
 
     visit(Block(loaded.scenario.steps, ("steps",), "steps"))
     for number, spec in enumerate(loaded.scenario.expect):
         line, _ = loaded.lines.line_of(("expect", number))
-        found.append(PlacedExpectation(spec, "", line))
+        found.append(PlacedExpectation.of(spec, "", line))
     return found

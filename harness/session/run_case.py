@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from harness.assertions.judge import judge
-from harness.assertions.observations import observations
+from harness.assertions.observations import merged
 from harness.assertions.placed import PlacedExpectation
 from harness.cell.program import Program, ProgramStep
 from harness.core.activity import Activity
@@ -215,7 +215,7 @@ def _no_free_draw(prepared: Prepared, touch: Touch) -> Problem:
 
 def _observed_links(program: Program) -> list[str]:
     """Links whose poses the expectations need."""
-    needed = observations(expectation.spec for expectation in program.expectations)
+    needed = merged(each.spec.observations() for each in _placed(program))
     links = set(program.description.link_names)
     return [name for name in needed.frames if name in links]
 
@@ -231,7 +231,7 @@ def _execute(
 ) -> Run:
     program = prepared.program
     activity("setting up planning and physics", 0, 0)
-    needed = observations(expectation.spec for expectation in program.expectations)
+    needed = merged(each.spec.observations() for each in _placed(program))
     with clock.part("execute"):
         execution = execute_program(
             program,
@@ -246,7 +246,7 @@ def _execute(
         signals = simulator.finish()
         believed = believed_poses(execution.beliefs, signals.joint_positions, prepared.kinematics)
         signals = replace(signals, object_poses={**signals.object_poses, **believed})
-        signals = _observe(prepared, signals, execution, needed.clearance_cutoff)
+        signals = _observe(prepared, signals, execution, needed.recorded_cutoff)
     # what is not physics in execution is planning
     executed = clock.seconds.pop("execute")
     clock.seconds["plan"] = max(0.0, executed - clock.seconds.get("simulate", 0.0))
@@ -324,7 +324,7 @@ def _step_teller(program: Program, on_progress: Notify, simulator: TimedSimulato
 
 
 def _placed(program: Program) -> list[PlacedExpectation]:
-    return [PlacedExpectation(item.spec, item.step, item.line) for item in program.expectations]
+    return [PlacedExpectation.of(item.spec, item.step, item.line) for item in program.expectations]
 
 
 def _outcome(run: Run, verdicts: tuple[Verdict, ...]) -> Outcome:

@@ -58,9 +58,5 @@ def units_of(annotation: Any, metadata: Iterable[Any] = ()) -> tuple[str, ...]:
 
 
 def keys_of(model: type[SpecModel]) -> dict[str, FieldInfo]:
-    """A model's fields by their key in the file, its tag left out."""
-    return {
-        spelling(name, field): field
-        for name, field in model.model_fields.items()
-        if name != "check"
-    }
+    """A model's fields by their key in the file."""
+    return {spelling(name, field): field for name, field in model.model_fields.items()}

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-
+from harness.core.registry import OWN_PACKAGE, Registry, registry
 from harness.spec.annotations import keys_of
-from harness.spec.checks import CheckFields, Formula
+from harness.spec.expectation import KIND, ExpectationFields, PredicateFields, Quantity
 from harness.spec.formula import SIGNALS
-from harness.spec.language import BESIDE_CHECK, PREDICATES, TEMPORAL
-from harness.spec.quantities import QUANTITIES
+from harness.spec.language import BESIDE_CHECK, EXPECTATIONS, PREDICATES, TEMPORAL
 from harness.spec.reference import (
     VALUES,
     contents,
@@ -87,21 +85,21 @@ formula is decided it is not reached: `always[0, 5] A` in a window of 3 s may fa
 Where a signal is missing it is not observable."""
 
 
-def expectations_reference(available: Collection[type] | None = None) -> str:
-    """Every temporal word and predicate, and when a bare one is judged.
-
-    Args:
-        available: Models of the predicates that can be judged; None leaves that out.
-    """
-    beside = table((key, keys_of(CheckFields)[key]) for key in BESIDE_CHECK)
-    parts = ["# Expectations", EXPECTATIONS_HEAD, VALUES, contents(PREDICATES, available)]
-    parts += ["Inside or beside every word may stand:", beside]
+def expectations_reference() -> str:
+    """Every temporal word and predicate, and when a bare one is judged."""
+    registered: Registry[type[ExpectationFields]] = registry(KIND)
+    beside = table((key, keys_of(PredicateFields)[key]) for key in BESIDE_CHECK)
+    parts = ["# Expectations", EXPECTATIONS_HEAD, VALUES, contents(PREDICATES)]
+    parts += ["These keys may stand inside or next to every word:", beside]
     parts += ["## Temporal words", words({w: sentence(m) for w, m in TEMPORAL.items()})]
     parts += [UNTIL_TEXT, *_formula_section(), "## Plan against physics", PLAN_TEXT]
     for word, model in PREDICATES.items():
-        judged = model.judged if issubclass(model, CheckFields) else "at_end"
-        parts += section(word, model, BESIDE_CHECK, available, (JUDGED[judged],))
-        parts += [_measured(word), _picture(word)]
+        assert issubclass(model, PredicateFields)  # as PREDICATES says
+        package = registered.package_of(word)
+        is_own = package == OWN_PACKAGE
+        notes = [] if is_own else [f"This expectation comes from the package `{package}`."]
+        parts += section(word, model, BESIDE_CHECK, (*notes, JUDGED[model.judged]))
+        parts += [_measured(model.quantities), *([_picture(word)] if is_own else [])]
     parts += part_sections(PREDICATES.values())
     return "\n\n".join(parts) + "\n"
 
@@ -112,16 +110,17 @@ def _formula_section() -> list[str]:
         arguments = f"({', '.join(kinds)})" if kinds else ""
         unit = unit or "the joint's"
         rows.append(f"| `{name}{arguments}` | {unit} | {meaning} |")
-    return ["## `formula`", sentence(Formula), FORMULA_TEXT, "\n".join(rows)]
+    formula = sentence(EXPECTATIONS["formula"])
+    return ["## `formula`", formula, FORMULA_TEXT, "\n".join(rows)]
 
 
-def _measured(word: str) -> str:
+def _measured(quantities: tuple[Quantity, ...]) -> str:
     rows = ["| measured | unit | holds |", "| --- | --- | --- |"]
     return "\n".join(
-        rows + [f"| {each.name} | {each.unit} | {each.holds} |" for each in QUANTITIES[word]]
+        rows + [f"| {each.name} | {each.unit} | {each.holds} |" for each in quantities]
     )
 
 
 def _picture(word: str) -> str:
-    """A picture that is kept beside the page."""
+    """A picture that is kept next to the page."""
     return f"![Where `{word}` holds, and where it does not](pictures/expectations/{word}.svg)"

@@ -1,37 +1,53 @@
-"""The words of the file: which predicate and temporal word is which model."""
+"""The words of the file that expectations are made of, by their place in the grammar."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any, get_args
+from collections.abc import Iterator, Mapping
 
+from harness.core.registry import Registry, registry
 from harness.spec.annotations import keys_of
-from harness.spec.base import SpecModel
-from harness.spec.checks import (
-    Always,
-    AnyExpectation,
-    AnyPredicate,
-    Eventually,
-    Never,
+from harness.spec.expectation import (
+    KIND,
+    ExpectationFields,
+    PredicateFields,
     TemporalFields,
-    Until,
 )
 from harness.spec.step import Step
 
+UNTIL = "until"
+"""Stands next to `always`: `{always: A, until: B}` is the expectation `until`."""
 
-def _by_tag(models: Iterable[Any], tag: str) -> dict[str, type[SpecModel]]:
-    return {model.model_fields[tag].default: model for model in models}
+
+class WordsOf(Mapping[str, type[ExpectationFields]]):
+    """The registered expectations of some base class, but for `until`; imported when looked up."""
+
+    def __init__(self, base: type[ExpectationFields]) -> None:
+        self._base = base
+        self._registry: Registry[type[ExpectationFields]] = registry(KIND)
+
+    def __getitem__(self, word: str) -> type[ExpectationFields]:
+        if word not in self:
+            raise KeyError(word)
+        return self._registry[word]
+
+    def __contains__(self, word: object) -> bool:
+        if not isinstance(word, str) or word == UNTIL or word not in self._registry:
+            return False
+        return issubclass(self._registry[word], self._base)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(word for word in self._registry if word in self)
+
+    def __len__(self) -> int:
+        return len(list(iter(self)))
 
 
-PREDICATES = _by_tag(get_args(AnyPredicate), "check")
-TEMPORAL = _by_tag((Always, Never, Eventually), "check")
-EXPECTATIONS = _by_tag((each for each in get_args(AnyExpectation) if each is not Until), "check")
+EXPECTATIONS = WordsOf(ExpectationFields)
+PREDICATES = WordsOf(PredicateFields)
+TEMPORAL = WordsOf(TemporalFields)
 
 BESIDE_VERB = tuple(keys_of(Step))
 """Reserved keys: they stand next to a verb, never inside its content."""
 
 BESIDE_CHECK = tuple(keys_of(TemporalFields))
-"""Words that stand beside a predicate or a temporal word (or inside, as in the models)."""
-
-UNTIL = "until"
-"""Stands beside `always`: `{always: A, until: B}` is the model `Until`."""
+"""Words that stand next to a predicate or a temporal word (or inside, as in the models)."""

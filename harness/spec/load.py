@@ -290,7 +290,7 @@ def _model(
 
 def _contains(lines: SourceMap, loc: Loc, known: set[tuple[str, int, int]]) -> bool:
     """Whether a value, or what it is directly made of, has a mistake that is known already."""
-    found = lines.find(loc, tagged=True)
+    found = lines.find(loc)
     nearby = [found.item]
     for _ in range(2 if found.is_whole else 0):
         nearby += [entry.value for item in nearby for entry in item.mapping().values()]

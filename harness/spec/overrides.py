@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, get_args, get_origin
 from harness.core.errors import Problem, SpecError
 from harness.spec.annotations import bare, branches, is_model, keys_of
 from harness.spec.base import Rpy, SpecModel
-from harness.spec.checks import Expectation, Predicate
+from harness.spec.expectation import ExpectationFields, PredicateFields
 from harness.spec.language import BESIDE_CHECK, EXPECTATIONS, TEMPORAL, UNTIL
 from harness.spec.mistakes import describe, did_you_mean
 from harness.spec.params import PARAMS
@@ -157,7 +157,7 @@ def _kind(item: Located, annotation: Any) -> Any:
     """The annotation without unions: the branch that a value of this shape belongs to."""
     annotation = bare(annotation)
     members = [bare(each) for each in branches(annotation)]
-    if not members or annotation in (Step, bare(Expectation), bare(Predicate)):
+    if not members:
         return annotation
     models = [each for each in members if is_model(each)]
     lists = [each for each in members if get_origin(each) is tuple]
@@ -181,9 +181,9 @@ def _field(kind: Any, key: str) -> tuple[Any, Any]:
     """Annotation and default of a key, as plain data; None where the language has none."""
     if kind is Step and key in STEPS:
         return STEPS[key], {}
-    if kind in (bare(Expectation), bare(Predicate)):
+    if kind in (ExpectationFields, PredicateFields):
         if key in TEMPORAL or key == UNTIL:
-            return Predicate, None
+            return PredicateFields, None
         return EXPECTATIONS.get(key), ({} if key not in BESIDE_CHECK else None)
     if get_origin(kind) is dict:
         return get_args(kind)[1], None

@@ -14,13 +14,13 @@ from harness.core.errors import ErrorCode
 from harness.core.registry import OWN_PACKAGE
 from harness.spec.annotations import is_model, keys_of
 from harness.spec.base import SpecModel
+from harness.spec.expectation import ExpectationFields
 from harness.spec.language import BESIDE_VERB
 from harness.spec.scenario import Scenario
 from harness.spec.step import STEPS, Step
 from harness.spec.units import MEANINGS, SHARE
 from harness.spec.world import WorldSpec
 
-NOT_YET = "*Not yet available.*"
 KINDS: dict[Any, str] = {str: "text", float: "number", int: "whole number", bool: "true or false"}
 
 
@@ -48,41 +48,28 @@ def scenario_reference() -> str:
 def steps_reference() -> str:
     """Every verb: what it does, its keys with type, unit and default."""
     next_to = table((key, keys_of(Step)[key]) for key in BESIDE_VERB)
-    parts = ["# Steps", STEPS_HEAD, VALUES, contents(STEPS, None)]
+    parts = ["# Steps", STEPS_HEAD, VALUES, contents(STEPS)]
     parts += ["These keys may stand next to every verb:", next_to]
     parts.append(f"Error codes are {', '.join(f'`{code}`' for code in get_args(ErrorCode))}.")
     for verb, model in STEPS.items():
         package = STEPS.package_of(verb)
         notes = [] if package == OWN_PACKAGE else [f"This step comes from the package `{package}`."]
-        parts += section(verb, model, BESIDE_VERB, None, notes)
+        parts += section(verb, model, BESIDE_VERB, notes)
     parts += part_sections(STEPS.values())
     return "\n\n".join(parts) + "\n"
 
 
-def contents(words: Mapping[str, type[SpecModel]], available: Collection[type] | None) -> str:
-    """Links to the sections, those not yet available last."""
-    now = [word for word, model in words.items() if available is None or model in available]
-    later = [word for word in words if word not in now]
-    links = {word: f"[`{word}`](#{word})" for word in words}
-    lines = [" · ".join(links[word] for word in now)]
-    if later:
-        lines.append("Not yet available: " + " · ".join(links[word] for word in later))
-    return "\n\n".join(lines)
+def contents(words: Iterable[str]) -> str:
+    """Links to the sections."""
+    return " · ".join(f"[`{word}`](#{word})" for word in words)
 
 
 def section(
-    word: str,
-    model: type[SpecModel],
-    beside: Collection[str],
-    available: Collection[type] | None,
-    notes: Iterable[str],
+    word: str, model: type[SpecModel], beside: Collection[str], notes: Iterable[str]
 ) -> list[str]:
     """A word's heading, definition, notes and keys."""
     fields = [(key, field) for key, field in keys_of(model).items() if key not in beside]
-    parts = [f"## `{word}`", sentence(model)]
-    if available is not None and model not in available:
-        parts.append(NOT_YET)
-    parts += notes
+    parts = [f"## `{word}`", sentence(model), *notes]
     if model.short and not any(f.is_required() for key, f in fields if key != model.short):
         parts.append(f"`- {word}: x` is short for `- {word}: {{{model.short}: x}}`.")
     if fields:
@@ -110,7 +97,7 @@ def part_sections(models: Iterable[type[SpecModel]]) -> list[str]:
 def _models_in(annotation: Any) -> list[type[SpecModel]]:
     """The models that are no step and no expectation, anywhere in an annotation."""
     if is_model(annotation):
-        is_word = issubclass(annotation, Step) or "check" in annotation.model_fields
+        is_word = issubclass(annotation, Step | ExpectationFields)
         return [] if is_word else [annotation]
     return [model for each in get_args(annotation) for model in _models_in(each)]
 
@@ -155,10 +142,12 @@ def _described(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
             return " or ".join(f"{MEANINGS[unit][0]} [{unit}]" for unit in units)
     if annotation is Step:
         return "step"
+    if annotation is ExpectationFields:
+        return "expectation"
     arguments = get_args(annotation)
     if get_origin(annotation) in (Union, types.UnionType):
         kinds = [_described(each) for each in arguments if each is not type(None)]
-        return " or ".join(dict.fromkeys(kinds)) if len(kinds) <= 4 else "expectation"
+        return " or ".join(dict.fromkeys(kinds))
     if get_origin(annotation) is Literal:
         if set(arguments) <= set(get_args(ErrorCode)):
             return "error code"

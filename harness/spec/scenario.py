@@ -19,7 +19,7 @@ from harness.spec.base import (
     SpecModel,
 )
 from harness.spec.cameras import CameraSpec, VideoSpec
-from harness.spec.checks import Expectation
+from harness.spec.expectation import AnyExpectation
 from harness.spec.planning import Planning
 from harness.spec.poses import Pose
 from harness.spec.step import AnyStep
@@ -181,7 +181,7 @@ class Scenario(SpecModel):
     steps: Annotated[tuple[AnyStep, ...], Field(min_length=1)] = Field(
         description="What the arm does, in order."
     )
-    expect: tuple[Expectation, ...] = Field(default=(), description="Judged over the whole run.")
+    expect: tuple[AnyExpectation, ...] = Field(default=(), description="Judged over the whole run.")
     parametrize: Parametrize | None = Field(
         default=None,
         description="Cases: a grid `{robot.model: [ur3e, ur5e]}`, or a list of named ones.",

@@ -15,6 +15,7 @@ from pydantic.json_schema import GenerateJsonSchema, models_json_schema
 from pydantic_core import core_schema
 
 from harness.spec.base import SpecModel
+from harness.spec.expectation import ExpectationFields, TemporalFields
 from harness.spec.language import (
     BESIDE_CHECK,
     BESIDE_VERB,
@@ -75,7 +76,9 @@ def world_schema() -> Schema:
 
 
 def _schema_of(model: type[SpecModel], title: str) -> Schema:
-    models = [model, *(STEPS.values() if model is Scenario else ())]
+    models: list[type[SpecModel]] = [model]
+    if model is Scenario:
+        models += [*STEPS.values(), *_predicates_and_formula().values()]
     names, plain = models_json_schema(
         [(each, "validation") for each in models], by_alias=True, schema_generator=_WithUnits
     )
@@ -116,15 +119,12 @@ def _written(schema: Any) -> Any:
     part = cast("Schema", schema)
     if MARK in part:
         return {"$ref": f"#/$defs/{part[MARK].capitalize()}"}
-    if "discriminator" in part and part["discriminator"]["propertyName"] == "check":
-        is_predicate = "always" not in part["discriminator"]["mapping"]
-        return {"$ref": f"#/$defs/{'Predicate' if is_predicate else 'Expectation'}"}
     result: Schema = {
         key: {name: _written(each) for name, each in cast("Schema", value).items()}
         if key == "properties"
         else _written(value)
         for key, value in part.items()
-        if key not in ("title", "discriminator", MODEL) and not (key == "default" and value is None)
+        if key not in ("title", MODEL) and not (key == "default" and value is None)
     }
     if "properties" in part:
         return result
@@ -175,8 +175,8 @@ def _with_references(schema: Schema) -> Schema:
 def _with_short_form(definition: Schema, model: type[SpecModel]) -> Schema:
     """A model's schema without its tag, and the bare value that may stand for it."""
     properties: dict[str, Schema] = definition.get("properties", {})
-    is_step, is_check = issubclass(model, Step), "check" in properties
-    hidden = BESIDE_VERB if is_step else ("check",) if is_check else ()
+    is_step, is_check = issubclass(model, Step), issubclass(model, ExpectationFields)
+    hidden = BESIDE_VERB if is_step else ()
     kept = {key: value for key, value in properties.items() if key not in hidden}
     mapping = {**definition, "properties": kept}
     branches: list[Schema] = [mapping]
@@ -224,23 +224,23 @@ def _language(
         }
 
     plain_step = _properties(Step)
-    plain_check = _properties(next(iter(TEMPORAL.values())))
+    plain_check = _properties(TemporalFields)
     beside_verb = {key: _written(plain_step[key]) for key in BESIDE_VERB}
     beside_check = {key: _written(plain_check[key]) for key in BESIDE_CHECK if key in plain_check}
-    predicates = content(PREDICATES)
+    bare_words = content(_predicates_and_formula())
+    predicates = {word: bare_words[word] for word in PREDICATES}
     predicate = _one_word(predicates, beside_check, PREDICATES)
     temporal = {
         word: {"description": model.__doc__ or "", "allOf": [{"$ref": "#/$defs/Predicate"}]}
         for word, model in TEMPORAL.items()
     }
-    formula = content({word: EXPECTATIONS[word] for word in ("formula",)})
     until: Schema = {
         UNTIL: {
-            "description": "Beside `always`: it must hold until this does.",
+            "description": "The predicate until which that of `always` must hold.",
             "allOf": [{"$ref": "#/$defs/Predicate"}],
         }
     }
-    words = predicates | temporal | formula
+    words = bare_words | temporal
     expectation = _one_word(words, beside_check | until, PREDICATES)
     expectation["anyOf"][0]["dependencies"] = {UNTIL: ["always"]}
     return {
@@ -248,6 +248,11 @@ def _language(
         "Predicate": predicate,
         "Expectation": expectation,
     }
+
+
+def _predicates_and_formula() -> dict[str, type[ExpectationFields]]:
+    """The expectations that have content of their own, which no temporal word has."""
+    return {word: model for word, model in EXPECTATIONS.items() if word not in TEMPORAL}
 
 
 def _one_word(

@@ -16,7 +16,7 @@ from pydantic.fields import FieldInfo
 from harness.core.errors import Problem
 from harness.spec.annotations import bare, branches, is_model, keys_of, units_of
 from harness.spec.base import SpecModel
-from harness.spec.checks import Expectation, Predicate
+from harness.spec.expectation import CHECK, ExpectationFields, PredicateFields
 from harness.spec.language import (
     BESIDE_CHECK,
     BESIDE_VERB,
@@ -30,9 +30,6 @@ from harness.spec.scenario import RobotSpec
 from harness.spec.source import Entry, Located
 from harness.spec.step import STEPS, TAG, Step
 from harness.spec.words import UNTIL_USAGE, Words, take_apart, wrong_way_round
-
-EXPECTATION, PREDICATE = bare(Expectation), bare(Predicate)
-
 
 TURN = 6.283186  # [rad], rounded up
 
@@ -64,9 +61,9 @@ class _Shaper:
         annotation = bare(annotation)
         if annotation is Step:
             return self.step(item)
-        if annotation == EXPECTATION:
+        if annotation is ExpectationFields:
             return self.expectation(item)
-        if annotation == PREDICATE:
+        if is_model(annotation) and issubclass(annotation, PredicateFields):
             return self.predicate(item)
         if is_model(annotation):
             return self.model(item, annotation)
@@ -146,7 +143,7 @@ class _Shaper:
         words = (*BESIDE_CHECK, UNTIL)
         found = take_apart(item, EXPECTATIONS, words, "expectation", "predicate", self.problems)
         if found is None:
-            return _stand_in(item, "check", "within_limits", {})
+            return _stand_in(item, CHECK, "within_limits", {})
         until = found.beside.pop(UNTIL, None)
         if until is not None and found.word != "always":
             message = f"`until` goes with `always`, not with `{found.word}`"
@@ -161,7 +158,7 @@ class _Shaper:
             item, PREDICATES, BESIDE_CHECK, "expectation", "predicate", self.problems
         )
         if found is None:
-            return _stand_in(item, "check", "within_limits", {})
+            return _stand_in(item, CHECK, "within_limits", {})
         return self._predicate(found)
 
     def _predicate(self, found: Words) -> Located:
@@ -171,7 +168,7 @@ class _Shaper:
             place = found.entry.value.place
             message = f"a temporal word stands before its predicate, not in `{found.word}`"
             self.problems.append(place.problem(message, f"write `{meant}`"))
-            return _stand_in(found.entry.value, "check", "within_limits", {})
+            return _stand_in(found.entry.value, CHECK, "within_limits", {})
         content = self.model(_content(found.entry), model, word=found.word)
         if not isinstance(content.value, dict):
             self._not_content(found, content, model)
@@ -184,7 +181,7 @@ class _Shaper:
                 self.problems.append(entry.key.problem(message))
             else:
                 self._put(entries, key, entry)
-        return _tagged("check", found, entries)
+        return _tagged(CHECK, found, entries)
 
     def _temporal(self, found: Words, until: Entry | None) -> Located:
         """`never: {collision: {...}, for: 1 s}`: the words inside belong to `never`."""
@@ -193,15 +190,15 @@ class _Shaper:
         )
         entries = dict(found.beside)
         if inner is None:
-            return _stand_in(found.entry.value, "check", "within_limits", {})
+            return _stand_in(found.entry.value, CHECK, "within_limits", {})
         for key, entry in inner.beside.items():
             self._put(entries, key, entry)
         predicate = self._predicate(Words(inner.word, inner.entry, {}))
         entries["predicate"] = Entry(found.entry.key, predicate)
         if until is None:
-            return _tagged("check", found, entries)
+            return _tagged(CHECK, found, entries)
         entries[UNTIL] = Entry(until.key, self.predicate(until.value))
-        return _tagged("check", Words(UNTIL, found.entry, {}), entries)
+        return _tagged(CHECK, Words(UNTIL, found.entry, {}), entries)
 
     def _not_content(self, found: Words, content: Located, model: type[SpecModel]) -> None:
         message = f"`{found.word}` takes a mapping, not {describe(content.plain())}"

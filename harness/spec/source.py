@@ -170,14 +170,12 @@ class SourceMap:
 
     root: Located = field(repr=False)
 
-    def find(self, loc: Loc, *, tagged: bool = False) -> Found:
+    def find(self, loc: Loc) -> Found:
         """Follow a path as far as the file goes.
 
         Args:
             loc: Keys and indices of the model; what the file does not have (a default, the name
                 of a union's branch) is stepped over.
-            tagged: The path is pydantic's: each predicate is followed by its tag, which may equal
-                the name of a field.
         """
         item, key, path, is_whole = self.root, None, list[str | int](), True
         rest = list(loc)
@@ -191,9 +189,6 @@ class SourceMap:
                 is_whole = is_whole and part in ("[key]", item.tag)
                 continue
             path.append(part)
-            is_tagged = tagged and "check" in item.mapping()
-            if is_tagged and rest and rest[0] == item.tag:
-                rest.pop(0)
         return Found(item, key, tuple(path), is_whole)
 
     def line_of(self, loc: Loc) -> tuple[int, int]:

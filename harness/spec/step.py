@@ -11,7 +11,7 @@ from pydantic import Field
 from harness.core.errors import ErrorCode
 from harness.core.registry import Registry, registry
 from harness.spec.base import Name, PositiveDuration, SpecModel
-from harness.spec.checks import Expectation
+from harness.spec.expectation import AnyExpectation
 from harness.spec.planning import Planning
 from harness.spec.plugin_field import PluginField
 from harness.spec.source import Loc
@@ -63,7 +63,7 @@ class Step(SpecModel):
     group: Name | None = Field(
         default=None, description="The SRDF planning group that moves; the default is the arm's."
     )
-    expect: tuple[Expectation, ...] = Field(
+    expect: tuple[AnyExpectation, ...] = Field(
         default=(), description="Expectations that are judged over this step."
     )
     expect_error: ErrorCode | None = Field(

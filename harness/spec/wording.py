@@ -36,7 +36,7 @@ def _is_follow_up(error: ErrorDetails) -> bool:
 
 def _problem(error: ErrorDetails, lines: SourceMap) -> Problem:
     loc: Loc = error["loc"]
-    found = lines.find(loc, tagged=True)
+    found = lines.find(loc)
     place = found.item.place
     if error["type"] == "missing":
         return place.problem(*_missing(loc, found))

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from harness.core.errors import Problem
-from harness.core.registry import Registry, broken_plugins
+from harness.core.registry import broken_plugins
 from harness.spec.annotations import is_model, keys_of
 from harness.spec.language import EXPECTATIONS, PREDICATES, UNTIL
 from harness.spec.mistakes import describe, did_you_mean, nearest
@@ -115,9 +115,7 @@ def _unknown(
         message = f"`{word}:` is not written; the {kind} itself is the key"
     else:
         message = f"no {kind} is called `{word}`"
-    hints = [did_you_mean(word, words, f"{kind}s")]
-    if isinstance(words, Registry):
-        hints += broken_plugins()
+    hints = [did_you_mean(word, words, f"{kind}s"), *broken_plugins()]
     problems.append(place.problem(message, "; ".join(hints)))
     return nearest(word, words)
 

@@ -6,16 +6,13 @@ from collections.abc import Collection, Mapping
 from typing import Any, cast
 
 from harness.spec.base import SpecModel
-from harness.spec.checks import Always, Eventually, Never, Until
-from harness.spec.language import BESIDE_CHECK, BESIDE_VERB
+from harness.spec.expectation import ExpectationFields, TemporalFields
+from harness.spec.language import BESIDE_CHECK, BESIDE_VERB, UNTIL
 from harness.spec.params import escaped
 from harness.spec.scenario import Scenario
 from harness.spec.source import Place, Source, located
 from harness.spec.step import Step
 from harness.spec.yaml_text import yaml_text
-
-TEMPORAL = (Always, Never, Eventually)
-CHECK = "check"
 
 
 def scenario_text(scenario: Scenario) -> str:
@@ -26,17 +23,15 @@ def scenario_text(scenario: Scenario) -> str:
 
 def written(value: object) -> Any:
     """A model, or what it holds, as plain data in the shape of a file."""
-    if isinstance(value, Until):
-        return {"always": written(value.predicate), "until": written(value.until), **_beside(value)}
-    if isinstance(value, TEMPORAL):
-        return {value.check: written(value.predicate), **_beside(value)}
     if isinstance(value, SpecModel):
         entries = _entries(value)
         if isinstance(value, Step):
             return _one_word(value.verb, entries, BESIDE_VERB)
-        if CHECK in type(value).model_fields:
-            entries.pop(CHECK, None)
-            return _one_word(getattr(value, CHECK), entries, BESIDE_CHECK)
+        if isinstance(value, TemporalFields):
+            word = "always" if value.word == UNTIL else value.word
+            return {word: entries.pop("predicate"), **entries}
+        if isinstance(value, ExpectationFields):
+            return _one_word(value.word, entries, BESIDE_CHECK)
         return entries
     if isinstance(value, Mapping):
         items = cast("Mapping[str, object]", value).items()
@@ -60,7 +55,3 @@ def _entries(model: SpecModel) -> dict[str, Any]:
         for name, field in fields.items()
         if name in model.model_fields_set
     }
-
-
-def _beside(model: SpecModel) -> dict[str, Any]:
-    return {key: value for key, value in _entries(model).items() if key in BESIDE_CHECK}

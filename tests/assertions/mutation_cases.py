@@ -5,35 +5,33 @@ from dataclasses import replace
 import numpy as np
 
 from harness.core.spatial import SE3
-from harness.spec.checks import (
-    Clearance,
-    Collision,
-    Displaced,
-    DurationCheck,
-    Effort,
-    Formula,
-    FractionCheck,
-    Grasped,
-    GripperState,
-    In,
-    InContact,
-    Joints,
-    Lifted,
-    NamedTarget,
-    Never,
-    On,
-    PathLength,
-    Placed,
-    Released,
-    Slip,
-    Static,
-    TcpPath,
-    TcpPose,
-    TrackingError,
-    Until,
-    Upright,
-    WithinLimits,
-)
+from harness.expectations.clearance import Clearance
+from harness.expectations.collision import Collision
+from harness.expectations.displaced import Displaced
+from harness.expectations.duration import DurationCheck
+from harness.expectations.effort import Effort
+from harness.expectations.formula import Formula
+from harness.expectations.fraction import FractionCheck
+from harness.expectations.grasped import Grasped
+from harness.expectations.gripper import GripperState
+from harness.expectations.in_ import In
+from harness.expectations.in_contact import InContact
+from harness.expectations.joints import Joints
+from harness.expectations.lifted import Lifted
+from harness.expectations.named_target import NamedTarget
+from harness.expectations.never import Never
+from harness.expectations.on import On
+from harness.expectations.path_length import PathLength
+from harness.expectations.placed import Placed
+from harness.expectations.released import Released
+from harness.expectations.slip import Slip
+from harness.expectations.static import Static
+from harness.expectations.tcp_path import TcpPath
+from harness.expectations.tcp_pose import TcpPose
+from harness.expectations.tracking_error import TrackingError
+from harness.expectations.until import Until
+from harness.expectations.upright import Upright
+from harness.expectations.within_limits import WithinLimits
 from harness.spec.poses import Pose
 from tests.assertions.synthetic_run import (
     BOX,

@@ -7,8 +7,8 @@ import cv2
 import numpy as np
 
 from harness.core.spatial import SE3
+from harness.expectations.sees import Sees
 from harness.recording.looks import Look
-from harness.spec.checks import Sees
 from tests.assertions.synthetic_run import step
 from tests.cameras.camera_runs import ball, card, eye, pictures, run_with
 

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from harness.core.geometry import Box
-from harness.spec.checks import Collision, Eventually, Never
+from harness.expectations.collision import Collision
+from harness.expectations.eventually import Eventually
+from harness.expectations.never import Never
 from tests.assertions.synthetic_run import (
     BOX,
     TABLE,

@@ -3,22 +3,20 @@
 import numpy as np
 import pytest
 
-from harness.spec.checks import (
-    Always,
-    Displaced,
-    Eventually,
-    Formula,
-    Grasped,
-    InContact,
-    Lifted,
-    NamedTarget,
-    Never,
-    Placed,
-    Static,
-    TcpPath,
-    Until,
-    Upright,
-)
+from harness.expectations.always import Always
+from harness.expectations.displaced import Displaced
+from harness.expectations.eventually import Eventually
+from harness.expectations.formula import Formula
+from harness.expectations.grasped import Grasped
+from harness.expectations.in_contact import InContact
+from harness.expectations.lifted import Lifted
+from harness.expectations.named_target import NamedTarget
+from harness.expectations.never import Never
+from harness.expectations.placed import Placed
+from harness.expectations.static import Static
+from harness.expectations.tcp_path import TcpPath
+from harness.expectations.until import Until
+from harness.expectations.upright import Upright
 from tests.assertions.synthetic_run import force, heights, lift_run, make_run, step, verdict
 
 EARLY = "PLANNING_FAILED: no path"

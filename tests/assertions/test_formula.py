@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from harness.assertions.formula import TINY, Evaluation, formula_verdict
 from harness.assertions.temporal import TooShort, always, eventually, never, until
 from harness.assertions.window import NotObservable, NotReached, Window
-from harness.spec.checks import Formula
+from harness.expectations.formula import Formula
 from harness.spec.formula import Comparison, Const, Interval, Logic, Signal, Temporal
 from harness.spec.formula_parser import parse_formula
 from harness.spec.formula_text import FormulaError

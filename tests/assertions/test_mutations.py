@@ -22,15 +22,18 @@ another one.
 """
 
 from dataclasses import fields, replace
-from typing import get_args
 
 import numpy as np
 import pytest
 
-from harness.assertions.judge import EXECUTED, judge
+from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
+from harness.expectations.duration import DurationCheck
+from harness.expectations.fraction import FractionCheck
+from harness.expectations.lifted import Lifted
+from harness.expectations.until import Until
 from harness.recording.run import Signals
-from harness.spec.checks import AnyPredicate, DurationCheck, FractionCheck, Lifted, Until
+from harness.spec.language import PREDICATES
 from tests.assertions.free_shifts import AT_ONCE, COURSES, FREE, free_shifts
 from tests.assertions.mutation_cases import CASES, N
 from tests.assertions.picture_mutants import SUBJECTS, seen_run, spoilt
@@ -95,7 +98,7 @@ MEASURED = [
 
 def name_of(spec):
     inner = spec if isinstance(spec, Until) else getattr(spec, "predicate", spec)
-    return inner.check
+    return inner.word
 
 
 def names_of_cases():
@@ -295,7 +298,7 @@ def test_every_free_shift_names_a_case_and_a_signal_that_it_reads():
 
 
 def test_every_predicate_has_a_case():
-    judged = set(get_args(AnyPredicate)) & EXECUTED
+    judged = set(PREDICATES.values())
     named = {type(getattr(spec, "predicate", spec)) for spec, _, _ in CASES} | {Lifted}
     named |= {type(seen_run(kind)[0]) for kind in SUBJECTS}
     assert judged <= named

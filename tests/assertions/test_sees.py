@@ -9,7 +9,12 @@ from pydantic import ValidationError
 from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
 from harness.core.spatial import SE3
-from harness.spec.checks import Always, Eventually, Never, Sees, Until, WithinLimits
+from harness.expectations.always import Always
+from harness.expectations.eventually import Eventually
+from harness.expectations.never import Never
+from harness.expectations.sees import Sees
+from harness.expectations.until import Until
+from harness.expectations.within_limits import WithinLimits
 from tests.assertions.synthetic_run import step
 from tests.cameras.camera_runs import (
     GREEN,

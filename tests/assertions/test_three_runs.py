@@ -6,44 +6,40 @@ reference names.
 """
 
 from dataclasses import dataclass, replace
-from typing import get_args
 
 import numpy as np
 import pytest
 
 from harness.core.spatial import SE3
+from harness.expectations.clearance import Clearance
+from harness.expectations.collision import Collision
+from harness.expectations.displaced import Displaced
+from harness.expectations.duration import DurationCheck
+from harness.expectations.effort import Effort
+from harness.expectations.fraction import FractionCheck
+from harness.expectations.grasped import Grasped
+from harness.expectations.gripper import GripperState
+from harness.expectations.in_ import In
+from harness.expectations.in_contact import InContact
+from harness.expectations.joints import Joints
+from harness.expectations.lifted import Lifted
+from harness.expectations.named_target import NamedTarget
+from harness.expectations.never import Never
+from harness.expectations.on import On
+from harness.expectations.path_length import PathLength
+from harness.expectations.placed import Placed
+from harness.expectations.released import Released
+from harness.expectations.sees import Sees
+from harness.expectations.slip import Slip
+from harness.expectations.static import Static
+from harness.expectations.tcp_path import TcpPath
+from harness.expectations.tcp_pose import TcpPose
+from harness.expectations.tracking_error import TrackingError
+from harness.expectations.upright import Upright
+from harness.expectations.within_limits import WithinLimits
 from harness.recording.run import Run
-from harness.spec.checks import (
-    AnyPredicate,
-    Clearance,
-    Collision,
-    Displaced,
-    DurationCheck,
-    Effort,
-    FractionCheck,
-    Grasped,
-    GripperState,
-    In,
-    InContact,
-    Joints,
-    Lifted,
-    NamedTarget,
-    Never,
-    On,
-    PathLength,
-    Placed,
-    Released,
-    Sees,
-    Slip,
-    Static,
-    TcpPath,
-    TcpPose,
-    TrackingError,
-    Upright,
-    WithinLimits,
-)
+from harness.spec.language import PREDICATES
 from harness.spec.poses import Pose
-from harness.spec.quantities import QUANTITIES, quantity_of
 from tests.assertions.picture_mutants import SUBJECTS, seen_run
 from tests.assertions.synthetic_run import (
     BOX,
@@ -81,6 +77,14 @@ class Three:
     unit: str
     never: Run | None = None
     during: str = ""
+
+
+def quantity_of(word, measure):
+    """The quantity that a verdict's measure is one of; None if the predicate has no such one."""
+    for quantity in sorted(PREDICATES[word].quantities, key=lambda each: -len(each.name)):
+        if quantity.name in measure.name and measure.unit in quantity.unit.split(" or "):
+            return quantity
+    return None
 
 
 UNREACHED = make_run(steps=(step("later", N, N, status="not_reached"),))
@@ -250,12 +254,12 @@ THREE = [
 
 
 def word(spec):
-    return getattr(spec, "predicate", spec).check
+    return getattr(spec, "predicate", spec).word
 
 
 def test_every_predicate_has_its_three_runs():
     assert {type(getattr(each.spec, "predicate", each.spec)) for each in THREE} | {Sees} == set(
-        get_args(AnyPredicate)
+        PREDICATES.values()
     )
 
 
@@ -278,9 +282,9 @@ def test_it_passes_barely_fails_and_says_nothing_of_what_it_never_met(three):
 def test_the_numbers_of_a_verdict_are_those_of_the_reference(three):
     for run in (three.satisfied, three.barely):
         answer = verdict(run, three.spec, three.during)
-        named = [quantity_of(word(three.spec), m.name, m.unit) for m in answer.measures]
+        named = [quantity_of(word(three.spec), m) for m in answer.measures]
         assert None not in named, answer.measures
-        units = " or ".join(each.unit for each in QUANTITIES[word(three.spec)])
+        units = " or ".join(each.unit for each in PREDICATES[word(three.spec)].quantities)
         assert answer.unit in units.split(" or ")
 
 
@@ -289,17 +293,11 @@ def test_what_a_camera_sees_is_measured_as_the_reference_says(kind):
     spec, run, _ = SEEN[kind]
     answer = verdict(run, spec)
     assert answer.status == "passed"
-    assert all(quantity_of("sees", m.name, m.unit) for m in answer.measures)
+    assert all(quantity_of("sees", m) for m in answer.measures)
     assert verdict(UNREACHED, spec, "later").status == "not reached"
 
 
-def test_the_reference_names_the_numbers_of_every_predicate_and_of_no_other():
-    words = {model.model_fields["check"].default for model in get_args(AnyPredicate)}
-    assert set(QUANTITIES) == words
-    assert all(QUANTITIES.values())
-
-
-@pytest.mark.parametrize("model", get_args(AnyPredicate), ids=lambda model: model.__name__)
+@pytest.mark.parametrize("model", PREDICATES.values(), ids=lambda model: model.__name__)
 def test_a_predicate_is_defined_in_one_sentence(model):
     definition = " ".join(model.__doc__.split("\n\n")[0].split())
     assert definition.endswith(".")

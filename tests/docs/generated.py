@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-from harness.assertions.judge import EXECUTED
 from harness.importers.reference import formats_page
 from harness.spec.expectations_reference import expectations_reference
 from harness.spec.reference import scenario_reference, steps_reference
@@ -21,7 +20,7 @@ def generated():
         "scenarios/world.schema.json": world_schema_text(),
         "scenarios/SCENARIO.md": scenario_reference(),
         "scenarios/STEPS.md": steps_reference(),
-        "scenarios/EXPECTATIONS.md": expectations_reference(EXECUTED),
+        "scenarios/EXPECTATIONS.md": expectations_reference(),
         "worlds/FORMATS.md": formats_page(),
         "robots/FORMATS.md": robot_formats_page(),
         "README.md": with_samples((ROOT / "README.md").read_text(encoding="utf-8")),

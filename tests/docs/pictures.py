@@ -13,10 +13,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from harness.assertions.contacts import debounced
-from harness.assertions.registry import signal
 from harness.assertions.temporal import episodes
 from harness.assertions.window import window_of
-from harness.assertions.words import terms_of
 from harness.recording.store import read_run
 from harness.session.rejudge import expectations_of
 from harness.session.run_case import run_case
@@ -70,9 +68,9 @@ def course(window, margins, measure):
 
 def draw_course(axes, run, placed, verdict, quantity):
     """What the deciding quantity measured, its limit, where it held, which sample decided."""
-    terms = terms_of(placed.spec, placed.step)
+    terms = placed.spec.terms(placed.step)
     window = window_of(run, terms.step)
-    margins = signal(terms.predicate, window)
+    margins = placed.spec.predicates().get("predicate", placed.spec).margins(window)
     measure = next((m for m in verdict.measures if m.name == quantity), verdict.measures[0])
     factor, unit = SHOWN.get(measure.unit, (1.0, measure.unit))
     times, values = course(window, margins, measure)
@@ -91,7 +89,7 @@ def draw_course(axes, run, placed, verdict, quantity):
 
 def draw_picture(axes, run, placed, *_):
     """The picture that was judged, with the object's pixels outlined."""
-    window = window_of(run, terms_of(placed.spec, placed.step).step)
+    window = window_of(run, placed.spec.terms(placed.step).step)
     spec = placed.spec
     taken = [each for each in run.captures if each.sample == window.stop - 1]
     files = {kind: run.files[path] for each in taken for kind, path in each.files.items()}

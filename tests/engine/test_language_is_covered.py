@@ -1,10 +1,10 @@
 """Every verb and every predicate is carried out; none is silently accepted."""
 
-from typing import get_args
-
-from harness.assertions.judge import EXECUTED
-from harness.spec.checks import AnyExpectation
+from harness.assertions.expectation import Expectation, Predicate
+from harness.core.registry import registry
 from harness.spec.step import STEPS, Step
+
+EXPECTATIONS = registry("expectation")
 
 
 def test_every_verb_is_a_class_that_says_checks_and_does_it():
@@ -25,5 +25,22 @@ def test_every_key_of_a_step_is_described_in_a_sentence():
     ] == []
 
 
-def test_every_expectation_of_the_language_is_judged():
-    assert set(get_args(AnyExpectation)) <= EXECUTED
+def test_every_expectation_is_a_class_that_says_checks_and_judges_it():
+    for word, model in EXPECTATIONS.items():
+        module = model.__module__.rpartition(".")[2]
+        assert model.word == word == module.rstrip("_")
+        assert model.verdict is not Expectation.verdict
+        if issubclass(model, Predicate):
+            assert model.signal is not Predicate.signal
+            assert model.quantities
+
+
+def test_every_key_of_an_expectation_is_described_in_a_sentence():
+    described = {
+        f"{word}.{name}": field.description or ""
+        for word, model in EXPECTATIONS.items()
+        for name, field in model.model_fields.items()
+    }
+    assert [
+        key for key, text in described.items() if not text.endswith((".", "].")) or len(text) < 20
+    ] == []

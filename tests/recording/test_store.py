@@ -15,12 +15,15 @@ from harness.core.camera import Camera
 from harness.core.errors import HarnessError
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
 from harness.core.spatial import SE3
+from harness.expectations.clearance import Clearance
+from harness.expectations.grasped import Grasped
+from harness.expectations.lifted import Lifted
+from harness.expectations.static import Static
 from harness.recording.arrays import arrays_of
 from harness.recording.digest import digest
 from harness.recording.plain import to_plain
 from harness.recording.run import CaptureRecord, Finding, MeshRecord, VideoRecord
 from harness.recording.store import FORMAT, read_run, write_run
-from harness.spec.checks import Clearance, Grasped, Lifted, Static
 from tests.assertions.synthetic_run import ROBOT, attachment, lift_run, thing
 
 EXPECTED = [

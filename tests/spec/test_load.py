@@ -3,7 +3,13 @@ from pathlib import Path
 import pytest
 
 from harness.core.errors import SpecError
-from harness.spec.checks import Always, Eventually, Grasped, Lifted, Never, Until, WithinLimits
+from harness.expectations.always import Always
+from harness.expectations.eventually import Eventually
+from harness.expectations.grasped import Grasped
+from harness.expectations.lifted import Lifted
+from harness.expectations.never import Never
+from harness.expectations.until import Until
+from harness.expectations.within_limits import WithinLimits
 from harness.spec.load import bundled_worlds, load_scenario, load_world, parse_scenario
 from harness.steps.add_object import AddObject
 from harness.steps.allow_collisions import AllowCollisions

@@ -11,7 +11,10 @@ import pytest
 
 import harness
 from harness.core.resources import data_folder
-from harness.spec.checks import Always, DurationCheck, NamedTarget, WithinLimits
+from harness.expectations.always import Always
+from harness.expectations.duration import DurationCheck
+from harness.expectations.named_target import NamedTarget
+from harness.expectations.within_limits import WithinLimits
 from harness.spec.load import load_scenario, parse_scenario
 from harness.spec.scenario import Scenario
 from harness.spec.written import scenario_text
@@ -37,23 +40,32 @@ def test_the_examples_of_the_page_run(number, monkeypatch):
     exec(compile(blocks[number], str(PAGE), "exec"), {})
 
 
-def test_the_step_of_the_page_runs(tmp_path):
-    text = PAGE.read_text(encoding="utf-8")
-    (step,) = (
-        each for each in re.findall(r"```python\n(.*?)```", text, re.DOTALL) if "verb:" in each
-    )
-    (scenario,) = re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)
-    (tmp_path / "remarks.py").write_text(step, encoding="utf-8")
-    (tmp_path / "remarks.scenario.yaml").write_text(scenario, encoding="utf-8")
+def blocks_of_the_page(language):
+    return re.findall(rf"```{language}\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+
+
+def run_with_plugins(folder):
+    """A run of the scenarios of a folder, with the modules in it as plug-ins."""
+    plugins = [word for path in folder.glob("*.py") for word in ("--plugin", path.name)]
     done = subprocess.run(
-        [sys.executable, "-m", "harness.cli", "run", "--plugin", "remarks.py", "--no-report", "."],
-        cwd=tmp_path,
+        [sys.executable, "-m", "harness.cli", "run", *plugins, "--no-report", "."],
+        cwd=folder,
         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
         capture_output=True,
         text=True,
         check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_step_and_the_expectations_of_the_page_run(tmp_path):
+    (step,) = (each for each in blocks_of_the_page("python") if "(Step):" in each)
+    (expectations,) = (each for each in blocks_of_the_page("python") if "(Predicate):" in each)
+    scenario, expect = blocks_of_the_page("yaml")
+    (tmp_path / "remarks.py").write_text(step, encoding="utf-8")
+    (tmp_path / "heights.py").write_text(expectations, encoding="utf-8")
+    (tmp_path / "remarks.scenario.yaml").write_text(scenario + expect, encoding="utf-8")
+    run_with_plugins(tmp_path)
 
 
 def test_a_model_runs_as_its_file_does(tmp_path):

@@ -13,16 +13,6 @@ from harness.recording.run import JointRecord, Run, StepRecord, Verdict, is_nest
 from harness.recording.store import StoredRun
 from harness.reporting.margins import allowance_used
 
-PLOTS = (
-    ("joint position", "position"), ("tracking", "tracking"), ("clearance", "clearance"),
-    ("force", "contact"), ("contact", "contact"), ("slip", "slip"), ("turn in the hand", "slip"),
-    ("height", "height"), ("TCP", "tcp"), ("path length", "tcp"), ("velocity", "velocity"),
-    ("effort", "effort"), ("position error", "displacement"), ("position", "position"),
-    ("speed", "displacement"),
-)  # fmt: skip
-"""What a measure's name contains -> the plot that shows it; the first that fits."""
-
-
 TONES = {"passed": "good", "expected_error": "good", "failed": "bad", "not_reached": "open"}
 
 
@@ -89,7 +79,6 @@ def step_facts(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> dict[
 def verdict_facts(verdict: Verdict) -> dict[str, Any]:
     """A verdict as plain data."""
     first = verdict.measures[0] if verdict.measures else None
-    name = first.name if first else ""
     return {
         "text": verdict.expectation,
         "status": verdict.status,
@@ -101,7 +90,7 @@ def verdict_facts(verdict: Verdict) -> dict[str, Any]:
         "step": verdict.step,
         "reason": verdict.reason,
         "measures": [finite(to_plain(measure)) for measure in verdict.measures],
-        "plot": next((plot for part, plot in PLOTS if part in name), None),
+        "plot": (first.plot or None) if first else None,
         "points": _points(verdict),
     }
 

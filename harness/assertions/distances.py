@@ -1,0 +1,59 @@
+"""Recorded distances between the robot, what it holds, and objects."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.assertions.contacts import attached, in_hand
+from harness.assertions.window import NotObservable, NotReached, object_record
+from harness.core.types import FloatArray
+from harness.recording.run import Run
+
+Key = tuple[str, str]
+
+
+def recorded_distances(run: Run, first: str, second: str) -> dict[Key, FloatArray]:
+    """Recorded distances that two words of `between` mean, sorted by key."""
+    if first == "any" or (second == "robot" and first != "robot"):
+        first, second = second, first
+    clearances = run.signals.clearances
+    if second == "any":
+        names = _names_of(run, first)
+        rows = {
+            key: np.where(in_hand(run, key[1]), np.nan, clearances[key])
+            for key in sorted(clearances)
+            if key[0] in names and key[1] not in ("robot", key[0])
+        }
+        if not rows and first == "robot" and run.objects:
+            raise NotObservable("no distances between the robot and objects were recorded")
+        if not rows:
+            raise NotReached(f"there was nothing beside {first}")
+        return rows
+    rows = {
+        key: clearances[key]
+        for a in _names_of(run, first)
+        for b in _names_of(run, second)
+        for key in ((a, b), (b, a))
+        if key in clearances
+    }
+    if rows:
+        return rows
+    for name in (first, second):
+        if name != "robot" and not object_record(run, name).present:
+            raise NotReached(f"{name} was never in the scene")
+    if "robot" not in (first, second) and not any(
+        attached(run, name).any() for name in (first, second)
+    ):
+        raise NotReached(f"the robot held neither {first} nor {second}")
+    raise NotObservable(f"the distance between {first} and {second} was not recorded")
+
+
+def _names_of(run: Run, word: str) -> list[str]:
+    """A name, and those that stand for it, or that it stands for, while attached."""
+    if "attachments" in run.unrecorded:
+        return [word]
+    names = {word}
+    for record in run.attachments:
+        if word in (record.object, record.represents):
+            names |= {record.object, record.represents}
+    return sorted(names)

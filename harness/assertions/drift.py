@@ -1,0 +1,84 @@
+"""How far a held object has drifted from where the planner carries it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.assertions.contacts import held_by_fingers
+from harness.assertions.poses import link_poses, object_poses
+from harness.assertions.window import NotObservable, NotReached, object_record
+from harness.core.pose_arrays import (
+    angle_between,
+    compose,
+    conjugate,
+    quat_product,
+    relative,
+    rotate,
+    rotation_angle,
+)
+from harness.core.symmetry import ANY, equal_turns
+from harness.core.types import BoolArray, FloatArray
+from harness.recording.run import AttachmentRecord, Run, is_nested
+
+
+def released_at(run: Run, record: AttachmentRecord) -> float:
+    """When the gripper began to release an attached object: inf where it did not [s].
+
+    `release` opens the gripper and then detaches the object; `gripper` and `detach_object` one
+    after the other do the same. In between the object leaves the hand as it should.
+    """
+    leaves = [
+        step
+        for step in run.steps
+        if not any(is_nested(other.path, step.path) for other in run.steps)
+    ]
+    ends = [
+        place
+        for place, step in enumerate(leaves)
+        if step.verb in ("release", "detach_object")
+        and step.start_time <= record.end_time <= step.end_time
+    ]
+    if not ends:
+        return record.end_time
+    place = ends[0]
+    if leaves[place].verb == "detach_object":
+        while place > 0 and leaves[place - 1].verb == "gripper":
+            place -= 1
+    return leaves[place].start_time
+
+
+def drift_in_hand(run: Run, name: str) -> tuple[str, FloatArray, FloatArray, BoolArray]:
+    """Drift [m], turn [rad] and where they mean something, of the physical object behind a name."""
+    records = [record for record in run.attachments if name in (record.object, record.represents)]
+    if not records:
+        object_record(run, name)
+        raise NotReached(f"{name} was never attached")
+    count, times = len(run.signals.times), run.signals.times
+    drift, turn = np.full(count, np.nan), np.full(count, np.nan)
+    speaks = np.zeros(count, dtype=bool)
+    physical = records[-1].represents
+    for record in records:
+        if not object_record(run, record.represents).in_simulation:
+            raise NotObservable(f"{record.represents} is not in the physics")
+        actual = object_poses(run, record.represents)
+        carried = compose(link_poses(run, record.link), np.array(record.pose_in_link))
+        error = relative(carried, actual)
+        during = (times >= record.start_time) & (times < record.end_time)
+        gripped = np.flatnonzero(during & held_by_fingers(run, record.represents))
+        if len(gripped) == 0:
+            continue
+        zero = error[gripped[0]]
+        first = int(gripped[0])
+        held = during & (np.arange(count) >= first) & (times < released_at(run, record))
+        held[first] = True
+        speaks |= held
+        drift[held] = np.linalg.norm(error[held, :3] - zero[:3], axis=1)
+        if equal_turns(object_record(run, record.represents).shapes, np.eye(3)) == ANY:
+            axis = np.array([0.0, 0.0, 1.0])
+            turned = angle_between(rotate(error[:, 3:], axis), rotate(zero[3:], axis))
+        else:
+            turned = rotation_angle(quat_product(conjugate(zero[3:]), error[:, 3:]))
+        turn[held] = turned[held]
+    if not speaks.any():
+        raise NotReached(f"the fingers never held {physical} while it was attached")
+    return physical, drift, turn, speaks

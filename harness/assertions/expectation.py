@@ -1,0 +1,221 @@
+"""The base classes of expectations: what each of them does besides being read from a file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from harness.assertions.margins import Margin, MarginSignal, Part, all_of
+from harness.assertions.observations import (
+    ExpectationError,
+    Observations,
+    merged,
+    restricted,
+)
+from harness.assertions.text import amount
+from harness.assertions.window import NotObservable, NotReached, Window, window_of
+from harness.assertions.words import Terms, decide, terms_of
+from harness.cell.scope import At
+from harness.core.errors import HarnessError
+from harness.recording.run import Measure, Run, Verdict
+from harness.spec.annotations import units_of
+from harness.spec.base import Name
+from harness.spec.expectation import (
+    CHECK,
+    KIND,
+    ExpectationFields,
+    PredicateFields,
+    Quantity,
+    TemporalFields,
+)
+from harness.spec.plugin_field import PluginField
+
+SPECIAL_BODIES = ("robot", "gripper", "any")
+"""Words that stand for several bodies where two bodies are named."""
+BOUNDS = {"at_least": ">=", "at_most": "<="}
+"""Fields that bound a predicate's one quantity, where its class does not say what it measures."""
+
+
+class Expectation(ExpectationFields):
+    """What a run is judged by."""
+
+    word: ClassVar[str] = ""
+
+    def check(self, at: At) -> None:
+        """Report what is wrong with it for this robot and scene; not what is inside it.
+
+        Args:
+            at: The robot, the objects and the place in the file.
+        """
+
+    def needs_step(self) -> str:
+        """Why it can be judged over a step alone; empty where it can be judged over a whole run."""
+        return ""
+
+    def predicates(self) -> Mapping[str, Predicate]:
+        """The predicates inside it, by their keys."""
+        return {}
+
+    def observations(self) -> Observations:
+        """What must be recorded so that it can be judged."""
+        return merged(inner.observations() for inner in self.predicates().values())
+
+    def verdict(self, run: Run, step: str) -> Verdict:
+        """What became of it, without its text and its place in the file.
+
+        Args:
+            run: What happened.
+            step: The id of the step under which it stands; empty for the whole run.
+
+        Raises:
+            NotReached: There was nothing to judge.
+            NotObservable: The record lacks what it is about.
+        """
+        raise NotImplementedError(f"{type(self).__name__} has no method `verdict`")
+
+    def readable(self, run: Run) -> Run:
+        """The run, of which it reads what its `observations` declare."""
+        return restricted(run, self.observations(), type(self).__name__)
+
+
+class Predicate(Expectation, PredicateFields):
+    """A condition that holds or does not hold at each sample of a run.
+
+    Attributes:
+        is_opposed: Whether its measures show what speaks against it: contacts of a collision.
+    """
+
+    word: ClassVar[str] = ""
+    is_opposed: ClassVar[bool] = False
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
+        super().__pydantic_init_subclass__(**kwargs)
+        if not cls.word:
+            return
+        if cls.signal is Predicate.signal:
+            raise TypeError(f"the predicate {cls.__name__} has no method `signal`")
+        if not cls.quantities:
+            cls.quantities = _bounded_quantity(cls)
+
+    def signal(self, window: Window) -> MarginSignal | Margin:
+        """The margin at each sample of a window, not negative where the predicate holds.
+
+        Returns:
+            An array of margins of the predicate's one quantity, shape (n,), in its unit; or a
+            signal that says more: several quantities, what a sample shows, where it applies.
+
+        Raises:
+            NotReached: There was nothing to judge.
+            NotObservable: The record lacks what it is about.
+        """
+        raise NotImplementedError
+
+    def margins(self, window: Window) -> MarginSignal:
+        """The signal with what its samples show.
+
+        Raises:
+            ExpectationError: `signal` reads what `observations` does not declare, or goes wrong.
+        """
+        try:
+            found = self.signal(replace(window, run=self.readable(window.run)))
+        except (NotReached, NotObservable, HarnessError):
+            raise
+        except Exception as error:
+            said = f"{type(self).__name__}.signal raised {type(error).__name__}: {error}"
+            raise ExpectationError(said) from error
+        return found if isinstance(found, MarginSignal) else self._with_measures(found, window)
+
+    def verdict(self, run: Run, step: str) -> Verdict:
+        terms = self.terms(step)
+        window = window_of(run, terms.step)
+        return decide(terms, window, self.margins(window))
+
+    def terms(self, step: str) -> Terms:
+        """How it is judged where it stands bare."""
+        return terms_of(self.judged, (self,), step, is_opposed=self.is_opposed)
+
+    def _with_measures(self, margins: Margin, window: Window) -> MarginSignal:
+        """Bare margins with the measure that its class declares, against its bound."""
+        if np.shape(margins) != (len(window.times),):
+            raise ExpectationError(
+                f"{type(self).__name__}.signal returns an array of shape {np.shape(margins)},"
+                f" not one margin for each of {len(window.times)} samples"
+            )
+        quantity = self.quantities[0]
+        given = [(key, getattr(self, key, None)) for key in BOUNDS]
+        bounds = [(key, float(limit)) for key, limit in given if limit is not None]
+        key, limit = bounds[0] if len(bounds) == 1 else ("at_least", 0.0)
+        values = limit + margins if key == "at_least" else limit - margins
+        part = Part(quantity, values, limit, ">=" if key == "at_least" else "<=")
+        name = part.name if len(bounds) == 1 else f"the margin of {part.name}"
+
+        def text(_: int, measure: Measure) -> str:
+            value, least = amount(measure.value, part.unit), amount(limit, part.unit)
+            return f"{name} is {value}, {key.replace('_', ' ')} {least} required"
+
+        return all_of(window, [part], text)
+
+
+class ObjectPredicate(Predicate):
+    """A predicate of one object; `- lifted: red_box` is short for `{object: red_box}`."""
+
+    word: ClassVar[str] = ""
+    short = "object"
+
+    object: Name = Field(description="The name of the object.")
+
+    def check(self, at: At) -> None:
+        at.scope.check_object(self.object, at.key("object"), simulated=True)
+
+
+InnerPredicate = Annotated[Predicate, PluginField(KIND, CHECK)]
+
+
+class TemporalWord(Expectation, TemporalFields):
+    """A word that says at which samples of the window its predicate holds."""
+
+    word: ClassVar[str] = ""
+
+    predicate: InnerPredicate = Field(description="The predicate that is judged.")
+
+    def needs_step(self) -> str:
+        """Why it can be judged over a step alone; empty where it can be judged over a whole run."""
+        return ""
+
+    def predicates(self) -> Mapping[str, Predicate]:
+        return {"predicate": self.predicate}
+
+    def verdict(self, run: Run, step: str) -> Verdict:
+        terms = self.terms(step)
+        window = window_of(run, terms.step)
+        return decide(terms, window, self.predicate.margins(window))
+
+    def terms(self, step: str) -> Terms:
+        """How its predicate is judged."""
+        opposed = self.predicate.is_opposed
+        return terms_of(self.word, (self, self.predicate), step, is_opposed=opposed)
+
+
+def _bounded_quantity(cls: type[Predicate]) -> tuple[Quantity, ...]:
+    """The one quantity of a predicate that has nothing but a bound.
+
+    Raises:
+        TypeError: What it measures cannot be known from its fields.
+    """
+    fields = [cls.model_fields[key] for key in BOUNDS if key in cls.model_fields]
+    units = {units_of(field.annotation, field.metadata) or ("1",) for field in fields}
+    if len(units) != 1 or len(next(iter(units))) != 1:
+        raise TypeError(
+            f"the predicate {cls.__name__} does not say what it measures: give it `quantities`,"
+            " or a bound `at_least` or `at_most` with a unit"
+        )
+    ((unit,),) = units
+    holds = ", ".join(
+        f"{key.replace('_', ' ')} `{key}`" for key in BOUNDS if key in cls.model_fields
+    )
+    return (Quantity(cls.word.replace("_", " "), unit, holds),)

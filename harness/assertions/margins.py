@@ -1,0 +1,213 @@
+"""Margins of a predicate at every sample of a window, and the measures they come from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from harness.assertions.window import Window
+from harness.core.types import BoolArray, FloatArray
+from harness.recording.run import Measure
+from harness.spec.expectation import Quantity
+
+Comparison = Literal["<=", ">=", "=="]
+Margin = FloatArray
+"""The margin of a predicate at each sample of a window, shape (n,)."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What a sample shows.
+
+    Attributes:
+        text: In words, with numbers, without the time.
+        measures: The tightest first.
+        margin: In `unit`, where it says more than the signal's value; else None.
+        unit: Of `margin`.
+        is_moment: Whether the text speaks of the sample, rather than of all the time judged.
+    """
+
+    text: str
+    measures: tuple[Measure, ...] = ()
+    margin: float | None = None
+    unit: str = ""
+    is_moment: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class MarginSignal:
+    """How far a predicate is from flipping at each sample of a window.
+
+    Attributes:
+        values: Not negative where the predicate holds; NaN where nobody can say, shape (n,).
+        unit: Of the values.
+        evidence: What the sample at an index of the window shows.
+        applies: Samples of which the predicate speaks (default all): a distance to an object says
+            nothing before the object is there. `always` skips the others, nothing holds at them.
+        progress: Chooses the sample to show among equal margins.
+    """
+
+    values: FloatArray
+    unit: str
+    evidence: Callable[[int], Evidence]
+    applies: BoolArray | None = None
+    progress: FloatArray | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """One quantity of a predicate, against its limit.
+
+    Attributes:
+        quantity: What is measured.
+        values: Shape (n,), in `unit`.
+        limit: In `unit`.
+        comparison: How values must stand to the limit.
+        scale: What a margin is divided by before it is compared with other parts'; default |limit|.
+        relevant: Samples at which the part counts; default all.
+        detail: Which joint, link or pair.
+        points: Of a distance in the world, where something was to be and where it was, shape
+            (n, 3) each.
+        ceiling: The largest value that can be measured, in `unit`; inf where there is none. The
+            margin of a value that must be large is a share of what lies between limit and ceiling.
+        measured_name: The name of the measure where it holds more than the quantity's.
+        measured_unit: The unit where the quantity has several.
+    """
+
+    quantity: Quantity
+    values: FloatArray
+    limit: float
+    comparison: Comparison
+    scale: float | None = None
+    relevant: BoolArray | None = None
+    detail: str = ""
+    points: tuple[FloatArray, FloatArray] | None = None
+    ceiling: float = math.inf
+    measured_name: str = ""
+    measured_unit: str = ""
+
+    @property
+    def name(self) -> str:
+        """The name of the part's measure."""
+        return self.measured_name or self.quantity.name
+
+    @property
+    def unit(self) -> str:
+        """The unit of the values, the limit and the margin."""
+        return self.measured_unit or self.quantity.unit
+
+    def measure(self, index: int, time: float) -> Measure:
+        """The part at a sample, for a verdict."""
+        value, (expected, actual) = float(self.values[index]), self.points_at(index)
+        measure = measured(
+            self.quantity, value, self.limit, self.comparison, time, self.detail, self.name
+        )
+        points = {"expected": expected, "actual": actual}
+        return replace(measure, unit=self.unit, ceiling=self.ceiling, **points)
+
+    def points_at(self, index: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Expected and actual point of a sample; empty where the part has none."""
+        if self.points is None:
+            return (), ()
+        expected, actual = (tuple(map(float, rows[index])) for rows in self.points)
+        return expected, actual
+
+    def margins(self) -> FloatArray:
+        """Not negative where the part holds, in `unit` (1 or -1 for equality), shape (n,)."""
+        match self.comparison:
+            case "<=":
+                return self.limit - self.values
+            case ">=":
+                return self.values - self.limit
+            case "==":
+                return np.where(self.values == self.limit, 1.0, -1.0)
+
+    def shares(self) -> FloatArray:
+        """Margins as shares of the scale; inf where the part does not count, shape (n,)."""
+        margins = self.margins()
+        scale = abs(self.limit) if self.scale is None else self.scale
+        shares = margins / (scale if scale > 0 and self.comparison != "==" else 1.0)
+        if math.isfinite(self.ceiling):
+            room = self.ceiling - self.limit
+            shares = np.where(margins >= 0, margins / room if room > 0 else 1.0, shares)
+        return shares if self.relevant is None else np.where(self.relevant, shares, np.inf)
+
+
+def measured(
+    quantity: Quantity,
+    value: float,
+    limit: float,
+    comparison: Comparison,
+    time: float,
+    detail: str = "",
+    name: str = "",
+) -> Measure:
+    """The measure of a quantity, for a verdict.
+
+    Args:
+        quantity: What was measured.
+        value: In the quantity's unit.
+        limit: In the same unit.
+        comparison: How the value must stand to the limit.
+        time: Of the sample [s].
+        detail: Which joint, link or pair.
+        name: The name of the measure where it holds more than the quantity's.
+    """
+    return Measure(
+        name or quantity.name,
+        value,
+        limit,
+        comparison,
+        quantity.unit,
+        time,
+        detail,
+        plot=quantity.plot,
+    )
+
+
+def all_of(
+    window: Window,
+    parts: Sequence[Part],
+    text: Callable[[int, Measure], str],
+    *,
+    present: BoolArray | None = None,
+    applies: BoolArray | None = None,
+    shown: int = 4,
+    is_moment: bool = True,
+) -> MarginSignal:
+    """The signal of a predicate that holds where all of its parts do.
+
+    One part keeps its unit. Several are compared as shares of their limits; the margin that a
+    verdict reports is the tightest part's, in that part's unit.
+
+    Args:
+        window: Where it is judged.
+        parts: At least one.
+        text: What to say of a sample, given its index and its tightest measure.
+        present: Samples at which there is something to judge; NaN elsewhere.
+        applies: Samples of which it speaks, as in `MarginSignal`.
+        shown: How many measures a verdict shows.
+        is_moment: Whether the text speaks of the sample.
+    """
+    rows: FloatArray = np.stack([part.shares() for part in parts])
+    values: FloatArray = rows.min(axis=0)  # NaN in any part is NaN
+    if len(parts) == 1 and parts[0].relevant is None:
+        values = parts[0].margins()
+    for mask in (present, applies):
+        values = values if mask is None else np.where(mask, values, np.nan)
+
+    def evidence(index: int) -> Evidence:
+        shares = [float(share) for share in rows[:, index]]
+        order = sorted(range(len(parts)), key=shares.__getitem__)
+        chosen = [parts[place] for place in order if shares[place] != math.inf][:shown]
+        measures = tuple(part.measure(index, window.time(index)) for part in chosen)
+        unit = "1" if chosen[0].comparison == "==" else chosen[0].unit
+        margin = float(chosen[0].margins()[index])
+        return Evidence(text(index, measures[0]), measures, margin, unit, is_moment)
+
+    unit = parts[0].unit if len(parts) == 1 else "1"
+    return MarginSignal(values, unit, evidence, applies)

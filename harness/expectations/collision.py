@@ -1,0 +1,207 @@
+"""collision: contacts that nothing excuses, by the rules of `harness.assertions.collision`."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from harness.assertions.collision import Pair, colliding
+from harness.assertions.contacts import bodies
+from harness.assertions.expectation import SPECIAL_BODIES, Predicate
+from harness.assertions.margins import Evidence, MarginSignal, measured
+from harness.assertions.observations import Observations
+from harness.assertions.temporal import episodes
+from harness.assertions.text import amount
+from harness.assertions.window import Window
+from harness.cell.scope import At
+from harness.core.types import FloatArray
+from harness.recording.run import Measure, Run
+from harness.spec.base import Flag, Name
+from harness.spec.expectation import Quantity
+
+LEAST_DISTANCE = 1e-6
+"""A recorded distance of zero without contact is still none [m]."""
+
+FORCE = Quantity(
+    "contact force", "N", "more than 0 in a pair that nothing excuses; the largest", "contact"
+)
+LEFT = Quantity(
+    "clearance",
+    "m",
+    "where nothing collided: what was left, if it was recorded; where bodies overlap at the start:"
+    " their depth, below 0",
+    "clearance",
+)
+
+
+class Collision(Predicate):
+    """Two bodies touch that may not: no pair allows it, no grasp, no object on its support."""
+
+    short = "between"
+    judged = "eventually"
+    quantities = (FORCE, LEFT)
+    is_opposed: ClassVar[bool] = True
+
+    between: tuple[Name, Name] | None = Field(
+        default=None,
+        description="The two bodies: each a link, an object, `robot`, `gripper` or `any`; by"
+        " default the robot and anything, and what it holds and anything.",
+    )
+    count_allowed: Flag = Field(
+        default=False,
+        description="Whether pairs that the SRDF or `allow_collisions` permits count too.",
+    )
+
+    def check(self, at: At) -> None:
+        for index, name in enumerate(self.between or ()):
+            at.scope.check_body(name, at.key("between", index), special=SPECIAL_BODIES)
+
+    def observations(self) -> Observations:
+        return Observations(clearance_cutoff=0.0)
+
+    def signal(self, window: Window) -> MarginSignal:
+        """Positive while the bodies collide.
+
+        Value and margin are the largest force of all collisions in the window [N], the same at each
+        of their samples, so that the first contact decides. Where there is none the margin is the
+        distance that was left [m] if it was recorded, else 1. Where bodies overlap when the run
+        begins it is their depth [m].
+        """
+        run = window.run
+        pairs = self._pairs(run)
+        allowed_too = self.count_allowed
+        guilty = {pair: window.cut(colliding(run, pair, allowed_too)) for pair in pairs}
+        unknown = np.zeros(len(window.times), dtype=bool)
+        for pair in pairs:
+            unknown |= np.isnan(window.cut(run.signals.contact_forces[pair]))
+        if unknown.any():
+            values = np.where(unknown, np.nan, -1.0)
+            return MarginSignal(values, "1", lambda _: Evidence("contacts are not known"))
+        forces = {
+            pair: np.where(guilty[pair], window.cut(run.signals.contact_forces[pair]), 0.0)
+            for pair in pairs
+            if guilty[pair].any()
+        }
+        overlaps = _overlaps_at_start(window, forces)
+        if overlaps:
+            return _overlapped(forces, overlaps)
+        if forces:
+            return _collided(window, forces)
+        distance, name = self._distance(window, pairs)
+        if distance is None:
+            values = np.full(len(window.times), -1.0)
+            return MarginSignal(values, "1", lambda _: Evidence("no collision", is_moment=False))
+        spoken = np.nan_to_num(distance, nan=np.inf)
+
+        def evidence(index: int) -> Evidence:
+            value = float(distance[index])
+            measure = measured(LEFT, value, 0.0, ">=", window.time(index), name)
+            text = f"no collision; {amount(value, 'm')} were left between {name}"
+            return Evidence(text, (measure,))
+
+        return MarginSignal(-np.maximum(spoken, LEAST_DISTANCE), "m", evidence)
+
+    def _pairs(self, run: Run) -> list[Pair]:
+        """Pairs that ever touched and that the expectation speaks of."""
+        every = sorted(run.signals.contact_forces)
+        if self.between is None:
+            return every
+        first, second = (bodies(run, word) for word in self.between)
+        return [
+            (a, b) for a, b in every if (a in first and b in second) or (b in first and a in second)
+        ]
+
+    def _distance(self, window: Window, pairs: list[Pair]) -> tuple[FloatArray | None, str]:
+        """The smallest recorded distance that the expectation speaks of and nothing excuses.
+
+        Only distances to what is in the physics count: nothing can collide with a belief.
+        """
+        run = window.run
+        links = bodies(run, "robot")
+        real = {"robot", *(record.name for record in run.objects if record.in_simulation)}
+        if self.between is None:
+            first, second = links, bodies(run, "any")
+        else:
+            first, second = (bodies(run, word) for word in self.between)
+        excused = {frozenset("robot" if name in links else name for name in pair) for pair in pairs}
+        best: FloatArray | None = None
+        lowest, name = np.inf, ""
+        if "clearances" in run.unrecorded:
+            return None, ""
+        distances = run.signals.clearances
+        for a, b in sorted(distances):
+            sets = [links if word == "robot" else frozenset({word}) for word in (a, b)]
+            is_pair = any(x <= first and y <= second for x, y in (sets, sets[::-1]))
+            if not is_pair or not {a, b} <= real or frozenset((a, b)) in excused:
+                continue
+            cut = window.cut(distances[a, b])
+            if np.isnan(cut).all():
+                continue
+            if float(np.nanmin(cut)) < lowest:
+                lowest, name = float(np.nanmin(cut)), f"{a} and {'itself' if a == b else b}"
+            best = cut if best is None else np.fmin(best, cut)
+        return best, name
+
+
+def _overlaps_at_start(window: Window, forces: dict[Pair, FloatArray]) -> dict[Pair, float]:
+    """Depths [m] of the colliding pairs that overlap when the run begins, the deepest first."""
+    found: dict[Pair, float] = {}
+    for finding in window.run.findings if window.time(0) == 0.0 else ():
+        if finding.kind == "overlap":
+            first, second = finding.values["pair"]
+            pair = next((each for each in forces if set(each) == {first, second}), None)
+            if pair is not None and forces[pair][0] > 0:
+                found[pair] = float(finding.values["depth"])
+    return found
+
+
+def _overlapped(forces: dict[Pair, FloatArray], depths: dict[Pair, float]) -> MarginSignal:
+    """Positive as in `_collided`, by the depth [m]: the forces are those of no real contact."""
+    total = np.max(list(forces.values()), axis=0)
+    names = [f"{first} and {second}" for first, second in depths]
+    measures = tuple(
+        measured(LEFT, -depth, 0.0, ">=", 0.0, name)
+        for name, depth in zip(names, depths.values(), strict=True)
+    )
+    texts = [
+        f"{name} overlap by {amount(depth, 'm')} at the start"
+        for name, depth in zip(names, depths.values(), strict=True)
+    ]
+
+    def evidence(index: int) -> Evidence:
+        if total[index] <= 0:
+            return Evidence("no collision at this moment", measures)
+        more = f"; and {len(texts) - 2} more pairs" if len(texts) > 2 else ""
+        return Evidence("; ".join(texts[:2]) + more, measures[:4], is_moment=False)
+
+    values = np.where(total > 0, max(depths.values()), -LEAST_DISTANCE)
+    return MarginSignal(values, "m", evidence)
+
+
+def _collided(window: Window, forces: dict[Pair, FloatArray]) -> MarginSignal:
+    total = np.max(list(forces.values()), axis=0)
+    peak = float(total.max())
+    values = np.where(total > 0, peak, -1.0)
+
+    def evidence(index: int) -> Evidence:
+        measures: list[Measure] = []
+        texts: list[str] = []
+        first = {pair: int(np.argmax(force > 0)) for pair, force in forces.items()}
+        for pair in sorted(forces, key=lambda pair: (first[pair], pair)):
+            start, stop = episodes(forces[pair] > 0)[0]
+            largest = float(forces[pair].max())
+            lasted = window.time(stop - 1) - window.time(start)
+            names = f"{pair[0]} and {pair[1]}"
+            measures.append(measured(FORCE, largest, 0.0, "<=", window.time(start), names))
+            texts.append(
+                f"{names} collide from t={window.time(start):.3f} s for {amount(lasted, 's')},"
+                f" with up to {amount(largest, 'N')}"
+            )
+        if total[index] <= 0:
+            return Evidence("no collision at this moment", tuple(measures))
+        more = f"; and {len(texts) - 2} more pairs" if len(texts) > 2 else ""
+        return Evidence("; ".join(texts[:2]) + more, tuple(measures[:4]), is_moment=False)
+
+    return MarginSignal(values, "N", evidence)

@@ -1,0 +1,39 @@
+"""displaced: the object is away from where it started."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydantic import Field
+
+from harness.assertions.expectation import ObjectPredicate
+from harness.assertions.margins import MarginSignal, Part, all_of
+from harness.assertions.poses import physical_poses, start_poses
+from harness.assertions.text import amount
+from harness.assertions.window import Window
+from harness.recording.run import Measure
+from harness.spec.base import PositiveLength
+from harness.spec.expectation import Quantity
+
+DISTANCE = Quantity("distance from the start", "m", "at least `at_least`")
+
+
+class Displaced(ObjectPredicate):
+    """The object is away from where it started."""
+
+    quantities = (DISTANCE,)
+
+    at_least: PositiveLength = Field(
+        default=0.01, description="The smallest distance from its place at the start [m]."
+    )
+
+    def signal(self, window: Window) -> MarginSignal:
+        """Distance from where it started [m]."""
+        run, name = window.run, self.object
+        way = physical_poses(run, name)[:, :3] - start_poses(run, name)[:, :3]
+        away = np.linalg.norm(way, axis=1)
+        part = Part(DISTANCE, window.cut(away), self.at_least, ">=", detail=name)
+
+        def text(_: int, measure: Measure) -> str:
+            return f"{name} is {amount(measure.value, 'm')} from its start"
+
+        return all_of(window, [part], text)

@@ -1,0 +1,56 @@
+"""effort: joint efforts stay below a share of their limits."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from harness.assertions.expectation import Predicate
+from harness.assertions.joints import ROUNDING, is_measured
+from harness.assertions.margins import MarginSignal, Part, all_of
+from harness.assertions.window import NotObservable, Window
+from harness.recording.run import Measure
+from harness.spec.base import Share
+from harness.spec.expectation import Quantity
+
+EFFORT = Quantity("effort", "1", "at most `max_fraction`, for each joint", "effort")
+
+
+class Effort(Predicate):
+    """Joint efforts stay below a share of their limits."""
+
+    short = "max_fraction"
+    judged = "always"
+    quantities = (EFFORT,)
+
+    max_fraction: Annotated[Share, Field(gt=0)] = Field(
+        default=1.0,
+        description="The largest share of its effort limit that a joint may use; 1 is the limit.",
+    )
+
+    def signal(self, window: Window) -> MarginSignal:
+        """Largest share of its effort limit that a joint uses."""
+        efforts = window.run.signals.joint_efforts
+        parts = [
+            Part(
+                EFFORT,
+                np.abs(window.cut(efforts)[:, column]) / joint.effort,
+                self.max_fraction * (1 + ROUNDING),
+                "<=",
+                detail=joint.name,
+            )
+            for column, joint in enumerate(window.run.robot.joints)
+            if math.isfinite(joint.effort)
+            and joint.effort > 0
+            and is_measured(efforts[:, column], joint, "effort")
+        ]
+        if not parts:
+            raise NotObservable("no effort limits are known")
+
+        def text(_: int, measure: Measure) -> str:
+            return f"{measure.detail} uses {100 * measure.value:.1f} % of its effort limit"
+
+        return all_of(window, parts, text, shown=3)

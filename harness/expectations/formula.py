@@ -1,0 +1,60 @@
+"""formula: signal temporal logic over recorded signals."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import AfterValidator, Field
+
+from harness.assertions.expectation import SPECIAL_BODIES, Expectation
+from harness.assertions.formula import formula_verdict
+from harness.assertions.observations import CLEARANCE_ROOM, Observations
+from harness.assertions.window import window_of
+from harness.cell.scope import At
+from harness.recording.run import Run, Verdict
+from harness.spec.formula import SIGNALS, Node, constants_of, frames_of, signals_of
+from harness.spec.formula_parser import parse_formula, readable
+
+LARGEST_CUTOFF = 2.0
+"""Distances are recorded up to here, however far a formula compares one [m]."""
+
+
+class Formula(Expectation):
+    """A formula of signal temporal logic holds at the window's first sample."""
+
+    short = "formula"
+
+    formula: Annotated[str, AfterValidator(readable)] = Field(
+        description="The formula, such as `always (z(box) > 5 cm implies force(robot, box) > 0.1"
+        " N)`."
+    )
+
+    def check(self, at: At) -> None:
+        """Names of the formula's signals, each problem under its name."""
+        robot = at.scope.description
+        bodies = (*SPECIAL_BODIES, *at.scope.objects, *robot.link_names)
+        frames = ("tcp", *at.scope.objects, *robot.link_names)
+        known = {"joint": robot.joint_names, "frame": frames, "body": bodies}
+        kind_names = {"joint": "joint", "frame": "link or object", "body": "object or link"}
+        for signal in signals_of(parse_formula(self.formula)):
+            kinds, _, _ = SIGNALS[signal.name]
+            for kind, name, start in zip(kinds, signal.arguments, signal.starts, strict=True):
+                if name not in known[kind]:
+                    at.scope.problems.unknown(
+                        at.key("formula"), kind_names[kind], name, known[kind], start=start
+                    )
+
+    def observations(self) -> Observations:
+        root = parse_formula(self.formula)
+        return Observations(frozenset(frames_of(root) - {"tcp"}), _furthest(root))
+
+    def verdict(self, run: Run, step: str) -> Verdict:
+        return formula_verdict(self.formula, window_of(run, self.during or step))
+
+
+def _furthest(root: Node) -> float | None:
+    """A cutoff of distances beyond every length that a formula compares one with [m]."""
+    if not any(node.name == "distance" for node in signals_of(root)):
+        return None
+    lengths = [abs(each.value) for each in constants_of(root) if each.unit in ("", "m")]
+    return min(max(lengths, default=0.0) + CLEARANCE_ROOM, LARGEST_CUTOFF)

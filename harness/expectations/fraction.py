@@ -1,0 +1,69 @@
+"""fraction: how much of their Cartesian paths the steps followed, as they reported it."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from harness.assertions.expectation import Predicate
+from harness.assertions.margins import MarginSignal, Part, all_of
+from harness.assertions.text import percentages
+from harness.assertions.window import NotReached, Window, refuse_unrecorded_steps
+from harness.recording.run import Measure
+from harness.spec.base import Share
+from harness.spec.expectation import Quantity
+
+FRACTION = Quantity("fraction", "1", "at least `at_least`, for each path")
+
+
+class FractionCheck(Predicate):
+    """Every `cartesian_path` of the window was followed to at least a given share."""
+
+    word = "fraction"
+    short = "at_least"
+    quantities = (FRACTION,)
+
+    at_least: Annotated[Share, Field(ge=0, le=1)] = Field(
+        default=1.0, description="The smallest share of each path that must be followed."
+    )
+
+    def signal(self, window: Window) -> MarginSignal:
+        """The least share that a Cartesian path of the window had been followed by each sample.
+
+        A step reports its share with its last sample; one that followed none of it reports 0.
+
+        Raises:
+            NotReached: No step of the window reported a share.
+            NotObservable: The steps were not recorded.
+        """
+        run = window.run
+        least = np.full(len(run.signals.times), np.inf)
+        reporters = [
+            step
+            for step in run.steps
+            if step.status != "not_reached"
+            and "fraction" in step.result
+            and window.start <= max(step.end_index - 1, step.start_index) < window.stop
+        ]
+        if not reporters:
+            refuse_unrecorded_steps(run)
+            raise NotReached("no step of it followed a Cartesian path")
+        for step in reporters:
+            last = max(step.end_index - 1, step.start_index)
+            least[last:] = np.minimum(least[last:], _share(step.result["fraction"]))
+        reported = window.cut(least)
+        part = Part(FRACTION, reported, self.at_least, ">=", ceiling=1.0)
+
+        def text(_: int, measure: Measure) -> str:
+            worst = min(reporters, key=lambda step: _share(step.result["fraction"]))
+            followed, required = percentages(measure.value, self.at_least)
+            return f"{followed} of the path of {worst.id} followed, {required} required"
+
+        return all_of(window, [part], text, present=np.isfinite(reported))
+
+
+def _share(value: object) -> float:
+    """A reported share; what is no number is unknown."""
+    return float(value) if isinstance(value, int | float) else float("nan")

@@ -1,0 +1,126 @@
+"""grasped: both finger sides touch the object and it moves with the gripper."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from harness.assertions.contacts import (
+    GIVE,
+    TOUCH_FORCE,
+    attached,
+    between_fingers,
+    finger_gap,
+    gripper_of,
+    held_by_fingers,
+    least_width,
+    side_forces,
+    weld_note,
+)
+from harness.assertions.expectation import ObjectPredicate
+from harness.assertions.margins import MarginSignal, Part, all_of
+from harness.assertions.poses import object_poses, present
+from harness.assertions.temporal import episodes
+from harness.assertions.text import amount
+from harness.assertions.window import Window, object_record
+from harness.cell.scope import At
+from harness.core.pose_arrays import conjugate, quat_product, relative, rotation_angle
+from harness.recording.run import Measure, Run
+from harness.spec.base import Force, NonNegativeAngle, PositiveLength
+from harness.spec.expectation import Quantity
+
+FINGERS = Quantity("finger force", "N", "at least `min_force` on every side", "contact")
+BETWEEN = Quantity("between the fingers", "1", "pressed from both sides, and fits into the gap")
+SLIP = Quantity("slip in the hand", "m", "at most `max_slip`", "slip")
+TURN = Quantity("turn in the hand", "rad", "at most `max_rotation`", "slip")
+
+
+class Grasped(ObjectPredicate):
+    """Both finger sides touch the object and it moves with the gripper."""
+
+    quantities = (FINGERS, BETWEEN, SLIP, TURN)
+
+    min_force: Annotated[Force, Field(ge=0)] = Field(
+        default=0.05, description="The smallest force on each side [N]."
+    )
+    max_slip: PositiveLength = Field(
+        default=0.005,
+        description="The largest distance moved in the hand since the grasp began [m].",
+    )
+    max_rotation: NonNegativeAngle = Field(
+        default=0.1, description="The largest rotation in the hand since the grasp began [rad]."
+    )
+
+    def check(self, at: At) -> None:
+        at.scope.check_gripper(at.loc, "`grasped`")
+        super().check(at)
+
+    def signal(self, window: Window) -> MarginSignal:
+        """Force on each side, and drift in the hand since all sides have touched without a break.
+
+        Drift is the change of T_tcp_object since the first sample of the current grasp; every turn
+        counts, also about the axis of a round object.
+        """
+        run, name = window.run, self.object
+        min_force = max(self.min_force, TOUCH_FORCE)
+        in_hand = held_by_fingers(run, name, min_force)
+        in_tcp = relative(run.signals.tcp_pose, object_poses(run, name))
+        since = np.zeros(len(in_tcp), dtype=int)
+        for start, stop in episodes(in_hand):
+            since[start:stop] = start
+        distance = window.cut(np.linalg.norm(in_tcp[:, :3] - in_tcp[since, :3], axis=1))
+        turn = window.cut(rotation_angle(quat_product(conjugate(in_tcp[since, 3:]), in_tcp[:, 3:])))
+        relevant = window.cut(in_hand)
+        sides = {side: window.cut(force) for side, force in side_forces(run, name).items()}
+        parts = [
+            Part(FINGERS, force, min_force, ">=", measured_name=f"{side} finger force")
+            for side, force in sides.items()
+        ]
+        slip = [
+            Part(SLIP, distance, self.max_slip, "<=", relevant=relevant),
+            Part(TURN, turn, self.max_rotation, "<=", relevant=relevant),
+        ]
+        between = window.cut(between_fingers(run, name)).astype(float)
+        touched = np.min([part.margins() for part in parts], axis=0) >= 0
+        parts += [Part(BETWEEN, between, 1.0, "==", relevant=touched), *slip]
+
+        def text(index: int, _: Measure) -> str:
+            forces = ", ".join(
+                f"{side} finger {amount(float(force[index]), 'N')}" for side, force in sides.items()
+            )
+            if relevant[index]:
+                moved = amount(float(slip[0].values[index]), "m")
+                turned = amount(float(slip[1].values[index]), "rad")
+                drift = f"{name} moved {moved} and turned {turned} in the hand"
+                return f"{forces}; {drift}{weld_note(run, name)}"
+            apart = _too_wide(run, name, window.start + index)
+            return (
+                f"{forces}; {name} is not between the fingers{apart}{_planners_belief(run, name)}"
+            )
+
+        return all_of(window, parts, text, present=window.cut(present(run, name)), shown=len(parts))
+
+
+def _too_wide(run: Run, name: str, sample: int) -> str:
+    """A note where the fingers are too close for the object to be between them."""
+    if not gripper_of(run).widths:
+        return ""
+    gap, width = float(finger_gap(run)[sample]), least_width(run, name)
+    return f", they are {amount(gap, 'm')} apart" if gap + GIVE < width else ""
+
+
+def _planners_belief(run: Run, name: str) -> str:
+    """What the planning scene said of an object that the physics does not hold."""
+    if not object_record(run, name).in_simulation:
+        stands_for = [
+            record.represents
+            for record in run.attachments
+            if record.object == name and record.represents != name
+        ]
+        hint = f": it stands for {stands_for[0]}" if stands_for else ""
+        return f", it is not in the physics{hint}"
+    if attached(run, name).any():
+        return ", though the planning scene has it attached"
+    return ""

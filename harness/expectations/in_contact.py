@@ -1,0 +1,59 @@
+"""in_contact: two bodies touch."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from harness.assertions.contacts import TOUCH_FORCE, bodies, force_between, sample_time
+from harness.assertions.expectation import SPECIAL_BODIES, Predicate
+from harness.assertions.margins import MarginSignal, Part, all_of
+from harness.assertions.text import amount
+from harness.assertions.window import Window
+from harness.cell.scope import At
+from harness.recording.run import Measure
+from harness.spec.base import Force, Name
+from harness.spec.expectation import Quantity
+
+CONTACT = Quantity("contact force", "N", "at least `min_force`, and 0.001 N", "contact")
+
+
+class InContact(Predicate):
+    """The two bodies touch."""
+
+    short = "between"
+    judged = "eventually"
+    quantities = (CONTACT,)
+
+    between: tuple[Name, Name] = Field(
+        description="The two bodies: each a link, an object, `robot`, `gripper` or `any`."
+    )
+    min_force: Annotated[Force, Field(ge=0)] = Field(
+        default=0.0, description="The smallest force that counts as a contact [N]."
+    )
+
+    def check(self, at: At) -> None:
+        for index, name in enumerate(self.between):
+            at.scope.check_body(name, at.key("between", index), special=SPECIAL_BODIES)
+
+    def signal(self, window: Window) -> MarginSignal:
+        """Force between the two bodies [N], sample by sample."""
+        first, second = self.between
+        run = window.run
+        force = window.cut(force_between(run, bodies(run, first), bodies(run, second)))
+        limit = max(self.min_force, TOUCH_FORCE)
+        part = Part(CONTACT, force, limit, ">=", detail=f"{first} and {second}")
+
+        touching = np.flatnonzero(force >= TOUCH_FORCE)
+
+        def text(_: int, measure: Measure) -> str:
+            now = f"{first} and {second} touch with {amount(measure.value, 'N')}"
+            if not len(touching):
+                return now
+            begun, seconds = window.time(int(touching[0])), len(touching) * sample_time(run)
+            peak = amount(float(force.max()), "N")
+            return f"{now} (first at t={begun:.3f} s, {amount(seconds, 's')} in all, up to {peak})"
+
+        return all_of(window, [part], text)

@@ -1,0 +1,47 @@
+"""named_target: a group stands at its named state."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from harness.assertions.expectation import Predicate
+from harness.assertions.joints import POSITION_ERROR, near
+from harness.assertions.margins import MarginSignal
+from harness.assertions.window import NotObservable, Window
+from harness.cell.scope import At
+from harness.spec.base import JointValue, Name
+
+
+class NamedTarget(Predicate):
+    """A group stands at its named state."""
+
+    short = "state"
+    quantities = (POSITION_ERROR,)
+
+    state: Name = Field(description="The name of the SRDF group state.")
+    group: Name | None = Field(
+        default=None, description="The group that stands there; by default the arm."
+    )
+    tolerance: Annotated[JointValue, Field(gt=0)] = Field(
+        default=0.01,
+        description="The tolerance of each joint; by default 0.01 rad, and 2 mm where it slides.",
+    )
+
+    def check(self, at: At) -> None:
+        group = at.scope.check_group(self.group, at.key("group"))
+        at.scope.check_state(group, self.state, at.key("state"))
+
+    def signal(self, window: Window) -> MarginSignal:
+        """The worst joint's distance from the named state [rad or m]."""
+        robot = window.run.robot
+        hand = "" if robot.gripper is None else robot.gripper.group
+        candidates = [self.group] if self.group is not None else [robot.arm_group, hand]
+        candidates += [] if self.group is not None else sorted(robot.named_states)
+        for group in candidates:
+            state = robot.named_states.get(group, {}).get(self.state)
+            if state is not None:
+                is_given = "tolerance" in self.model_fields_set
+                return near(window, state, self.tolerance, is_given)
+        raise NotObservable(f"there is no named state '{self.state}' in this run")

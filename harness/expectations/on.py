@@ -1,0 +1,47 @@
+"""on: the object stands on another."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydantic import Field
+
+from harness.assertions.contacts import TOUCH_FORCE
+from harness.assertions.expectation import ObjectPredicate
+from harness.assertions.margins import MarginSignal, Part, all_of
+from harness.assertions.poses import present
+from harness.assertions.support import supports
+from harness.assertions.text import amounts
+from harness.assertions.window import Window, object_record
+from harness.cell.scope import At
+from harness.recording.run import Measure
+from harness.spec.base import Name
+from harness.spec.expectation import Quantity
+
+SUPPORT = Quantity("support from below", "N", "at least half of its weight")
+
+
+class On(ObjectPredicate):
+    """The object stands on another: in contact, above it, its weight carried by it."""
+
+    quantities = (SUPPORT,)
+
+    support: Name = Field(description="The object or link that it stands on.")
+
+    def check(self, at: At) -> None:
+        super().check(at)
+        at.scope.check_body(self.support, at.key("support"), special=())
+
+    def signal(self, window: Window) -> MarginSignal:
+        """Touches the support, which is under it and carries half of its weight or more."""
+        run, name = window.run, self.object
+        force = supports(run, name).get(self.support, np.zeros(len(run.signals.times)))
+        mass = object_record(run, name).mass
+        weight = mass * float(np.linalg.norm(run.gravity))
+        limit = TOUCH_FORCE if np.isnan(weight) else max(0.5 * weight, TOUCH_FORCE)
+        part = Part(SUPPORT, window.cut(force), limit, ">=", detail=self.support)
+
+        def text(_: int, measure: Measure) -> str:
+            force, required = amounts(measure.value, limit, "N")
+            return f"{self.support} carries {name} with {force} of {required}"
+
+        return all_of(window, [part], text, present=window.cut(present(run, name)))

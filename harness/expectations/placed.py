@@ -1,0 +1,181 @@
+"""placed: the object rests on a support, released and still, at a pose if one is given."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from harness.assertions.contacts import TOUCH_FORCE, in_hand, robot_contact
+from harness.assertions.expectation import ObjectPredicate
+from harness.assertions.margins import MarginSignal, Part, all_of
+from harness.assertions.observations import Observations
+from harness.assertions.poses import UP, calm, frame_poses, object_poses, present, speeds
+from harness.assertions.support import supports
+from harness.assertions.text import amounts
+from harness.assertions.window import Window, object_record
+from harness.cell.scope import At
+from harness.core.pose_arrays import (
+    angle_between,
+    compose,
+    conjugate,
+    quat_product,
+    rotate,
+    rotation_vector,
+)
+from harness.core.spatial import rotation_from_quat_wxyz
+from harness.core.symmetry import ANY, equal_turns
+from harness.core.types import BoolArray, FloatArray
+from harness.recording.run import Measure, Run
+from harness.spec.base import AngularVelocity, LinearVelocity, Name
+from harness.spec.expectation import Quantity
+from harness.spec.poses import Pose, PoseTolerance
+
+PLACE_POSITION = 0.01
+"""Tolerance of `placed` with a pose and no tolerance [m]."""
+PLACE_TILT = 0.1
+"""And how far it may lean from the given pose, turns about the vertical free [rad]."""
+
+SUPPORT = Quantity("support", "N", "at least 0.001 N from below, by what the robot does not hold")
+SPEED = Quantity("speed", "m/s", "at most `max_velocity`, and for 50 ms before", "displacement")
+TURNING = Quantity(
+    "turning speed", "rad/s", "at most `max_angular_velocity`, and for 50 ms before", "displacement"
+)
+CONTACT = Quantity("contact with the robot", "N", "at most 0.001 N", "contact")
+ATTACHED = Quantity("attached in the planning scene", "1", "not attached")
+POSITION = Quantity(
+    "position error", "m", "with `pose`: at most the tolerance's `position`", "displacement"
+)
+LEAN = Quantity("lean", "rad", "with `pose` and no tolerance: at most 0.1")
+ORIENTATION = Quantity("orientation error", "rad", "with `tolerance`: at most its `orientation`")
+
+
+class Placed(ObjectPredicate):
+    """The object rests on a support, released and still, at a pose if one is given.
+
+    A `pose` without a rotation allows every turn about the vertical after which the object looks
+    the same, as `place` does.
+    """
+
+    quantities = (SUPPORT, SPEED, TURNING, CONTACT, ATTACHED, POSITION, LEAN, ORIENTATION)
+
+    on: Name | None = Field(
+        default=None,
+        description="The supporting object; by default anything but the robot supports it.",
+    )
+    pose: Pose | None = Field(
+        default=None, description="The pose where it stands; by default it may stand anywhere."
+    )
+    tolerance: PoseTolerance | None = Field(
+        default=None,
+        description="The tolerance of `pose`; by default 1 cm, and turns about the vertical are"
+        " free.",
+    )
+    max_velocity: Annotated[LinearVelocity, Field(gt=0)] = Field(
+        default=0.005, description="The largest speed at which it counts as still [m/s]."
+    )
+    max_angular_velocity: Annotated[AngularVelocity, Field(gt=0)] = Field(
+        default=0.05, description="The largest turning speed at which it counts as still [rad/s]."
+    )
+
+    def check(self, at: At) -> None:
+        super().check(at)
+        if self.on is not None:
+            at.scope.check_body(self.on, at.key("on"), special=())
+        if self.pose is not None:
+            at.scope.check_frame(self.pose.frame, at.key("pose", "frame"))
+
+    def observations(self) -> Observations:
+        return Observations(frozenset() if self.pose is None else frozenset({self.pose.frame}))
+
+    def signal(self, window: Window) -> MarginSignal:
+        """Rests on a support from below, untouched by the robot, still, and at the pose if given.
+
+        What is in the hand is no support but for a `placed` that names it.
+        """
+        run, name = window.run, self.object
+        carried = {
+            body: force if self.on is not None else np.where(_is_carried(run, body), 0.0, force)
+            for body, force in supports(run, name).items()
+            if self.on in (None, body)
+        }
+        support = np.max([np.zeros(len(run.signals.times)), *carried.values()], axis=0)
+        force, hold = robot_contact(run, name)
+        speed, turning = (
+            calm(window, window.cut(rate)) for rate in speeds(run, object_poses(run, name))
+        )
+        by = f"support by {self.on or 'anything but the robot'}"
+        parts = [
+            *self._at_pose(window),
+            Part(SPEED, speed, self.max_velocity, "<="),
+            Part(TURNING, turning, self.max_angular_velocity, "<="),
+            Part(SUPPORT, window.cut(support), TOUCH_FORCE, ">=", measured_name=by),
+            Part(CONTACT, window.cut(force), TOUCH_FORCE, "<="),
+            Part(ATTACHED, window.cut(hold), 0.0, "=="),
+        ]
+
+        def text(index: int, tightest: Measure) -> str:
+            sample = window.start + index
+            bodies = [body for body, force in carried.items() if force[sample] > TOUCH_FORCE]
+            rests = f"rests on {' and '.join(bodies)}" if bodies else "rests on nothing"
+            if self.on is not None and not bodies:
+                rests = f"does not rest on {self.on}"
+            return f"{name} {rests}; {_against(tightest)}"
+
+        return all_of(window, parts, text, present=window.cut(present(run, name)))
+
+    def _at_pose(self, window: Window) -> list[Part]:
+        if self.pose is None:
+            return []
+        run = window.run
+        target = compose(frame_poses(run, self.pose.frame), self.pose.se3().as_vector())
+        actual = object_poses(run, self.object)
+        distance = window.cut(np.linalg.norm(actual[:, :3] - target[:, :3], axis=1))
+        points = (window.cut(target[:, :3]), window.cut(actual[:, :3]))
+        up_in_target = rotate(conjugate(target[:, 3:]), UP)
+        up_in_actual = rotate(conjugate(actual[:, 3:]), UP)
+        lean = window.cut(angle_between(up_in_target, up_in_actual))
+        if self.tolerance is None:
+            return [
+                Part(POSITION, distance, PLACE_POSITION, "<=", points=points),
+                Part(LEAN, lean, PLACE_TILT, "<="),
+            ]
+        turns = 1
+        if not self.pose.has_rotation:
+            stated = rotation_from_quat_wxyz(target[window.stop - 1, 3:])
+            turns = equal_turns(object_record(run, self.object).shapes, stated)
+        turn = lean if turns == ANY else window.cut(_turned(target[:, 3:], actual[:, 3:], turns))
+        return [
+            Part(POSITION, distance, self.tolerance.position, "<=", points=points),
+            Part(ORIENTATION, turn, self.tolerance.orientation, "<="),
+        ]
+
+
+def _is_carried(run: Run, body: str) -> BoolArray:
+    """Samples at which the robot holds a body, shape (N,)."""
+    if all(record.name != body for record in run.objects):
+        return np.zeros(len(run.signals.times), dtype=bool)
+    return in_hand(run, body)
+
+
+def _turned(target: FloatArray, actual: FloatArray, turns: int) -> FloatArray:
+    """Largest turn about an axis of the target [rad], shape (N,), `turns` about the vertical alike.
+
+    Args:
+        target: Quaternions, shape (N, 4).
+        actual: Quaternions, shape (N, 4).
+        turns: After so many equal turns about the vertical the object has gone round once.
+    """
+    angles = np.pi * np.arange(turns) / turns  # half of them: of quaternions
+    alike = [np.array([np.cos(angle), 0, 0, np.sin(angle)]) for angle in angles]
+    off = [quat_product(conjugate(target), quat_product(turn, actual)) for turn in alike]
+    return np.min([np.abs(rotation_vector(each)).max(axis=1) for each in off], axis=0)
+
+
+def _against(measure: Measure) -> str:
+    if measure.comparison == "==":
+        return measure.name
+    value, limit = amounts(measure.value, measure.limit, measure.unit)
+    detail = f" of {measure.detail}" if measure.detail else ""
+    return f"{measure.name}{detail} {value} against {limit}"

@@ -1,0 +1,90 @@
+"""static: the object, or everything, moves slower than a limit."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from harness.assertions.expectation import Predicate
+from harness.assertions.margins import MarginSignal, Part, all_of
+from harness.assertions.poses import calm, physical_poses, present, speeds
+from harness.assertions.text import amount
+from harness.assertions.window import Window
+from harness.cell.scope import At
+from harness.recording.run import Measure, Run
+from harness.spec.base import AngularVelocity, LinearVelocity, Name
+from harness.spec.expectation import Quantity
+
+SPEED = Quantity("speed", "m/s", "at most `max_velocity`, and for 50 ms before", "displacement")
+TURNING = Quantity(
+    "turning speed", "rad/s", "at most `max_angular_velocity`, and for 50 ms before", "displacement"
+)
+JOINT_SPEED = Quantity(
+    "joint speed", "rad/s or m/s", "of everything: the same limits, for each joint", "displacement"
+)
+
+
+class Static(Predicate):
+    """The object, or everything, moves slower than a limit."""
+
+    short = "object"
+    quantities = (SPEED, TURNING, JOINT_SPEED)
+
+    object: Name | None = Field(
+        default=None,
+        description="The name of the object; by default every dynamic object and the robot.",
+    )
+    max_velocity: Annotated[LinearVelocity, Field(gt=0)] = Field(
+        default=0.005,
+        description="The largest speed of objects [m/s] and of joints that slide [m/s].",
+    )
+    max_angular_velocity: Annotated[AngularVelocity, Field(gt=0)] = Field(
+        default=0.05,
+        description="The largest turning speed of objects and of joints that turn [rad/s].",
+    )
+
+    def check(self, at: At) -> None:
+        if self.object is not None:
+            at.scope.check_object(self.object, at.key("object"), simulated=True)
+
+    def signal(self, window: Window) -> MarginSignal:
+        """Speeds of an object; by default of every dynamic object and of the robot's joints."""
+        run = window.run
+        parts: list[Part] = []
+        names = [self.object] if self.object is not None else _dynamic(run)
+        for name in names:
+            here = None if self.object is not None else window.cut(present(run, name))
+            linear, angular = (
+                calm(window, window.cut(speed)) for speed in speeds(run, physical_poses(run, name))
+            )
+            turning = self.max_angular_velocity
+            parts += [
+                Part(SPEED, linear, self.max_velocity, "<=", relevant=here, detail=name),
+                Part(TURNING, angular, turning, "<=", relevant=here, detail=name),
+            ]
+        if self.object is None:
+            parts += self._of_joints(window)
+
+        def text(_: int, measure: Measure) -> str:
+            return f"{measure.detail} moves with {amount(measure.value, measure.unit)}"
+
+        return all_of(window, parts, text)
+
+    def _of_joints(self, window: Window) -> list[Part]:
+        parts: list[Part] = []
+        for column, joint in enumerate(window.run.robot.joints):
+            speed = np.abs(window.cut(window.run.signals.joint_velocities)[:, column])
+            slides = joint.kind == "prismatic"
+            limit = self.max_velocity if slides else self.max_angular_velocity
+            unit = "m/s" if slides else "rad/s"
+            still = calm(window, speed)
+            parts.append(
+                Part(JOINT_SPEED, still, limit, "<=", detail=joint.name, measured_unit=unit)
+            )
+        return parts
+
+
+def _dynamic(run: Run) -> list[str]:
+    return [record.name for record in run.objects if record.in_simulation and not record.is_static]

@@ -1,0 +1,73 @@
+"""tracking_error: joints stay near their commands."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from harness.assertions.expectation import Predicate
+from harness.assertions.joints import gripper_joints, unit_of
+from harness.assertions.margins import MarginSignal, Part, all_of
+from harness.assertions.text import amount
+from harness.assertions.window import NotObservable, Window
+from harness.recording.run import Measure
+from harness.spec.base import JointValue
+from harness.spec.expectation import Quantity
+
+ERROR = Quantity("tracking error", "rad or m", "at most `max`, for each joint", "tracking")
+
+
+class TrackingError(Predicate):
+    """Joints stay near their commands."""
+
+    short = "max"
+    judged = "always"
+    quantities = (ERROR,)
+
+    max: Annotated[JointValue, Field(gt=0)] = Field(
+        default=0.05,
+        description="The largest difference between a joint's measured position and its command; by"
+        " default 0.05 rad, and 5 mm where the joint slides.",
+    )
+
+    def signal(self, window: Window) -> MarginSignal:
+        """Largest distance of a joint from its command [rad or m].
+
+        The gripper's joints are left out: one that stalls on an object stays short of its command.
+        For joints that slide the default is a tenth of the given number, in metres.
+        """
+        run = window.run
+        hand = gripper_joints(run)
+        parts: list[Part] = []
+        for column, joint in enumerate(run.robot.joints):
+            error = np.abs(
+                run.signals.joint_positions[:, column] - run.signals.joint_commands[:, column]
+            )
+            error = window.cut(error)
+            known = ~np.isnan(error)
+            if joint.name in hand or not known.any():
+                continue
+            slides = joint.kind == "prismatic" and "max" not in self.model_fields_set
+            limit = 0.1 * self.max if slides else self.max
+            unit = unit_of(joint)
+            parts.append(
+                Part(
+                    ERROR,
+                    error,
+                    limit,
+                    "<=",
+                    relevant=known,
+                    detail=joint.name,
+                    measured_unit=unit,
+                )
+            )
+        if not parts:
+            raise NotObservable("no commands of joints other than the gripper's were recorded")
+        some = np.any([part.relevant for part in parts if part.relevant is not None], axis=0)
+
+        def text(_: int, measure: Measure) -> str:
+            return f"{measure.detail} is {amount(measure.value, measure.unit)} from its command"
+
+        return all_of(window, parts, text, applies=some, shown=3)

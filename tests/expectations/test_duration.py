@@ -1,0 +1,16 @@
+"""duration: simulated seconds of a step or of the run."""
+
+import pytest
+
+from harness.expectations.duration import DurationCheck
+from tests.assertions.synthetic_run import make_run, step, verdict
+
+
+def test_durations_of_steps_and_runs():
+    run = make_run(steps=(step("move", 0, 101), step("broken", 100, 150, status="failed")))
+    assert verdict(run, DurationCheck(at_most=1.0), "move").margin == pytest.approx(0.0)
+    assert verdict(run, DurationCheck(at_most=0.99), "move").status == "failed"
+    assert verdict(run, DurationCheck(at_least=1.5)).margin == pytest.approx(0.49)
+    assert verdict(run, DurationCheck(at_most=5), "broken").status == "not reached"
+    early = make_run(ended_early="GOAL_IN_COLLISION")
+    assert verdict(early, DurationCheck(at_most=5)).status == "not reached"

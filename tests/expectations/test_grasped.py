@@ -1,0 +1,102 @@
+"""grasped: both finger sides touch the object and it moves with the gripper."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from harness.core.spatial import SE3
+from harness.expectations.grasped import Grasped
+from harness.expectations.gripper import GripperState
+from harness.expectations.lifted import Lifted
+from harness.expectations.placed import Placed
+from harness.expectations.released import Released
+from tests.assertions.synthetic_run import (
+    BOX,
+    ROBOT,
+    TABLE,
+    attachment,
+    changed,
+    force,
+    heights,
+    lift_run,
+    make_run,
+    thing,
+    verdict,
+)
+
+ABSENT = np.full((200, 7), np.nan)
+
+
+def absent_box(n=200):
+    never_there = replace(BOX, present=())
+    return make_run(n, objects=(TABLE, never_there), object_poses={"box": ABSENT[:n]})
+
+
+def test_a_box_between_the_fingers_that_moves_with_them_is_grasped():
+    answer = verdict(lift_run(), Grasped(object="box", max_slip=0.005))
+    assert answer.status == "passed"
+    assert answer.margin == pytest.approx(0.005)
+
+
+def test_sliding_in_the_hand_a_little_too_far_is_no_grasp():
+    run = lift_run()
+    slipping = heights(run.signals.object_poses["box"][:, 2] - np.linspace(0, 0.0052 / 0.75, 200))
+    answer = verdict(changed(run, object_poses={"box": slipping}), Grasped(object="box"))
+    assert answer.status == "failed"
+    assert answer.unit == "m"
+    assert -0.0005 < answer.margin < 0
+    assert "moved 5." in answer.reason
+
+
+def test_turning_in_the_hand_counts():
+    run = lift_run()
+    turned = run.signals.object_poses["box"].copy()
+    turned[150:, 3:] = SE3.from_xyz_rpy(rpy=(0, 0, 0.11)).quat_wxyz
+    answer = verdict(changed(run, object_poses={"box": turned}), Grasped(object="box"))
+    assert (answer.status, answer.unit) == ("failed", "rad")
+    assert answer.margin == pytest.approx(-0.01)
+
+
+def test_too_little_force_on_one_side_is_no_grasp_and_both_are_told():
+    run = lift_run()
+    weak = {
+        **run.signals.contact_forces,
+        ("right_finger", "box"): force(200, (50, 200), value=0.04),
+    }
+    answer = verdict(changed(run, contact_forces=weak), Grasped(object="box", min_force=0.05))
+    assert answer.status == "failed"
+    assert answer.margin == pytest.approx(-0.01)
+    assert answer.reason.startswith("left finger 2.0 N, right finger 0.04 N")
+
+
+def test_an_object_only_attached_is_neither_grasped_nor_lifted():
+    run = make_run(attachments=[attachment("box", 20, 200)])
+    answer = verdict(run, Grasped(object="box"))
+    assert answer.status == "failed"
+    assert "left finger 0.0 N, right finger 0.0 N" in answer.reason
+    assert "the planning scene has it attached" in answer.reason
+    assert verdict(run, Lifted(object="box")).status == "failed"
+
+
+def test_a_planning_object_is_not_grasped_and_the_real_one_is_named():
+    stand_in = thing("stand_in", physics=False, pose=(0, 0, 0.02, 1, 0, 0, 0))
+    run = lift_run(
+        objects=(TABLE, BOX, stand_in),
+        attachments=[attachment("stand_in", 45, 200, represents="box")],
+    )
+    answer = verdict(run, Grasped(object="stand_in"))
+    assert answer.status == "failed"
+    assert "stands for box" in answer.reason
+
+
+def test_an_absent_object_is_not_reached_by_the_gripper():
+    for spec in (Grasped(object="box"), Released(object="box"), Placed(object="box")):
+        assert verdict(absent_box(), spec).status == "not reached"
+
+
+def test_a_robot_without_a_gripper_grasps_nothing():
+    run = replace(make_run(), robot=replace(ROBOT, gripper=None))
+    for spec in (Grasped(object="box"), Lifted(object="box"), GripperState(position=0.0)):
+        assert verdict(run, spec).status == "not observable"
+    assert verdict(run, Grasped(object="nothing")).status == "not observable"

@@ -1,0 +1,31 @@
+"""gripper: the gripper stands at a named state, a position or a width, or is stalled."""
+
+import numpy as np
+import pytest
+
+from harness.expectations.gripper import GripperState
+from tests.assertions.synthetic_run import make_run, step, verdict
+
+
+def positions(shoulder, finger=0.0):
+    return np.tile([shoulder, finger], (200, 1))
+
+
+def test_the_gripper_by_state_position_width_and_report():
+    run = make_run(
+        joint_positions=positions(0.0, 0.029),
+        steps=(
+            step("open", 0, 50, "gripper", result={"stalled": False}),
+            step("squeeze", 50, 100, "gripper", result={"stalled": True}),
+            step("never", 200, 200, "gripper", "not_reached"),
+        ),
+    )
+    assert verdict(run, GripperState(named_target="open")).margin == pytest.approx(0.001)
+    assert verdict(run, GripperState(position=0.0265)).status == "failed"
+    assert verdict(run, GripperState(width=0.059)).margin == pytest.approx(0.001)
+    assert verdict(run, GripperState(width=0.0601)).status == "failed"
+    assert verdict(run, GripperState(stalled=True)).status == "passed"
+    assert verdict(run, GripperState(stalled=True), "open").status == "failed"
+    assert verdict(run, GripperState(stalled=False), "open").status == "passed"
+    assert verdict(run, GripperState(stalled=False), "never").status == "not reached"
+    assert verdict(make_run(), GripperState(stalled=False)).status == "not reached"

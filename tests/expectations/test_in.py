@@ -1,0 +1,56 @@
+"""in: inside the outline of a container that stands."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from harness.core.geometry import Box, Cylinder, Plane, Shape
+from harness.core.spatial import SE3
+from harness.expectations.in_ import In
+from tests.assertions.synthetic_run import BOX, at, make_run, thing, verdict
+
+ABSENT = np.full((200, 7), np.nan)
+
+
+def a_bin(name="bin", lean=0.0, x=0.0):
+    """A tray of 20 x 20 x 10 cm made of a floor and two walls; its origin is in its middle."""
+    parts = [
+        Shape(Box((0.2, 0.2, 0.01)), SE3.from_xyz_rpy((0, 0, -0.045))),
+        Shape(Box((0.01, 0.2, 0.1)), SE3.from_xyz_rpy((-0.095, 0, 0))),
+        Shape(Cylinder(0.05, 0.2), SE3.from_xyz_rpy((0.05, 0, 0), (np.pi / 2, 0, 0))),
+    ]
+    record = replace(thing(name, static=True), shapes=tuple(parts))
+    return record, at(200, (x, 0, 0.05), SE3.from_xyz_rpy(rpy=(lean, 0, 0)).quat_wxyz)
+
+
+def in_bin(lean=0.0, x=0.0, box=(0, 0, 0.03)):
+    record, poses = a_bin(lean=lean, x=x)
+    return make_run(objects=(BOX, record), object_poses={"bin": poses, "box": at(200, box)})
+
+
+def test_what_is_inside_the_outline_of_a_container_is_in_it():
+    spec = In(object="box", container="bin")
+    answer = verdict(in_bin(), spec)
+    assert (answer.status, answer.unit) == ("passed", "rad"), "the lean is the tighter of the two"
+    beside = verdict(in_bin(x=0.101), spec)
+    assert (beside.status, beside.unit, beside.margin) == ("failed", "m", pytest.approx(-0.001))
+    assert verdict(in_bin(box=(0, 0, 0.099)), spec).margin == pytest.approx(0.001)
+    assert verdict(in_bin(box=(0, 0, 0.101)), spec).status == "failed", "above its rim"
+
+
+def test_nothing_is_in_a_container_that_has_tipped_over():
+    spec = In(object="box", container="bin")
+    assert verdict(in_bin(lean=np.radians(44), box=(0, 0, 0.05)), spec).status == "passed"
+    answer = verdict(in_bin(lean=np.radians(46), box=(0, 0, 0.05)), spec)
+    assert (answer.status, answer.unit) == ("failed", "rad")
+    assert answer.margin == pytest.approx(-np.radians(1))
+
+
+def test_being_in_needs_both_and_a_container_with_a_known_extent():
+    record, poses = a_bin()
+    gone = make_run(objects=(BOX, record), object_poses={"bin": poses, "box": ABSENT})
+    assert verdict(gone, In(object="box", container="bin")).status == "not reached"
+    floor = replace(record, shapes=(Shape(Plane()),))
+    run = make_run(objects=(BOX, floor), object_poses={"bin": poses})
+    assert verdict(run, In(object="box", container="bin")).status == "not observable"

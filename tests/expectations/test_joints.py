@@ -1,0 +1,32 @@
+"""joints: joints stand at positions."""
+
+import numpy as np
+import pytest
+
+from harness.expectations.gripper import GripperState
+from harness.expectations.joints import Joints
+from harness.expectations.named_target import NamedTarget
+from tests.assertions.synthetic_run import make_run, verdict
+
+
+def positions(shoulder, finger=0.0):
+    return np.tile([shoulder, finger], (200, 1))
+
+
+def test_joints_and_named_targets_tell_the_worst_joint():
+    run = make_run(joint_positions=positions(0.009))
+    assert verdict(run, NamedTarget(state="home")).margin == pytest.approx(0.001)
+    assert verdict(run, NamedTarget(state="home", tolerance=0.008)).status == "failed"
+    answer = verdict(run, Joints(positions={"shoulder": 0.02, "finger": 0.0}))
+    assert answer.status == "failed"
+    assert answer.reason.startswith("shoulder is off")
+    assert verdict(run, NamedTarget(state="up")).status == "not observable"
+    assert verdict(run, NamedTarget(state="home", during="later")).status == "not reached"
+    assert verdict(run, Joints(positions={"elbow": 0.0})).status == "not observable"
+
+
+def test_an_angle_s_default_tolerance_is_not_taken_for_a_sliding_joint():
+    run = make_run(joint_positions=positions(0.0, 0.005))
+    assert verdict(run, GripperState(named_target="closed")).status == "failed"
+    assert verdict(run, GripperState(named_target="closed", tolerance=0.006)).status == "passed"
+    assert verdict(run, NamedTarget(state="closed", group="gripper")).status == "failed"

@@ -1,0 +1,16 @@
+"""released: no part of the gripper touches the object, and it is not attached."""
+
+import pytest
+
+from harness.expectations.released import Released
+from tests.assertions.synthetic_run import attachment, lift_run, verdict
+
+
+def test_a_box_let_go_is_released_and_one_still_touched_or_attached_is_not():
+    assert verdict(lift_run(grip=(50, 150)), Released(object="box")).status == "passed"
+    answer = verdict(lift_run(grip=(50, 200), value=0.01), Released(object="box"))
+    assert answer.status == "failed"
+    assert answer.margin == pytest.approx(-0.019)
+    attached = lift_run(grip=(50, 150), attachments=[attachment("box", 60, 200)])
+    assert verdict(attached, Released(object="box")).reason.startswith("the robot touches box")
+    assert verdict(attached, Released(object="box")).status == "failed"

@@ -1,0 +1,163 @@
+"""tcp_path: how far the TCP strays from a line or an arc, and how much of it it travels."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from harness.expectations.fraction import FractionCheck
+from harness.expectations.tcp_path import TcpPath
+from harness.recording.run import LinkPlacement
+from harness.reporting.margins import allowance_used, margin_share
+from tests.assertions.synthetic_run import ROBOT, at, changed, heights, make_run, step, verdict
+
+LINE = {"start": {"xyz": [0, 0, 0.3]}, "end": {"xyz": [0, 0, 0.5]}}
+
+
+ARC = {
+    "start": {"xyz": [0.2, 0, 0]},
+    "interim": {"xyz": [0, 0.2, 0]},
+    "end": {"xyz": [-0.2, 0, 0]},
+}
+
+
+def along_z(offset=0.0, start=0.3, end=0.5):
+    tcp = heights(np.linspace(start, end, 200))
+    tcp[100, 0] = offset
+    return make_run(tcp_pose=tcp)
+
+
+def around(radius, first=0.0, last=np.pi):
+    angle = np.linspace(first, last, 200)
+    path = np.stack([radius * np.cos(angle), radius * np.sin(angle), 0 * angle], axis=1)
+    return make_run(tcp_pose=at(200, path))
+
+
+def test_a_line_is_followed_near_enough_and_from_end_to_end():
+    spec = TcpPath(line=LINE, max_deviation=0.002)
+    answer = verdict(along_z(0.0015), spec)
+    assert (answer.status, answer.unit) == ("passed", "m"), "all of the line was travelled"
+    assert answer.margin == pytest.approx(5e-4)
+    short = verdict(along_z(0.0015, end=0.492), spec)
+    assert (short.status, short.unit) == ("passed", "1"), "the share is the tighter of the two"
+    assert short.margin == pytest.approx(0.01, abs=1e-6)
+    strayed = verdict(along_z(0.0021), spec)
+    assert (strayed.status, strayed.unit) == ("failed", "m")
+    assert strayed.margin == pytest.approx(-1e-4)
+    assert strayed.time == pytest.approx(1.0)
+    assert verdict(along_z(end=0.5019), spec).status == "passed", "2 mm beyond the end"
+    assert verdict(along_z(end=0.5021), spec).status == "failed"
+
+
+def test_a_tcp_that_stands_on_the_line_has_not_followed_it():
+    spec = TcpPath(line=LINE)
+    standing = verdict(make_run(), spec)
+    assert (standing.status, standing.unit) == ("failed", "1")
+    assert standing.margin == pytest.approx(-0.95)
+    assert "travelled 0.0 % of the line forwards" in standing.reason
+    assert verdict(along_z(end=0.489), spec).status == "failed"
+    assert verdict(along_z(end=0.489), TcpPath(line=LINE, min_fraction=0.9)).status == "passed"
+    assert verdict(along_z(), TcpPath(line=LINE, during="later")).status == "not reached"
+
+
+def test_a_line_or_an_arc_travelled_backwards_has_not_been_followed():
+    for run, spec in (
+        (along_z(start=0.5, end=0.3), TcpPath(line=LINE)),
+        (around(0.2, np.pi, 0), TcpPath(arc=ARC)),
+    ):
+        backwards = verdict(run, spec)
+        assert (backwards.status, backwards.unit) == ("failed", "1")
+        assert backwards.margin == pytest.approx(-0.95)
+    turned = {"start": LINE["end"], "end": LINE["start"]}
+    assert verdict(along_z(start=0.5, end=0.3), TcpPath(line=turned)).status == "passed"
+
+
+def test_a_line_travelled_to_and_fro_has_been_followed_once():
+    there = np.linspace(0.3, 0.5, 100)
+    for z in (np.concatenate([there, there[::-1]]), np.concatenate([there[::-1], there])):
+        assert verdict(make_run(tcp_pose=heights(z)), TcpPath(line=LINE)).status == "passed"
+    half = np.concatenate([np.linspace(0.4, 0.3, 100), np.linspace(0.3, 0.4, 100)])
+    answer = verdict(make_run(tcp_pose=heights(half)), TcpPath(line=LINE))
+    assert answer.margin == pytest.approx(0.5 - 0.95)
+
+
+def test_an_arc_is_followed_on_its_own_side_only():
+    spec = TcpPath(arc=ARC, max_deviation=0.002)
+    assert verdict(around(0.2), spec).status == "passed"
+    outside = verdict(around(0.2021), spec)
+    assert (outside.status, outside.margin) == ("failed", pytest.approx(-1e-4))
+    other_way = verdict(around(0.2, 0, -np.pi), spec)
+    assert other_way.margin == pytest.approx(0.002 - np.hypot(0.2, 0.2), abs=2e-3)
+    half = verdict(around(0.2, 0, np.pi / 2), spec)
+    assert (half.status, half.margin) == ("failed", pytest.approx(0.5 - 0.95))
+
+
+def test_an_arc_through_points_on_a_line_cannot_be_judged():
+    flat = {**ARC, "interim": {"xyz": [0.1, 0, 0]}}
+    assert verdict(make_run(), TcpPath(arc=flat)).status == "not observable"
+    point = {"start": LINE["start"], "end": LINE["start"]}
+    assert verdict(make_run(), TcpPath(line=point)).status == "not observable"
+    with pytest.raises(ValueError, match="`line`, or `arc`, or neither"):
+        TcpPath(line=LINE, arc=ARC)
+
+
+def test_a_line_in_the_frame_of_an_object_moves_with_it():
+    run = along_z()
+    carried = changed(run, object_poses={"box": run.signals.tcp_pose})
+    in_box = {"start": {"frame": "box"}, "end": {"frame": "box", "xyz": [0, 0, 0.1]}}
+    answer = verdict(carried, TcpPath(line=in_box))
+    assert (answer.status, answer.unit) == ("failed", "1"), "it stands at the line's start"
+
+
+@pytest.mark.parametrize("at_least", [0.95, 1.0])
+def test_a_path_that_was_followed_to_its_end_has_the_largest_margin(at_least):
+    path = step("path", 0, 200, "cartesian_path", result={"fraction": 1.0})
+    answer = verdict(make_run(steps=(path,)), FractionCheck(at_least=at_least))
+    assert (answer.status, margin_share(answer)) == ("passed", 1.0)
+    assert allowance_used(answer.measures[0]) == 0.0
+
+
+def sliding(z, planned, verb="lin"):
+    """A robot whose TCP slides along z by its joint `shoulder`; planned positions of a step."""
+    along = (0.0, 0.0, 1.0)
+    places = (
+        LinkPlacement("base_link", "world", (0.1, 0.2, 0.3, 1.0, 0.0, 0.0, 0.0)),
+        LinkPlacement("palm", "base_link", (0, 0, 0, 1, 0, 0, 0), "shoulder", True, along),
+    )
+    tcp = at(200, (0.1, 0.2, 0.3))
+    tcp[:, 2] += z
+    trajectory = {
+        "joint_names": ["shoulder"],
+        "times": np.linspace(0, 1.99, len(planned)),
+        "positions": np.asarray(planned, dtype=float)[:, None],
+    }
+    moving = step("go", 0, 200, verb, trajectory=trajectory)
+    return make_run(tcp_pose=tcp, robot=replace(ROBOT, placements=places), steps=(moving,))
+
+
+def test_a_step_s_own_path_is_the_line_from_its_start_to_its_goal():
+    whole = np.linspace(0.0, 0.2, 200)
+    answer = verdict(sliding(whole, [0.0, 0.05, 0.2]), TcpPath(), "go")
+    assert (answer.status, answer.unit) == ("passed", "m")
+    assert answer.margin == pytest.approx(0.001)
+    half = verdict(sliding(whole / 2, [0.0, 0.2]), TcpPath(), "go")
+    assert (half.status, half.margin) == ("failed", pytest.approx(0.5 - 0.95))
+    aside = sliding(whole, [0.0, 0.2])
+    aside.signals.tcp_pose[100, 0] += 0.002
+    assert verdict(aside, TcpPath(), "go").margin == pytest.approx(-0.001)
+    beyond = verdict(sliding(1.02 * whole, [0.0, 0.2]), TcpPath(during="go"))
+    assert beyond.margin == pytest.approx(0.001 - 0.004)
+
+
+def test_a_step_without_a_path_of_its_own_is_not_observable():
+    run = sliding(np.linspace(0.0, 0.2, 200), [0.0, 0.2])
+    assert verdict(run, TcpPath()).status == "not observable"
+    waiting = make_run(steps=(step("wait", 0, 200, "wait"),))
+    assert verdict(waiting, TcpPath(), "wait").status == "not observable"
+    still = sliding(np.zeros(200), [0.1, 0.1])
+    assert verdict(still, TcpPath(), "go").status == "not observable", "it has no length"
+    failed = make_run(
+        steps=(step("go", 0, 200, "lin", status="failed", error_code="PLANNING_FAILED"),),
+        ended_early="PLANNING_FAILED: no line",
+    )
+    assert verdict(failed, TcpPath(), "go").status == "not reached"

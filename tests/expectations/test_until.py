@@ -1,0 +1,45 @@
+"""until: one predicate holds at every sample before the one at which another comes true."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from harness.expectations.in_contact import InContact
+from harness.expectations.lifted import Lifted
+from harness.expectations.on import On
+from harness.expectations.static import Static
+from harness.expectations.until import Until
+from tests.assertions.synthetic_run import BOX, TABLE, lift_run, make_run, verdict
+
+ABSENT = np.full((200, 7), np.nan)
+
+
+def absent_box(n=200):
+    never_there = replace(BOX, present=())
+    return make_run(n, objects=(TABLE, never_there), object_poses={"box": ABSENT[:n]})
+
+
+def test_one_thing_holds_until_another_comes():
+    run = lift_run()  # gripped at 0.5 s, off the table at 1 s, at 50 mm from 1.25 s on
+    still = Static(object="box", max_velocity=0.01)
+    on_table = On(object="box", support="Table")
+    touched = InContact(between=("gripper", "box"))
+    answer = verdict(run, Until(predicate=still, until=touched))
+    assert (answer.status, answer.unit) == ("passed", "m/s")
+    came = verdict(run, Until(predicate=on_table, until=Lifted(object="box", above=0.05)))
+    assert came.status == "failed", "it was off the table before it was at 50 mm"
+    assert (came.unit, came.time) == ("N", pytest.approx(1.01))
+    assert came.reason.startswith("`on` did not hold until then")
+    never = verdict(run, Until(predicate=still, until=InContact(between=("box", "arm_link"))))
+    assert (never.status, never.unit) == ("failed", "N")
+    assert "`in_contact` never came" in never.reason
+    late = Until(predicate=still, until=touched, within=0.4)
+    assert verdict(run, late).status == "failed"
+    assert verdict(run, Until(predicate=still, until=touched, within=0.5)).status == "passed"
+    held = Until(predicate=still, until=touched, **{"for": 1.5})
+    assert verdict(run, held).status == "failed"
+    assert verdict(run, Until(predicate=still, until=touched), "gone").status == "not reached"
+    assert verdict(absent_box(), Until(predicate=still, until=touched)).status == "not reached"
+    with pytest.raises(ValueError, match="no `for` and no `within`"):
+        Until(predicate=Static(**{"for": 1.0}), until=touched)
