@@ -22,6 +22,7 @@ DIRECTIONS: FloatArray = np.concatenate([np.eye(3), -np.eye(3), _CORNERS])
 STEP = 0.002  # [m] between points of a line
 MARGIN = 0.02  # share of the ranges that lines keep from the limits
 LARGEST_STEP = 0.1  # [rad or m] of a joint from point to point
+CONVERGED = 1e-7  # largest task error of a point on a line, lengths as shares of the reach
 LEAST_MANIPULABILITY = 0.02  # where lines end before a singularity
 
 
@@ -99,6 +100,8 @@ def _follow(
             rows = task_jacobians(chain, task, positions[None])[0]
             change = task_error(task, goal, chain.link_pose(positions), reach)
             positions = positions + np.linalg.lstsq(rows, change, rcond=None)[0]
+        if np.abs(task_error(task, goal, chain.link_pose(positions), reach)).max() > CONVERGED:
+            break
         if np.any(np.abs(positions - middle) > half):
             break
         if np.abs(positions - walked[-1]).max() > LARGEST_STEP:
