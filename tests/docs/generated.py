@@ -1,4 +1,4 @@
-"""The files that the models say: schemas and reference pages. Run as a script, it renews them."""
+"""Files that follow from the code: schemas, reference pages, samples. As a script, writes them."""
 
 from pathlib import Path
 
@@ -7,6 +7,7 @@ from harness.importers.reference import formats_page
 from harness.spec.expectations_reference import expectations_reference
 from harness.spec.reference import scenario_reference, steps_reference
 from harness.spec.schema import schema_text, world_schema_text
+from tests.docs.readme_samples import with_samples
 from tests.docs.robot_formats import robot_formats_page
 
 ROOT = Path(__file__).parents[2]
@@ -23,6 +24,7 @@ def generated():
         "scenarios/EXPECTATIONS.md": expectations_reference(EXECUTED),
         "worlds/FORMATS.md": formats_page(),
         "robots/FORMATS.md": robot_formats_page(),
+        "README.md": with_samples((ROOT / "README.md").read_text(encoding="utf-8")),
     }
 
 
