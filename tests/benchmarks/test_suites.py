@@ -204,7 +204,7 @@ def test_memory_of_a_suite_of_two_thousand_samples(tmp_path, tell):
                 marks[len(suite.results)] = (resident(os.getpid()), resident(server.pid), largest)
                 largest = 0.0
 
-        suite.collect(server, told=told)
+        suite.collect(server, on_result=told)
     assert suite.outcome == "passed"
     heading = "memory over 2,000 samples, 2 workers"
     tell(heading, "samples", "suite", "fork server", "largest case since the line above")
@@ -220,7 +220,7 @@ def test_memory_of_a_process_that_runs_two_thousand_samples(tmp_path, tell):
         if len(suite.results) in MARKS:
             marks[len(suite.results)] = resident(os.getpid())
 
-    suite.collect(WarmServer(), told=told)
+    suite.collect(WarmServer(), on_result=told)
     assert suite.outcome == "passed"
     heading = "memory over 2,000 samples in one process"
     tell(heading, "samples", "resident")
