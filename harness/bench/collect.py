@@ -1,4 +1,4 @@
-"""Takes the motions out of a scenario, and lets every planner try each of them."""
+"""Extract the motions of a scenario and plan each of them with every planner."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from harness.ports import AnyGoal, Goal, MotionPlan, PathConstraints, PlanningOp
 from harness.recording.run import StepRecord
 from harness.session.prepare import Prepared, prepare
 
-Tell = Callable[["Motion"], None]
+OnMotion = Callable[["Motion"], None]
 
 
 @dataclass(frozen=True)
 class Motion:
-    """A motion of a scenario, and what came of planning it.
+    """A motion of a scenario with its planning trials.
 
     Attributes:
-        file: As the user named it.
-        step: Its id, else its path.
-        summary: In one line.
-        line: In the file, from 1.
-        trials: One for each planner and seed, planners outermost; only one where the straight way
-            is free.
+        file: The scenario file, as the user named it.
+        step: The step's id, or its path if it has no id.
+        summary: The step in one line.
+        line: Line of the step in the file, from 1.
+        trials: One trial for each planner and seed, planners outermost; a single trial when the
+            straight line is free.
     """
 
     file: str
@@ -43,7 +43,7 @@ class Motion:
 
     @property
     def is_searched(self) -> bool:
-        """Whether a planner had to search: not when the straight way is free."""
+        """Whether a planner had to search, because the straight line is not free."""
         return any(trial.error_code or not trial.is_straight for trial in self.trials)
 
 
@@ -51,28 +51,28 @@ def collect(
     path: Path,
     planners: Sequence[str],
     seeds: Sequence[int],
-    tell: Tell,
+    on_motion: OnMotion,
     *,
     overrides: Mapping[str, str] | None = None,
 ) -> list[Motion]:
     """Plan every free motion (`move_to`) of a scenario with every planner and seed.
 
-    No physics: each motion starts where the one before it ends, at the goal's nearest solution,
-    whatever the planners made of it. Lines, arcs and joint motions are followed, not compared, and
-    so are motions with path constraints, which have a planner of their own.
+    There is no physics: each motion starts where the previous one ends, at the goal's nearest
+    solution, independent of the planners' results. Lines, arcs and joint motions are followed but
+    not compared; so are motions with path constraints, which have their own planner.
 
     Args:
         path: The scenario.
         planners: `planner_id`s.
-        seeds: Of the scenario; `harness run --seed` plans the same motions.
-        tell: Told of each motion when it is done.
+        seeds: Scenario seeds; `harness run --seed` plans the same motions.
+        on_motion: Called with each motion when its trials are complete.
         overrides: Dotted path in the file -> new value, as YAML text.
 
     Raises:
-        SpecError: With every problem of the file.
+        SpecError: The file has problems; the error holds all of them.
     """
     prepared = prepare(path, overrides)
-    bench = _BenchPlanner(prepared, str(path), planners, seeds, tell)
+    bench = _BenchPlanner(prepared, str(path), planners, seeds, on_motion)
     simulator = DrySimulator(prepared.program)
 
     def watch(
@@ -96,7 +96,7 @@ def collect(
 
 
 class _BenchPlanner(DryPlanner):
-    """Tries all planners on a motion, then jumps to its goal as a dry run does."""
+    """Plans a motion with all planners, then jumps to its goal as a dry run does."""
 
     def __init__(
         self,
@@ -104,19 +104,19 @@ class _BenchPlanner(DryPlanner):
         file: str,
         planners: Sequence[str],
         seeds: Sequence[int],
-        tell: Tell,
+        on_motion: OnMotion,
     ) -> None:
         super().__init__(prepared.planner, prepared.program.description)
         if not isinstance(prepared.scene, CoalScene):
-            raise HarnessError("clearances are measured in Coal's planning scene alone")
+            raise HarnessError("clearances can be measured only in Coal's planning scene")
         self.motions: list[Motion] = []
         self._real = prepared.planner
         self._scene = prepared.scene
-        self._file, self._planners, self._seeds, self._tell = file, planners, seeds, tell
+        self._file, self._planners, self._seeds, self._on_motion = file, planners, seeds, on_motion
         self._step: ProgramStep | None = None
 
     def on_step(self, kind: str, step: ProgramStep) -> None:
-        """Remember which step is planned for."""
+        """Remember the step that is being planned."""
         if kind == "step_started":
             self._step = step
 
@@ -128,19 +128,19 @@ class _BenchPlanner(DryPlanner):
         options: PlanningOptions,
         constraints: PathConstraints | None = None,
     ) -> MotionPlan:
-        # first the goal, so that one that cannot be had counts against no planner
+        # the goal comes first, so that an unreachable one counts against no planner
         jump = super().plan(group, start, goal, options, constraints)
         step = self._step
         if step is None or step.spec.verb != "move_to" or constraints is not None:
             return jump
         trials: list[Trial] = []
         for planner, seed in product(self._planners, self._seeds):
-            asked = replace(options, planner_id=planner, seed=step_seed(seed, step.path))
-            trial = try_plan(self._real, self._scene, group, start, goal, asked, seed)
+            chosen = replace(options, planner_id=planner, seed=step_seed(seed, step.path))
+            trial = try_plan(self._real, self._scene, group, start, goal, chosen, seed)
             trials.append(trial)
             if trial.is_straight:
-                break  # no planner is asked, whichever it is
+                break  # a free straight line needs no search, with any planner
         motion = Motion(self._file, step.id, step.summary, step.line, tuple(trials))
         self.motions.append(motion)
-        self._tell(motion)
+        self._on_motion(motion)
         return jump

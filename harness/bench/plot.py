@@ -13,8 +13,8 @@ from harness.bench.summary import QUANTITIES, Quantity, of_planner, values
 PANEL_WIDTH, LABEL_WIDTH, ROW, TOP, BOTTOM, GAP = 360, 130, 26, 42, 34, 24  # [px]
 COLUMNS, HEAD = 2, 56
 LEGEND = (
-    "Thick line: median; box: quartiles; thin line: extremes. Plans that failed count in success "
-    "and state checks alone."
+    "Thick line: median; box: quartiles; thin line: extremes. Failed plans count only in success "
+    "and state checks."
 )
 WIDE = 20.0
 """Ratio of the largest to the smallest value above which a panel's axis is logarithmic."""
@@ -26,9 +26,9 @@ def plot(motions: Sequence[Motion], planners: Sequence[str], title: str) -> str:
     """The text of an SVG file: boxes from quartile to quartile, whiskers to the extremes.
 
     Args:
-        motions: That were planned.
-        planners: Rows, in this order.
-        title: Above it all.
+        motions: The planned motions.
+        planners: The rows of each panel, in this order.
+        title: Title of the picture.
     """
     panels = [_success(motions, planners)]
     panels += [_boxes(quantity, motions, planners) for quantity in QUANTITIES]
@@ -82,7 +82,7 @@ def _boxes(quantity: Quantity, motions: Sequence[Motion], planners: Sequence[str
 
 
 class _Axis:
-    """From values to places 0 to 1; logarithmic where a quantity spans decades."""
+    """Maps values to places from 0 to 1, logarithmically if the values span decades."""
 
     def __init__(self, least: float, most: float, *, may_be_log: bool) -> None:
         self.is_log = may_be_log and least > 0 and most / least > WIDE
@@ -96,7 +96,7 @@ class _Axis:
         self.high = max(self.step, self.step * np.ceil(most / self.step - 1e-9))
 
     def place(self, value: float) -> float:
-        """Where a value stands."""
+        """The place of a value on the axis, from 0 to 1."""
         number = np.log10(value) if self.is_log else value
         return float((number - self.low) / (self.high - self.low))
 

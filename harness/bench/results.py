@@ -21,9 +21,9 @@ RESULTS, PICTURE = "results.json", "benchmark.svg"
 def document(
     motions: Sequence[Motion], planners: Sequence[str], seeds: Sequence[int]
 ) -> dict[str, Any]:
-    """Everything measured as plain data; the same for the same files, but for `wall_times`.
+    """All measurements as plain data; deterministic for the same files, except `wall_times`.
 
-    `wall_times` has the planning times [s], for each motion those of its trials in order.
+    `wall_times` holds the planning times [s]: for each motion, one per trial in order.
     """
     return {
         "format": FORMAT,
@@ -50,7 +50,7 @@ def write_results(
     """Write both files into a folder, each whole or not at all.
 
     Raises:
-        HarnessError: They cannot be written there.
+        HarnessError: The files cannot be written there.
     """
     searched = sum(motion.is_searched for motion in motions)
     title = f"{searched} searched motions, {len(seeds)} seeds"
@@ -61,7 +61,7 @@ def write_results(
     except OSError as error:
         raise HarnessError(
             f"the comparison cannot be written to {folder}: {error.strerror or error};"
-            " choose another place with --report-dir"
+            " choose another folder with --report-dir"
         ) from error
 
 

@@ -1,4 +1,4 @@
-"""Planners beside each other: medians of what they came to, as rows of a table."""
+"""Planners compared: the medians of their measurements, as rows of a table."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from harness.bench.trial import Trial
 
 @dataclass(frozen=True)
 class Quantity:
-    """Something that is compared.
+    """A measured quantity that is compared between planners.
 
     Attributes:
-        key: In results.json.
-        name: For people, with its unit.
-        value: Of a trial, in that unit; NaN where there is none.
-        digits: Behind the point.
-        solved_only: Whether failed trials have none.
-        may_be_log: Whether a picture may give it a logarithmic axis.
+        key: Key in results.json.
+        name: Displayed name with unit.
+        value: Value of a trial in that unit; NaN if the trial has none.
+        digits: Number of decimals.
+        solved_only: Whether failed trials have no value.
+        may_be_log: Whether a plot may use a logarithmic axis.
     """
 
     key: str
@@ -39,7 +39,7 @@ QUANTITIES = (
     Quantity("smoothness", "smoothness [rad²]", lambda t: t.smoothness, 4),
     Quantity("clearance", "clearance [mm]", lambda t: 1e3 * t.clearance, 1),
 )
-"""Of each the median is told; the less the better, but for the clearance."""
+"""The table shows their medians. Smaller values are better, except for the clearance."""
 
 
 def values(quantity: Quantity, trials: Sequence[Trial]) -> list[float]:
@@ -60,7 +60,7 @@ def of_planner(motions: Sequence[Motion], planner: str) -> list[Trial]:
 
 
 def table(motions: Sequence[Motion], planners: Sequence[str]) -> str:
-    """A row for each planner: success, then the medians."""
+    """One row per planner: its successes, then the medians."""
     rows = [["planner", "success", *(quantity.name for quantity in QUANTITIES)]]
     for planner in planners:
         trials = of_planner(motions, planner)
@@ -81,9 +81,9 @@ def table(motions: Sequence[Motion], planners: Sequence[str]) -> str:
 
 
 def motion_line(motion: Motion) -> str:
-    """A motion in one line: where it is, and how many of its trials succeeded."""
+    """A motion in one line: its place in the file and how many of its trials succeeded."""
     place = f"{motion.file}:{motion.line}"
     if not motion.is_searched:
-        return f"{place}: {motion.summary}: the straight way is free, nothing to search"
+        return f"{place}: {motion.summary}: the straight line is free, no search is needed"
     solved = sum(trial.is_solved for trial in motion.trials)
     return f"{place}: {motion.summary}: {solved} of {len(motion.trials)} plans found"

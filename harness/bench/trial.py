@@ -1,4 +1,4 @@
-"""One plan for one motion by one planner from one seed, and what it is worth."""
+"""One plan of one motion by one planner with one seed, and its measurements."""
 
 from __future__ import annotations
 
@@ -18,27 +18,27 @@ SPACING = 0.05
 """Joint-space distance between the states that smoothness and clearance are measured at [rad]."""
 
 STRAIGHT_TURN = 1e-6
-"""A turn that rounding makes of none [rad]."""
+"""Turns below this are rounding errors [rad]."""
 
 STRAIGHT = "straight line"
-"""What a plan's statistics say in place of a planner when the straight way was free."""
+"""The `planner_id` in a plan's statistics when the straight line was free."""
 
 
 @dataclass(frozen=True)
 class Trial:
-    """What came of a plan.
+    """The result of one planning attempt.
 
     Attributes:
-        planner: Its `planner_id`.
-        seed: Of the scenario; `harness run --seed` plans the same.
-        error_code: Why it failed; empty when it succeeded.
-        state_checks: States checked for collision, those of shortening and verification included.
-        path_length: Joint-space length of the motion [rad]; NaN when there is none.
-        duration: Of the motion [s].
+        planner: The `planner_id`.
+        seed: Seed of the scenario; `harness run --seed` plans the same motion.
+        error_code: Code of the failure; empty when planning succeeded.
+        state_checks: States checked for collision, including shortening and verification.
+        path_length: Joint-space length of the motion [rad]; NaN when planning failed.
+        duration: Duration of the motion [s].
         smoothness: Mean of (2 turn)^2 [rad^2], the turn between steps of `SPACING`; 0 is straight.
         clearance: Smallest distance of the robot and what it holds to any object [m].
         mean_clearance: Mean of that distance along the motion [m].
-        planning_time: CPU time of the process [s]; never judged. NaN when it failed.
+        planning_time: CPU time of the process [s], for information only; NaN when planning failed.
         is_straight: Whether no search was needed.
     """
 
@@ -56,7 +56,7 @@ class Trial:
 
     @property
     def is_solved(self) -> bool:
-        """Whether there is a motion."""
+        """Whether planning found a motion."""
         return not self.error_code
 
 
@@ -69,16 +69,16 @@ def try_plan(
     options: PlanningOptions,
     seed: int,
 ) -> Trial:
-    """Plan once, and measure.
+    """Plan once, and measure the result.
 
     Args:
         planner: Plans in `scene`.
-        scene: As it is when the motion is wanted.
+        scene: The planning scene at the start of the motion.
         group: The planning group.
-        start: Description order.
-        goal: Of the motion.
-        options: With the planner and the step's seed.
-        seed: Of the scenario, for the record.
+        start: Joint positions in description order.
+        goal: Goal of the motion.
+        options: Options with the planner and the step's seed.
+        seed: Seed of the scenario, for the record.
     """
     begin = time.process_time()
     try:

@@ -74,7 +74,7 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
-    from harness.suite.plan import Wanted, planned
+    from harness.suite.plan import RunRequest, planned_cases
     from harness.suite.suite_run import How, SuiteRun
 
     if arguments.history and not Path(arguments.history).is_dir():
@@ -82,9 +82,9 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
     root = None if arguments.no_report else Path(arguments.report_dir)
     if root is not None:
         clean_report_folder(root)
-    plan = planned(
+    plan = planned_cases(
         files,
-        Wanted(
+        RunRequest(
             expression=arguments.expression,
             cases=arguments.cases,
             overrides=dict(arguments.overrides),

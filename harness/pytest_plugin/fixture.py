@@ -1,4 +1,4 @@
-"""The fixture with which tests written by hand run scenarios."""
+"""The fixture that runs scenarios from hand-written tests."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def runner_of(request: pytest.FixtureRequest) -> Callable[..., ScenarioResult]:
-    """A function that runs scenarios for one test; each call has a report folder of its own."""
+    """A function that runs scenarios for one test and gives each call its own report folder."""
     config = request.config
     count = 0
 
@@ -55,8 +55,8 @@ def runner_of(request: pytest.FixtureRequest) -> Callable[..., ScenarioResult]:
 
 
 def _found(request: pytest.FixtureRequest, scenario: str | Path | Scenario) -> Any:
-    """A relative name beside the test's file, where there is one, else as it is."""
+    """The scenario next to the test's file where that file exists; otherwise the name as given."""
     if isinstance(scenario, str | Path):
-        beside = request.path.parent / scenario
-        return shown(beside) if beside.is_file() else Path(scenario)
+        sibling = request.path.parent / scenario
+        return shown(sibling) if sibling.is_file() else Path(scenario)
     return scenario

@@ -12,14 +12,25 @@ from harness.core.printable import printable, terminal_text
 from harness.suite.header import Header, read_header
 
 PYTEST_MARKS = frozenset(
-    ("skip", "skipif", "xfail", "parametrize", "parameterize", "parametrise", "parameterise",
-     "usefixtures", "filterwarnings", "tryfirst", "trylast")
-)  # fmt: skip
-"""Marks that change what a verdict means, or that pytest refuses: no tag becomes one of them."""
+    (
+        "skip",
+        "skipif",
+        "xfail",
+        "parametrize",
+        "parameterize",
+        "parametrise",
+        "parameterise",
+        "usefixtures",
+        "filterwarnings",
+        "tryfirst",
+        "trylast",
+    )
+)
+"""Marks that change the meaning of a verdict, or that pytest refuses. No tag adds one of them."""
 
 
 class ScenarioFile(pytest.File):
-    """A scenario file with its cases; the random samples of one are one item."""
+    """A scenario file with its cases; all random samples of a case are one item."""
 
     def collect(self) -> Iterable[ScenarioItem]:
         header = read_header(self.path)
@@ -35,9 +46,9 @@ class ScenarioItem(pytest.Item):
     """One case of a scenario, or all samples of it.
 
     Attributes:
-        header: Of its file.
-        case: Its name; of samples, the name that they share.
-        number: Of the case in its file.
+        header: Header of the scenario file.
+        case: Name of the case; for samples, the name that they share.
+        number: Position of the case in its file, from 0.
     """
 
     def __init__(self, *, header: Header, case: str, number: int, **keywords: Any) -> None:
@@ -53,14 +64,14 @@ class ScenarioItem(pytest.Item):
                 self.add_marker(getattr(pytest.mark, tag))
 
     def runtest(self) -> None:
-        from harness.pytest_plugin.running import run_item  # everything else, once it is needed
+        from harness.pytest_plugin.running import run_item  # imports the rest of the harness
 
         run_item(self)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
-        from harness.pytest_plugin.running import TOLD_AS_THEY_ARE
+        from harness.pytest_plugin.running import SELF_EXPLANATORY_ERRORS
 
-        if isinstance(excinfo.value, TOLD_AS_THEY_ARE):
+        if isinstance(excinfo.value, SELF_EXPLANATORY_ERRORS):
             return "\n".join(map(terminal_text, str(excinfo.value).split("\n")))
         return super().repr_failure(excinfo, style)
 

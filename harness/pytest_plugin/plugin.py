@@ -1,7 +1,7 @@
-"""pytest collects `*.scenario.yaml`: one item a scenario, run in a process of its own.
+"""pytest collects `*.scenario.yaml` files: one item per scenario, run in its own process.
 
-Loaded in every pytest run of an environment, so it imports nothing of the harness until a
-scenario file is met.
+pytest loads this module in every run of an environment, so it imports nothing else of the harness
+until a scenario file is collected.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from harness.pytest_plugin.session import TOLD, SessionResults
+from harness.pytest_plugin.session import RECORD, SessionResults
 
 if TYPE_CHECKING:
     from harness.pytest_plugin.item import ScenarioFile
@@ -29,43 +29,47 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--harness-report-dir",
         metavar="DIR",
         default=None,
-        help="where reports of scenarios go (default: the ini key, or reports)",
+        help="folder for scenario reports (default: the ini key harness_report_dir, else reports)",
     )
     group.addoption(
-        "--harness-no-report", action="store_true", default=False, help="write no reports"
+        "--harness-no-report", action="store_true", default=False, help="do not write reports"
     )
     group.addoption(
         "--harness-history",
         metavar="DIR",
         default=None,
-        help="a folder of earlier results.json files, whose margins the session's page shows",
+        help="folder of earlier results.json files; the suite page shows their margins",
     )
     group.addoption(
         "--harness-in-process",
         action="store_true",
         default=False,
-        help="run scenarios in pytest's own process, for debuggers",
+        help="run scenarios inside the pytest process, so that a debugger can attach",
     )
     group.addoption(
         "--harness-plugin",
         metavar="MODULE",
         action="append",
         default=[],
-        help="load the plug-ins of a Python module (its name, or a .py file)",
+        help="load the plug-ins of a Python module (a module name or a .py file)",
     )
-    parser.addini("harness_plugins", "modules whose plug-ins scenarios may use", type="args")
+    parser.addini("harness_plugins", "modules that provide plug-ins for scenarios", type="args")
     parser.addini(
         "harness_files",
-        "names of scenario files; empty: none are collected",
+        "file name patterns of scenario files; an empty value collects none",
         type="args",
         default=PATTERNS,
     )
-    parser.addini("harness_report_dir", "where reports go, from the root folder", default="reports")
-    parser.addini("harness_hard_cap", "wall seconds after which a scenario is an error", default="")
+    parser.addini(
+        "harness_report_dir", "folder for reports, relative to the root folder", default="reports"
+    )
+    parser.addini(
+        "harness_hard_cap", "wall time [s] after which a scenario ends as an error", default=""
+    )
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Load plug-ins; gather results where a person sees them, which is not in xdist's workers."""
+    """Load plug-ins; collect results in the main process only, not in xdist's workers."""
     modules = [*config.getini("harness_plugins"), *(config.getoption("--harness-plugin") or [])]
     if modules:
         _load_plugins(modules)
@@ -87,19 +91,20 @@ def _load_plugins(modules: list[str]) -> None:
 def pytest_runtest_makereport(
     item: pytest.Item, call: pytest.CallInfo[None]
 ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Send what a scenario came to with the report of its test."""
+    """Attach a scenario's record to the report of its test."""
     report = yield
-    told = getattr(item, TOLD, None)
-    if told is not None and call.when == "call":
-        setattr(report, TOLD, told)
+    record = getattr(item, RECORD, None)
+    if record is not None and call.when == "call":
+        setattr(report, RECORD, record)
     return report
 
 
 @pytest.fixture
 def harness_scenario(request: pytest.FixtureRequest) -> Callable[..., ScenarioResult]:
-    """Runs a scenario in a process of its own: `harness_scenario("pick.scenario.yaml")`.
+    """Run a scenario in its own process: `harness_scenario("pick.scenario.yaml")`.
 
-    Takes what `harness.run` takes; reports go below the session's, under the test's name.
+    The function takes the arguments of `harness.run`. Reports go to the session's report folder,
+    under the test's name.
     """
     from harness.pytest_plugin.fixture import runner_of
 

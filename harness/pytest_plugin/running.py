@@ -1,4 +1,4 @@
-"""Running an item: processes, verdicts, what pytest's reports carry."""
+"""Run an item: its processes, its verdicts and the data that pytest's reports carry."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 from harness.core.printable import printable, terminal_text
 from harness.pytest_plugin.item import ScenarioItem
-from harness.pytest_plugin.session import TOLD
+from harness.pytest_plugin.session import RECORD
 from harness.pytest_plugin.session_files import ItemRecord, as_plain
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate, rate_text
@@ -19,52 +19,57 @@ from harness.reporting.terminal import causes
 from harness.suite.cases import run_here, run_isolated
 from harness.suite.header import source_lines
 from harness.suite.leftovers import clean_report_folder
-from harness.suite.plan import PlannedCase, Wanted, planned
+from harness.suite.plan import PlannedCase, RunRequest, planned_cases
 from harness.suite.sampling import Sampling
 from harness.suite.warm import ServerStartError, WarmServer
 
-TOLD_SAMPLES = 3
+LISTED_SAMPLES = 3
 SERVER = pytest.StashKey[WarmServer]()
 CLEANED = pytest.StashKey[bool]()
 
 
 class ScenarioNotPassed(Exception):
-    """A scenario failed, is invalid, or broke; says why, with every number."""
+    """A scenario failed, is invalid, or ended in an error; the text gives every cause."""
 
     def __init__(self, result: CaseResult) -> None:
-        told = causes(result, source_lines(Path(result.file)))
+        lines = causes(result, source_lines(Path(result.file)))
         if result.report_dir:
-            told.append(printable(f"report: {result.report_dir}"))
-        super().__init__("\n".join(told))
+            lines.append(printable(f"report: {result.report_dir}"))
+        super().__init__("\n".join(lines))
 
 
 class RateNotShown(Exception):
-    """Samples of a scenario do not show the rate that was asked for; says which failed, and why."""
+    """The samples do not show the required success rate; the text lists the first failed ones."""
 
     def __init__(self, rate: str, failed: Sequence[CaseResult]) -> None:
-        told = [rate]
-        for result in failed[:TOLD_SAMPLES]:
-            told += ["", printable(f"{result.case}:")]
-            told += causes(result, source_lines(Path(result.file)))
-            told.append(printable(f"again: harness run {result.file} --case {result.case}"))
-        if len(failed) > TOLD_SAMPLES:
-            told += ["", f"... and {len(failed) - TOLD_SAMPLES} more samples that failed"]
-        super().__init__("\n".join(told))
+        lines = [rate]
+        for result in failed[:LISTED_SAMPLES]:
+            lines += ["", printable(f"{result.case}:")]
+            lines += causes(result, source_lines(Path(result.file)))
+            lines.append(printable(f"again: harness run {result.file} --case {result.case}"))
+        if len(failed) > LISTED_SAMPLES:
+            lines += ["", f"... and {len(failed) - LISTED_SAMPLES} more samples that failed"]
+        super().__init__("\n".join(lines))
 
 
-TOLD_AS_THEY_ARE = (ScenarioNotPassed, RateNotShown, ServerStartError)
-"""Failures whose text says everything, without a traceback."""
+SELF_EXPLANATORY_ERRORS = (ScenarioNotPassed, RateNotShown, ServerStartError)
+"""Errors that pytest prints without a traceback, because their text is complete."""
 
 
 def run_item(item: ScenarioItem) -> None:
-    """Run a case, or all samples of one; raises what tells why it did not pass."""
+    """Run a case, or all samples of a case.
+
+    Raises:
+        ScenarioNotPassed: The case, or one of the samples, is invalid or did not pass.
+        RateNotShown: The samples do not show the required success rate.
+    """
     root = report_root(item.config)
     if root is not None and not item.config.stash.get(CLEANED, False):
         item.config.stash[CLEANED] = True
         clean_report_folder(root)
     plan = [
         each
-        for each in planned([shown(item.path)], Wanted(report_root=root))
+        for each in planned_cases([shown(item.path)], RunRequest(report_root=root))
         if item.case == (each.case.name if each.case.sample is None else each.case.group)
     ]
     sampling = Sampling(plan)
@@ -75,7 +80,7 @@ def run_item(item: ScenarioItem) -> None:
     [(index, result)] = results.items()
     case = _suite_case(plan[index], result)
     _keep(item, [case])
-    _tell(item, case)
+    _add_properties(item, case)
     if result.outcome != "passed":
         raise ScenarioNotPassed(result)
 
@@ -126,13 +131,13 @@ def _run(
 def _keep(
     item: ScenarioItem, cases: Sequence[SuiteCase], rates: Sequence[SampledRate] = ()
 ) -> None:
-    """Have the test's report carry what this came to, to the files of the session."""
+    """Attach the record to the item, from which the test's report carries it to the session."""
     record = ItemRecord(item.nodeid, item.number, tuple(cases), tuple(rates))
-    setattr(item, TOLD, as_plain(record))
+    setattr(item, RECORD, as_plain(record))
 
 
-def _tell(item: ScenarioItem, case: SuiteCase) -> None:
-    """Put what a later reader needs beside the test's outcome."""
+def _add_properties(item: ScenarioItem, case: SuiteCase) -> None:
+    """Add the case's properties, report path and notes to the test's report."""
     result = case.result
     item.user_properties += case_properties(case)
     if result.report_dir:
@@ -147,15 +152,15 @@ def _suite_case(planned_case: PlannedCase, result: CaseResult) -> SuiteCase:
 
 
 def report_root(config: pytest.Config) -> Path | None:
-    """Where the session's reports go; None where none are written."""
+    """The folder for the session's reports; None when no reports are written."""
     if config.getoption("--harness-no-report"):
         return None
-    asked = config.getoption("--harness-report-dir")
-    return Path(asked) if asked else config.rootpath / config.getini("harness_report_dir")
+    folder = config.getoption("--harness-report-dir")
+    return Path(folder) if folder else config.rootpath / config.getini("harness_report_dir")
 
 
 def server_of(config: pytest.Config) -> WarmServer:
-    """The fork server of this pytest process; it ends with pytest."""
+    """The fork server of this pytest process, which ends together with pytest."""
     if SERVER not in config.stash:
         config.stash[SERVER] = server = WarmServer()
         config.add_cleanup(server.close)
@@ -163,6 +168,6 @@ def server_of(config: pytest.Config) -> WarmServer:
 
 
 def shown(path: Path) -> Path:
-    """A path as a person would write it."""
+    """The path relative to the working directory where that is possible."""
     here = Path.cwd()
     return path.relative_to(here) if path.is_relative_to(here) else path

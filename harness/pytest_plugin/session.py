@@ -1,4 +1,4 @@
-"""Gathers what scenarios came to in a pytest session; imports nothing until there is one."""
+"""Collect the results of a pytest session; imports the harness only when there are results."""
 
 from __future__ import annotations
 
@@ -7,29 +7,29 @@ from typing import Any
 
 import pytest
 
-TOLD = "harness_told"
-"""Attribute of a test report with an item's record as plain data."""
+RECORD = "harness_record"
+"""Attribute of a test report that holds an item's record as plain data."""
 
 
 class SessionResults:
-    """A plugin of the process that talks to the person: under xdist the one without workers' work.
+    """A pytest plugin of the main process; under xdist, of the controller.
 
     Attributes:
-        told: Records as plain data by the item's name; a test that runs again counts once.
+        records: Node id -> record as plain data; a test that runs again counts once.
     """
 
     def __init__(self, config: pytest.Config) -> None:
         self._config = config
-        self.told: dict[str, Any] = {}
+        self.records: dict[str, Any] = {}
         self._lines: list[str] = []
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        told = getattr(report, TOLD, None)
-        if told is not None:
-            self.told[report.nodeid] = told
+        record = getattr(report, RECORD, None)
+        if record is not None:
+            self.records[report.nodeid] = record
 
     def pytest_sessionfinish(self) -> None:
-        if not self.told:
+        if not self.records:
             return
         from harness.core.errors import HarnessError
         from harness.core.printable import printable, terminal_text
@@ -42,11 +42,11 @@ class SessionResults:
         )
         from harness.reporting.suite.github import annotations_for_action, append_summary
 
-        records = from_plains(list(self.told.values()))
+        records = from_plains(list(self.records.values()))
         self._lines = small_margins(records, getattr(self._config, "cache", None))
         folder, suite = report_root(self._config), suite_of(records)
-        asked = self._config.getoption("--harness-history")
-        history = Path(asked) if asked else None
+        earlier = self._config.getoption("--harness-history")
+        history = Path(earlier) if earlier else None
         if folder is not None and (line := write_files(folder, suite, history)):
             self._lines.append(line)
         try:

@@ -1,4 +1,4 @@
-"""What a pytest session leaves of its scenarios: the suite's files, and margins that got small."""
+"""The files that a pytest session writes about its scenarios, and warnings on small margins."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ MOST_LINES = 5
 
 @dataclass(frozen=True)
 class ItemRecord:
-    """What one item's scenarios came to; as plain data it goes from xdist's workers home.
+    """The results of one item; xdist's workers send it to the controller as plain data.
 
     Attributes:
         name: Node id of the item.
-        number: Of the item in its file.
-        cases: One, or all samples that count; never none.
-        rates: Of samples.
+        number: Position of the item in its file, from 0.
+        cases: One case, or all samples that count; never empty.
+        rates: Success rates of the samples.
     """
 
     name: str
@@ -40,26 +40,26 @@ class ItemRecord:
 
     @property
     def outcomes(self) -> list[Outcome]:
-        """Of the cases; of samples the rate's, and that of those that are invalid or broke."""
-        found: list[Outcome] = [each.outcome for each in self.rates]
-        told: list[Outcome] = [case.result.outcome for case in self.cases]
-        return found + [each for each in told if not self.rates or each in ("invalid", "error")]
+        """Outcomes of the cases; for samples, of the rates and of invalid or broken samples."""
+        rates: list[Outcome] = [each.outcome for each in self.rates]
+        cases: list[Outcome] = [case.result.outcome for case in self.cases]
+        return rates + [each for each in cases if not self.rates or each in ("invalid", "error")]
 
 
 def as_plain(record: ItemRecord) -> Any:
-    """Data that a test report can carry."""
+    """The record as data that a test report can carry."""
     return to_plain(record)
 
 
 def from_plains(plains: Sequence[Any]) -> list[ItemRecord]:
-    """Records of a session in the order of the files, whoever ran them when."""
+    """Records of a session in file order, independent of worker and time."""
     records = [from_plain(each, ItemRecord) for each in plains]
     return sorted(records, key=lambda each: (each.cases[0].result.file, each.number))
 
 
 def suite_of(records: Sequence[ItemRecord]) -> SuiteRecord:
     """The session's scenarios as one suite."""
-    outcomes: list[Outcome] = [told for each in records for told in each.outcomes]
+    outcomes: list[Outcome] = [outcome for each in records for outcome in each.outcomes]
     return SuiteRecord(
         max(outcomes, key=EXIT_CODES.__getitem__),
         [case for each in records for case in each.cases],
@@ -68,15 +68,16 @@ def suite_of(records: Sequence[ItemRecord]) -> SuiteRecord:
 
 
 def write_files(folder: Path, suite: SuiteRecord, history: Path | None) -> str:
-    """Write `index.html`, `junit.xml` and `results.json` of more than one case.
+    """Write `index.html`, `junit.xml` and `results.json` if there is more than one case.
 
     Args:
-        folder: Of the session's reports.
-        suite: What it came to.
+        folder: Folder of the session's reports.
+        suite: The session's results.
         history: A folder of earlier results, whose margins the page shows.
 
     Returns:
-        A line on where the page is, or why there is none; empty for one case.
+        A line with the path of the page, or with the reason why it could not be written; empty
+        for one case.
     """
     from harness.reporting.suite.history import history_of
     from harness.reporting.suite.write import write_suite
@@ -92,11 +93,11 @@ def write_files(folder: Path, suite: SuiteRecord, history: Path | None) -> str:
 
 
 def small_margins(records: Sequence[ItemRecord], cache: pytest.Cache | None) -> list[str]:
-    """Lines on expectations that barely hold, and what they were last time.
+    """Lines on expectations that barely hold, with their margins in the previous session.
 
     Args:
-        records: Of the session.
-        cache: Remembers margins until the next session; None where pytest has none.
+        records: Records of the session.
+        cache: Keeps margins until the next session; None when pytest runs without its cache.
     """
     known: Mapping[str, Mapping[str, float]] = (cache.get(CACHED, None) if cache else None) or {}
     now = {each.name: _shares(each) for each in records}

@@ -14,7 +14,7 @@ from harness.recording.run import Run, StepRecord, Verdict
 from harness.recording.store import RUN, read_run
 from harness.reporting.result import CaseResult
 from harness.reporting.terminal import causes
-from harness.suite.cases import CaseJob, nobody_watches, run_here
+from harness.suite.cases import CaseJob, ignore_progress, run_here
 from harness.suite.discovery import UsageError
 from harness.suite.header import source_lines
 from harness.suite.variation import Case, Variation
@@ -31,10 +31,10 @@ Runner = Callable[[CaseJob], CaseResult]
 
 @dataclass(frozen=True, repr=False)
 class ScenarioResult:
-    """What a run came to; true when it passed.
+    """The result of a run; true when it passed.
 
     Attributes:
-        case: Outcome, verdicts, problems, digest, times, as the terminal and the reports tell them.
+        case: Outcome, verdicts, problems, digest and times, as the terminal and reports show them.
         run: Everything recorded; None where nothing ran.
         text: Of the scenario file; of a model, the file that says the same, whose lines messages
             count.
@@ -139,7 +139,7 @@ def _without_folder(result: CaseResult) -> CaseResult:
 
 def run_in_process(job: CaseJob) -> CaseResult:
     """Run a job here."""
-    [(_index, result)] = run_here([job], watch=nobody_watches)
+    [(_index, result)] = run_here([job], watch=ignore_progress)
     return result
 
 

@@ -1,4 +1,4 @@
-"""Run many cases, each in a process of its own or all in this one, and say what each came to."""
+"""Run many cases, each in its own process or all in this one, and yield their results."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def never(_index: int) -> bool:
     return False
 
 
-def nobody_watches(_index: int, _event: ProgressEvent) -> None:
+def ignore_progress(_index: int, _event: ProgressEvent) -> None:
     """Take no notice of progress."""
 
 
@@ -116,7 +116,7 @@ def read_ahead(words: Collection[str]) -> None:
 def run_here(
     jobs: Sequence[CaseJob],
     *,
-    watch: Watcher = nobody_watches,
+    watch: Watcher = ignore_progress,
     function: Function = run_case,
     is_needless: Chooser = never,
 ) -> Iterator[tuple[int, CaseResult]]:
@@ -138,7 +138,7 @@ def run_isolated(
     *,
     workers: int = 1,
     hard_cap: float | None = None,
-    watch: Watcher = nobody_watches,
+    watch: Watcher = ignore_progress,
     function: Function = run_case,
     is_needless: Chooser = never,
 ) -> Iterator[tuple[int, CaseResult]]:
@@ -151,7 +151,7 @@ def run_isolated(
         hard_cap: Wall seconds a case may take before it is ended as an error.
         watch: Hears (index, event) of running cases.
         function: What a child calls; importable there by its name.
-        is_needless: Asked for each index before its case begins; such a case is left out.
+        is_needless: Called with each index before its case begins; a needless case is skipped.
 
     Yields:
         (index into `jobs`, result) in the order in which cases end.
@@ -203,7 +203,7 @@ def _words(jobs: Sequence[CaseJob]) -> frozenset[str]:
     texts = {job.text for job in jobs if job.text is not None}
     texts.update(value for job in jobs for value in job.overrides.values())
     for file in {job.file for job in jobs if job.text is None}:
-        with suppress(SpecError):  # its case tells
+        with suppress(SpecError):  # the case itself reports the error
             texts.add(read_text(file))
     return frozenset(word for text in texts for word in _WORD.findall(text))
 
@@ -219,7 +219,7 @@ def _clean(job: CaseJob) -> None:
 
 
 def hard_cap_seconds() -> float:
-    """The cap in force when nobody names one."""
+    """The default wall time cap [s]."""
     return float(os.environ.get("HARNESS_HARD_CAP", HARD_CAP_SECONDS))
 
 

@@ -13,7 +13,7 @@ SUFFIX = ".scenario.yaml"
 
 
 class UsageError(HarnessError):
-    """A command asks for something that is not there (exit code 2)."""
+    """A command names something that does not exist (exit code 2)."""
 
 
 def discover(paths: Sequence[str | Path]) -> list[Path]:
@@ -76,12 +76,12 @@ def _in_folder(folder: Path) -> list[Path]:
 
 
 def _hint(path: Path, bundled: dict[str, Path]) -> str:
-    beside = [
+    siblings = [
         str(file)
         for file in (path.parent.iterdir() if path.parent.is_dir() else ())
         if _usable(file)
     ]
-    near = get_close_matches(str(path), sorted(beside) + sorted(bundled), n=1, cutoff=0.5)
+    near = get_close_matches(str(path), sorted(siblings) + sorted(bundled), n=1, cutoff=0.5)
     if near:
         return f"; did you mean '{near[0]}'?"
     return "; `harness new FILE` writes a scenario to start from"

@@ -30,7 +30,7 @@ def server_environment() -> dict[str, str]:
 def use_one_thread() -> None:
     """Keep BLAS from starting threads, here and in child processes.
 
-    A fork takes no threads along, and the order in which threads add up is not ours to choose.
+    A fork does not copy threads, and the order in which threads sum numbers is not deterministic.
     Counts only before numpy's first import; what the user has set stays.
     """
     for name in ONE_THREAD:

@@ -30,7 +30,7 @@ def _place(file: Path) -> Path:
     absolute = file.resolve()
     stem = absolute.name.removesuffix(SUFFIX).removesuffix(".yaml")
     if (absolute.parent / stem).is_dir():
-        stem = absolute.name.removesuffix(".yaml")  # the plain name is the folder's beside it
+        stem = absolute.name.removesuffix(".yaml")  # an adjacent folder has the plain name
     for base in (Path.cwd().resolve(), data_folder("scenarios").resolve()):
         if absolute.is_relative_to(base):
             return absolute.parent.relative_to(base) / stem

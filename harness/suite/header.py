@@ -44,7 +44,7 @@ def source_lines(file: Path) -> list[str]:
 
 
 def read_header(file: Path) -> Header:
-    """Read a file's header; of a broken file, which tells its problems later, the name."""
+    """Read a file's header; for a broken file, whose run reports the problems, only the name."""
     from harness.spec.source import Source
     from harness.spec.yaml_file import parse_yaml, read_text
 

@@ -1,4 +1,4 @@
-"""What a suite comes to: the exit code of its results."""
+"""The exit code of a suite's results."""
 
 from __future__ import annotations
 

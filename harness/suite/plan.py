@@ -17,19 +17,20 @@ from harness.suite.variation import Case, Variation
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """What a command asks for.
+class RunRequest:
+    """Which cases a command runs, and what it writes.
 
     Attributes:
-        expression: Of `-k`; empty for all.
-        cases: Patterns of case names; empty for all.
-        overrides: Dotted path -> value as YAML; they count more than a case's own.
-        seed: Instead of the files'.
-        samples: Instead of the files', of those that have some.
-        report_root: Where reports go; None writes none.
-        keep: Whose reports are written: `all`, `failed`, or by default of samples the failed ones.
-        page: Whether a report gets its page.
-        bag: Whether it gets a rosbag2.
+        expression: The expression of `-k`; empty selects all cases.
+        cases: Patterns of case names; empty selects all cases.
+        overrides: Dotted path -> value as YAML; they take precedence over a case's own values.
+        seed: Seed that replaces the files' seeds.
+        samples: Number of samples that replaces the number in files that have samples.
+        report_root: Folder for the reports; None writes no reports.
+        keep: Cases whose reports are written: `all`, `failed`, or by default all cases and, of
+            samples, the failed ones.
+        page: Whether to write the page of a report.
+        bag: Whether to write a rosbag2.
     """
 
     expression: str = ""
@@ -73,74 +74,74 @@ class PlannedCase:
         return self.case.values
 
 
-def planned(files: Sequence[Path], wanted: Wanted) -> list[PlannedCase]:
-    """Every case of the files that is asked for, in file order.
+def planned_cases(files: Sequence[Path], request: RunRequest) -> list[PlannedCase]:
+    """Every case of the files that the request selects, in file order.
 
     Raises:
         UsageError: Nothing is selected, `-k` cannot be read, or there is nothing to sample.
         SpecError: There is nothing to sample in a file with mistakes.
     """
-    root = wanted.report_root
+    root = request.report_root
     folders = [None] * len(files) if root is None else report_folders(files, root)
     found: list[PlannedCase] = []
     for file, folder in zip(files, folders, strict=True):
         header = read_header(file)
-        for case in header.variation.cases(wanted.seed, wanted.samples):
-            if _is_wanted(file, header, case, wanted):
-                found.append(PlannedCase(_job(file, case, folder, wanted), header, case))
+        for case in header.variation.cases(request.seed, request.samples):
+            if _is_selected(file, header, case, request):
+                found.append(PlannedCase(_job(file, case, folder, request), header, case))
     if not found:
-        asked = f"-k '{wanted.expression}'" if wanted.expression else "--case"
-        if wanted.cases:
-            asked = f"--case '{wanted.cases[0]}'"
-        raise UsageError(f"{asked} selects none of {len(files)} scenarios{_names(files, wanted)}")
-    if wanted.samples is not None and all(each.case.sample is None for each in found):
-        _refuse_samples(files, wanted)
+        option = f"-k '{request.expression}'" if request.expression else "--case"
+        if request.cases:
+            option = f"--case '{request.cases[0]}'"
+        raise UsageError(f"{option} selects none of {len(files)} scenarios{_names(files, request)}")
+    if request.samples is not None and all(each.case.sample is None for each in found):
+        _refuse_samples(files, request)
     return found
 
 
-def _refuse_samples(files: Sequence[Path], wanted: Wanted) -> NoReturn:
+def _refuse_samples(files: Sequence[Path], request: RunRequest) -> NoReturn:
     """Say that nothing is sampled; mistakes in a file, which may hide its samples, come first."""
     from harness.spec.load import load_scenario
 
     for file in files:
-        load_scenario(file, wanted.overrides)
+        load_scenario(file, request.overrides)
     raise UsageError(
-        f"--samples {wanted.samples}: nothing is random here; say what is with `randomize:` in the"
-        f" file, or `samples: {wanted.samples}` there for as many seeds"
+        f"--samples {request.samples}: nothing is random here; say what is with `randomize:` in the"
+        f" file, or `samples: {request.samples}` there for as many seeds"
     )
 
 
-def _is_wanted(file: Path, header: Header, case: Case, wanted: Wanted) -> bool:
-    if wanted.cases and not any(fnmatchcase(case.name, pattern) for pattern in wanted.cases):
+def _is_selected(file: Path, header: Header, case: Case, request: RunRequest) -> bool:
+    if request.cases and not any(fnmatchcase(case.name, pattern) for pattern in request.cases):
         return False
-    return not wanted.expression or selects(wanted.expression, file, header, case.name)
+    return not request.expression or selects(request.expression, file, header, case.name)
 
 
-def _names(files: Sequence[Path], wanted: Wanted) -> str:
-    """Which cases there are, where a name was asked for and missed."""
-    if not wanted.cases:
+def _names(files: Sequence[Path], request: RunRequest) -> str:
+    """The existing case names, if `--case` selected none of them."""
+    if not request.cases:
         return ""
     names = [
         case.name
         for file in files
-        for case in read_header(file).variation.cases(wanted.seed, wanted.samples)
+        for case in read_header(file).variation.cases(request.seed, request.samples)
         if case.name
     ]
     shown = ", ".join(names[:10]) + (", ..." if len(names) > 10 else "")
     return f"; cases: {shown}" if names else "; the file has one case, without a name"
 
 
-def _job(file: Path, case: Case, folder: Path | None, wanted: Wanted) -> CaseJob:
-    keep = wanted.keep or ("all" if case.sample is None else "failed")
+def _job(file: Path, case: Case, folder: Path | None, request: RunRequest) -> CaseJob:
+    keep = request.keep or ("all" if case.sample is None else "failed")
     return CaseJob(
         file,
-        {**case.overrides, **wanted.overrides},
-        wanted.seed if case.sample is None else None,
+        {**case.overrides, **request.overrides},
+        request.seed if case.sample is None else None,
         folder / case.name if folder is not None and case.name else folder,
-        page=wanted.page,
-        bag=wanted.bag,
+        page=request.page,
+        bag=request.bag,
         case=case.name,
         only_failed=keep == "failed",
         redraw=case.redraw,
-        fixed=wanted.overrides,
+        fixed=request.overrides,
     )

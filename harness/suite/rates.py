@@ -59,7 +59,7 @@ class Tally:
 
     Attributes:
         passed: Of `total`.
-        total: Samples that count: those behind an early end do not.
+        total: Samples that count; samples after an early stop do not.
         is_decided: Whether the sequential test has ended the sampling.
     """
 
@@ -85,25 +85,27 @@ class Tally:
             verdict = decided(self.passed, self.total, self._at_least, self._confidence)
             self.is_decided = verdict != "open"
 
-    def rate(self, wanted: int, invalid: int = 0) -> Rate:
+    def rate(self, planned: int, invalid: int = 0) -> Rate:
         """What the samples show; none show nothing.
 
         Args:
-            wanted: How many there would be without an early end.
+            planned: Number of samples without an early stop.
             invalid: Samples that could not be run, which do not count.
         """
-        passed, total, asked = self.passed, self.total, self._at_least
+        passed, total, required = self.passed, self.total, self._at_least
         low, high = wilson_interval(passed, total, self._confidence)
         verdict: RateVerdict = "open"
         if not total:
             verdict = "open"
-        elif asked is None:
+        elif required is None:
             verdict = "shown" if passed == total else "refuted"
         elif self.is_decided:
-            verdict = decided(passed, total, asked, self._confidence)
-        elif low >= asked:
+            verdict = decided(passed, total, required, self._confidence)
+        elif low >= required:
             verdict = "shown"
-        elif high < asked:
+        elif high < required:
             verdict = "refuted"
-        early = self.is_decided and total < wanted
-        return Rate(passed, total, low, high, self._confidence, asked, verdict, early, invalid)
+        early = self.is_decided and total < planned
+        return Rate(
+            passed, total, low, high, self._confidence, required, verdict, early, invalid=invalid
+        )

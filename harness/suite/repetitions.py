@@ -17,7 +17,7 @@ from harness.suite.cases import CaseJob
 
 
 class Repetitions:
-    """Has every run leave its record, and tells where two that differ part first.
+    """Keeps the record of every run, and finds the first difference between two runs.
 
     Attributes:
         jobs: Each case's runs, one after the other; only the first may be reported for good.

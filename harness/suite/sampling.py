@@ -25,8 +25,8 @@ class Sampling:
         for index, each in enumerate(plan):
             if each.rate_key is not None:
                 group = self._groups.setdefault(each.rate_key, _Group(each))
-                self._places[index] = group, group.wanted
-                group.wanted += 1
+                self._places[index] = group, group.planned
+                group.planned += 1
 
     def note(self, index: int, outcome: Outcome) -> None:
         """Take in an outcome."""
@@ -35,46 +35,46 @@ class Sampling:
             group.note(place, outcome)
 
     def is_needless(self, index: int) -> bool:
-        """Whether a sample would not count any more, or tell but the mistake of another."""
+        """Whether a sample no longer counts, or would only repeat another sample's mistake."""
         if index not in self._places:
             return False
         group, place = self._places[index]
         return group.is_needless(place)
 
     def groups(self) -> list[SampledRate]:
-        """Every group with its rate, from the samples that came in without a gap."""
+        """Every group with its rate, from the first samples without a missing number."""
         found: list[SampledRate] = []
         for key, group in self._groups.items():
-            rate = group.tally.rate(group.wanted, group.invalid)
+            rate = group.tally.rate(group.planned, group.invalid)
             outcome: Outcome = "passed" if rate.verdict == "shown" else "failed"
             found.append(SampledRate(*key, rate, outcome))
         return found
 
     def counted(self, results: Mapping[int, CaseResult]) -> dict[int, CaseResult]:
-        """Results without those of samples behind an early end."""
+        """Results without those of samples after an early stop."""
         return {index: each for index, each in results.items() if not self.is_needless(index)}
 
     def outcomes(self, results: Mapping[int, CaseResult]) -> list[Outcome]:
-        """What the whole comes to: cases, and groups of samples in place of failed samples."""
-        told: list[Outcome] = [group.outcome for group in self.groups()]
+        """Outcomes of the cases, with groups of samples in place of failed samples."""
+        outcomes: list[Outcome] = [group.outcome for group in self.groups()]
         for index, result in self.counted(results).items():
             if index not in self._places or result.outcome in ("invalid", "error"):
-                told.append(result.outcome)
-        return told
+                outcomes.append(result.outcome)
+        return outcomes
 
 
 class _Group:
     """Samples that share a rate.
 
     Attributes:
-        wanted: How many there are.
-        tally: Of those that came in without a gap, invalid ones left out.
+        planned: Number of samples in the plan.
+        tally: Count of the first samples without a missing number, invalid ones left out.
         invalid: Samples that could not be run; they are no evidence about the rate.
     """
 
     def __init__(self, sample: PlannedCase) -> None:
         said = sample.variation
-        self.wanted = 0
+        self.planned = 0
         self.tally = Tally(said.at_least, said.confidence, stop_early=said.stop_early)
         self._outcomes: dict[int, Outcome] = {}
         self._next = 0

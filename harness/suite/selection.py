@@ -31,7 +31,7 @@ def selects(expression: str, file: Path, header: Header, case: str = "") -> bool
 
 
 class _Parser:
-    """Recursive descent; every part is read, whatever came before it, so that mistakes show."""
+    """Recursive descent without short-circuits, so that every mistake is found."""
 
     def __init__(self, expression: str) -> None:
         self.expression = expression

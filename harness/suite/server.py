@@ -42,7 +42,7 @@ def main() -> None:
     gc.disable()  # imports make objects that stay
     try:
         preload(json.loads(sys.argv[3]))
-    except BaseException:  # noqa: BLE001 - whatever an import raises is told to the caller
+    except BaseException:  # noqa: BLE001 - the caller receives whatever an import raises
         send(control, ("broken", traceback.format_exc()))
         os._exit(1)
     gc.enable()
@@ -66,7 +66,7 @@ def preload(modules: Sequence[str]) -> None:
 
 
 def send(control: socket.socket, message: tuple[Any, ...], fds: Sequence[int] = ()) -> None:
-    """Send a pickled message, descriptors beside its first bytes."""
+    """Send a pickled message, with the descriptors attached to its first byte."""
     body = pickle.dumps(message)
     frame = len(body).to_bytes(FRAME_BYTES, "big") + body
     if fds:
@@ -163,13 +163,13 @@ class Server:
         for pid in list(self._jobs):
             if not os.waitid(os.P_PID, pid, os.WEXITED | os.WNOHANG | os.WNOWAIT):
                 continue
-            _kill_group(pid)  # what the child started and left behind
+            _kill_group(pid)  # processes that the child started and did not end
             _pid, status = os.waitpid(pid, 0)
             send(self._control, ("ended", self._jobs.pop(pid), os.waitstatus_to_exitcode(status)))
 
 
 def _prepare(call: bytes, arguments: bytes) -> None:
-    """Do here what every child would do; what cannot be done, the child that needs it tells."""
+    """Do work once that every child would repeat; an error appears in the child that needs it."""
     with contextlib.suppress(Exception):
         pickle.loads(call)(*pickle.loads(arguments))
     share()

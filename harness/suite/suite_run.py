@@ -1,4 +1,4 @@
-"""The runs of one command: every case as often as asked, and what they came to."""
+"""The runs of one command: every case with its repetitions, and their results."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from harness.recording.run import Outcome
 from harness.reporting.result import CaseResult, ProgressEvent
 from harness.reporting.sampled import SampledRate, with_starts
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
-from harness.suite.cases import Watcher, nobody_watches, run_here, run_isolated
+from harness.suite.cases import Watcher, ignore_progress, run_here, run_isolated
 from harness.suite.outcome import EXIT_CODES, INTERRUPTED_EXIT_CODE, exit_code
 from harness.suite.plan import PlannedCase
 from harness.suite.repetitions import Repetitions
@@ -20,7 +20,7 @@ from harness.suite.sampling import Sampling
 from harness.suite.stream import Stream
 from harness.suite.warm import WarmServer
 
-Told = Callable[[int, CaseResult], None]
+OnResult = Callable[[int, CaseResult], None]
 
 
 @dataclass(frozen=True)
@@ -70,14 +70,17 @@ class SuiteRun:
         self._sampling = Sampling(plan)
 
     def collect(
-        self, server: WarmServer, watch: Watcher = nobody_watches, told: Told = lambda *_: None
+        self,
+        server: WarmServer,
+        watch: Watcher = ignore_progress,
+        on_result: OnResult = lambda *_: None,
     ) -> None:
         """Run what is requested; an interruption keeps the results that there are.
 
         Args:
             server: Open, unless the cases run in this process.
-            watch: Hears of running cases.
-            told: Hears of ended ones.
+            watch: Called with the events of running cases.
+            on_result: Called with the result of each case that ends.
 
         Raises:
             HarnessError: The stream cannot be written.
@@ -97,7 +100,7 @@ class SuiteRun:
                     kept = self._take(index, result)
                     if stream is not None:
                         stream.write(self.jobs[index], kept)
-                    told(index, kept)
+                    on_result(index, kept)
         except KeyboardInterrupt:
             self.is_interrupted = True
         counted = self._sampling.counted(self.results) if self._is_sampled else self.results
@@ -145,7 +148,7 @@ class SuiteRun:
         """Whether a run's result is known, or would not count."""
         return index in self.results or (self._is_sampled and self._sampling.is_needless(index))
 
-    # -- what it came to ----------------------------------------------------------------------
+    # -- results -------------------------------------------------------------------------------
 
     @property
     def differences(self) -> dict[int, str]:

@@ -1,7 +1,7 @@
 """The cases of a scenario file: each value of a grid in turn, named ones, random samples.
 
 Read from the file's values alone, without judging them, so that collecting a thousand files takes
-a second; a file whose variation is wrong has one case, which tells its problems.
+a second; a file whose variation is wrong has one case, which reports the problems.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from harness.core.variation import MOST_CASES, MOST_SAMPLES, Cases, count_of
 DEFAULT_SAMPLES = 20
 LONGEST_NAME = 60
 SMALLEST_SHARE = 1e-12
-"""Of a normal distribution: farther out its inverse is not told from infinity."""
+"""Smallest tail share of a normal distribution whose quantile is still finite."""
 
 
 @dataclass(frozen=True)

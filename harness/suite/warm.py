@@ -124,7 +124,7 @@ class WarmServer:
         code += "from harness.suite.server import main; main()"
         paths = json.dumps([str(Path(entry).absolute()) for entry in sys.path])
         with theirs:
-            self._process = subprocess.Popen(  # a session of its own: Ctrl-C is ours alone
+            self._process = subprocess.Popen(  # own session: Ctrl-C reaches only the caller
                 [sys.executable, "-P", "-c", code,
                  str(theirs.fileno()), paths, json.dumps(self._modules)],
                 stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
@@ -134,11 +134,11 @@ class WarmServer:
     def prepare(self, function: Callable[..., None], *arguments: object) -> None:
         """Let the server itself do something before its next fork; every later job finds it done.
 
-        It must leave no threads behind; what it raises is not told.
+        The function must end all its threads; its exceptions are ignored.
         """
         self.open()
         assert self._control is not None
-        with contextlib.suppress(OSError):  # the server is gone: `wait` tells
+        with contextlib.suppress(OSError):  # the server is gone: `wait` reports it
             send(self._control, ("prepare", pickle.dumps(function), pickle.dumps(arguments)))
 
     def start(self, function: Callable[..., Any], *arguments: object) -> int:
@@ -157,13 +157,13 @@ class WarmServer:
         try:
             send(self._control, message, [writing, log.fileno()])
         except OSError:
-            pass  # the server is gone: `wait` tells
+            pass  # the server is gone: `wait` reports it
         finally:
             os.close(writing)
         return self._count
 
     def kill(self, job: int) -> None:
-        """End a job's process and all it started, at once; `wait` tells when it is gone."""
+        """Kill a job's process and its children; `wait` reports the end."""
         if self._control is not None and job in self._jobs:
             with contextlib.suppress(OSError):
                 send(self._control, ("kill", job))

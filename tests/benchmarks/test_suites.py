@@ -19,7 +19,7 @@ import pytest
 
 from harness.core.resources import data_folder
 from harness.suite.cases import run_here
-from harness.suite.plan import Wanted, planned
+from harness.suite.plan import RunRequest, planned_cases
 from harness.suite.suite_run import How, SuiteRun
 from harness.suite.warm import Ended, WarmServer
 
@@ -40,7 +40,7 @@ randomize:
 
 
 def suite_of(file, **words):
-    return SuiteRun(planned([file], Wanted()), How(**words))
+    return SuiteRun(planned_cases([file], RunRequest()), How(**words))
 
 
 def picks(folder, count):
@@ -114,7 +114,7 @@ def test_what_a_second_core_gives(tmp_path, tell):
 def test_what_isolation_costs_a_scenario(tmp_path, tell):
     count = 60
     file = blinks(tmp_path, count)
-    jobs = [each.job for each in planned([file], Wanted())]
+    jobs = [each.job for each in planned_cases([file], RunRequest())]
     next(run_here(jobs[:1]))  # imports
     wall, processor = ({"nothing": [], "here": [], "apart": []} for _ in range(2))
     with open_server() as server:
@@ -126,7 +126,7 @@ def test_what_isolation_costs_a_scenario(tmp_path, tell):
             processor[name].append(used(server) - used_before)
 
         for job in jobs:
-            suite = SuiteRun(planned([file], Wanted(cases=[job.case])), How())
+            suite = SuiteRun(planned_cases([file], RunRequest(cases=[job.case])), How())
             measure("nothing", lambda: in_own_process(server))
             measure("here", lambda job=job: list(run_here([job])))
             measure("apart", lambda suite=suite: suite.collect(server))
@@ -204,7 +204,7 @@ def test_memory_of_a_suite_of_two_thousand_samples(tmp_path, tell):
                 marks[len(suite.results)] = (resident(os.getpid()), resident(server.pid), largest)
                 largest = 0.0
 
-        suite.collect(server, told=told)
+        suite.collect(server, on_result=told)
     assert suite.outcome == "passed"
     heading = "memory over 2,000 samples, 2 workers"
     tell(heading, "samples", "suite", "fork server", "largest case since the line above")
@@ -220,7 +220,7 @@ def test_memory_of_a_process_that_runs_two_thousand_samples(tmp_path, tell):
         if len(suite.results) in MARKS:
             marks[len(suite.results)] = resident(os.getpid())
 
-    suite.collect(WarmServer(), told=told)
+    suite.collect(WarmServer(), on_result=told)
     assert suite.outcome == "passed"
     heading = "memory over 2,000 samples in one process"
     tell(heading, "samples", "resident")
