@@ -1,4 +1,4 @@
-"""Makes the planning ports for a composed robot."""
+"""Creates the planning ports for a composed robot."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from harness.robot.description import RobotDescription
 def make_planning(
     description: RobotDescription,
 ) -> tuple[CoalScene, PinocchioKinematics, VerifiedPlanner]:
-    """A planning scene with nothing but the robot, its kinematics, and a planner over both."""
+    """Create a planning scene that contains only the robot, its kinematics, and a planner."""
     scene = CoalScene(description)
     kinematics = PinocchioKinematics(description)
     return scene, kinematics, VerifiedPlanner(scene, kinematics)

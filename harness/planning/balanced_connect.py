@@ -1,4 +1,4 @@
-"""The fast planner: two trees, kept equally large, grown towards an even sequence of samples."""
+"""The fast planner: two trees of equal size that grow towards low-discrepancy samples."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ RANGE = 1.5
 """Longest edge [rad]."""
 
 DOMAIN = 4.0
-"""Radius of a vertex's domain once an edge from it was blocked [rad]; infinite before."""
+"""Radius of a vertex's domain after the first blocked edge from it [rad]; infinite before."""
 
 SMALLEST_DOMAIN = 1.0
 """Radius below which a domain does not shrink [rad]."""
 
 SHRINK = 1e-4
-"""Share by which a domain grows or shrinks with an edge that is free or blocked."""
+"""Share by which a free edge enlarges a domain and a blocked edge shrinks it."""
 
 SHORTEST = 1 / 16
-"""Share of the longest edge below which edges from a vertex in a tight place do not shrink."""
+"""Shortest edge, as a share of the longest; edges shrink at vertices in narrow passages."""
 
 PATIENCE = 64
-"""Samples outside all domains in a row after which one is taken all the same."""
+"""Consecutive samples outside the domains after which one is used anyway."""
 
 BEYOND = np.pi
-"""How far beyond start and goals samples are drawn [rad]: every way that an arm can stand."""
+"""How far beyond start and goals samples are drawn [rad]: a whole turn covers every posture."""
 
 _EdgeCheck = Callable[[FloatArray, FloatArray], bool]
 _PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37)
@@ -49,11 +49,14 @@ def search_connect(
     seed: int,
     parameters: Mapping[str, float],
 ) -> tuple[FloatArray | None, int, int, float]:
-    """Search as `search` says; returns waypoints or None, checks, vertices, gap.
+    """Search a path; the arguments are those of `search`.
 
-    RRT-Connect [1] with the smaller tree growing [2], vertices in front of obstacles kept from
-    being drawn beyond their surroundings [3], and samples from a Halton sequence, whose start is
-    all that the seed chooses. Distances are measured in the group's metric.
+    RRT-Connect [1] in which the smaller tree grows [2], with dynamic domains of the vertices near
+    obstacles [3] and samples from a Halton sequence, whose first index follows from the seed.
+    Distances are measured in the group's metric.
+
+    Returns:
+        Waypoints or None, the number of state checks, the number of vertices, and the gap.
 
     Raises:
         ValueError: The parameter is unknown.
@@ -117,10 +120,10 @@ def search_connect(
 
 
 def step_length(planner_id: str, parameters: Mapping[str, float]) -> float:
-    """The longest edge [rad], all that may be said of this planner.
+    """Read the longest edge [rad], the only parameter of this planner.
 
     Raises:
-        ValueError: The parameter is unknown, or its value is no length.
+        ValueError: The parameter is unknown, or its value is not a positive length.
     """
     for name in parameters:
         if name not in PARAMETERS:
@@ -134,7 +137,7 @@ def step_length(planner_id: str, parameters: Mapping[str, float]) -> float:
 
 
 def sampling_bounds(space: GroupSpace, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Where samples are drawn: inside the limits, joints that turn up to `BEYOND` the ends."""
+    """Sampling box inside the joint limits; revolute joints are sampled up to `BEYOND` the ends."""
     beyond = np.where(space.wraps, BEYOND, np.inf)
     lower = np.maximum(space.lower, ends.min(axis=0) - beyond)
     upper = np.minimum(space.upper, ends.max(axis=0) + beyond)
@@ -142,13 +145,15 @@ def sampling_bounds(space: GroupSpace, ends: FloatArray) -> tuple[FloatArray, Fl
 
 
 def halton(first: int, count: int, lower: FloatArray, upper: FloatArray) -> FloatArray:
-    """Points of the Halton sequence in a box, from an index on, shape (count, dof).
+    """Compute points of the Halton sequence in a box, from an index on, shape (count, dof).
 
     Raises:
-        ValueError: More dimensions than primes are listed.
+        ValueError: There are more dimensions than primes in the list.
     """
     if len(lower) > len(_PRIMES):
-        raise ValueError(f"more than {len(_PRIMES)} joints")
+        raise ValueError(
+            f"the group has {len(lower)} joints; the planner supports at most {len(_PRIMES)}"
+        )
     points = np.empty((count, len(lower)))
     for column, base in enumerate(_PRIMES[: len(lower)]):
         index = np.arange(first, first + count)
@@ -192,7 +197,7 @@ class _Tree:
         return index, float(np.sqrt(squares[index]))
 
     def domain(self, vertex: int) -> float:
-        """How far samples may be that a vertex is drawn to [rad]."""
+        """Radius within which a vertex grows towards a sample [rad]."""
         return self._domains[vertex]
 
     def grow(
@@ -200,8 +205,8 @@ class _Tree:
     ) -> int | None:
         """Add a vertex one step from another towards a sample; None when the edge is blocked.
 
-        The steps from a vertex get shorter with every edge that is blocked, and longer again
-        behind those that are free: so a tree finds its way out of a tight place.
+        Every blocked edge shortens the steps from its vertex, and every free edge lengthens the
+        steps from the new one, so that a tree leaves a narrow passage.
         """
         if distance < 1e-9:
             return None
@@ -217,7 +222,7 @@ class _Tree:
         return self._add(there, near, min(2 * step, self._step))
 
     def connect(self, point: FloatArray, is_free: _EdgeCheck) -> int | None:
-        """Go step by step to a point of the other tree; the vertex that reached it, or None."""
+        """Extend step by step to a point of the other tree; the vertex that reaches it, or None."""
         near, distance = self.nearest(point)
         while True:
             here = self.points[near]
@@ -248,7 +253,7 @@ def _gap(first: _Tree, second: _Tree) -> float:
 
 
 def _ending_exactly(path: FloatArray, goals: Sequence[FloatArray]) -> FloatArray:
-    """The path with its last point put on the goal that it reached, to the bit."""
+    """The path with its last point set exactly to the goal that it reached."""
     away = [float(np.max(np.abs(path[-1] - goal))) for goal in goals]
     path[-1] = goals[int(np.argmin(away))]
     return path

@@ -10,18 +10,18 @@ _LARGEST_SHARE = 0.45  # of a segment that one blend may take
 
 
 class BlendedPath:
-    """Straight segments joined by parabolic blends; on the lines elsewhere.
+    """Straight segments joined by parabolic blends.
 
     Within `reach` of a corner (measured along both segments) the path is the parabola tangent to
     both; it leaves the corner by at most a quarter of `reach` times the change of direction.
 
     Attributes:
-        breaks: Parameters where a line meets a blend, shape (K,), from 0 to `length`.
-        length: Of the parameter: of the polyline [rad].
+        breaks: Parameters at which lines and blends meet, shape (K,), from 0 to `length`.
+        length: The length of the polyline, the range of the parameter [rad].
     """
 
     def __init__(self, waypoints: FloatArray, deviation: float) -> None:
-        """Round the corners of waypoints (N, dof), leaving them by at most `deviation` [rad]."""
+        """Round the corners of waypoints (N, dof), with at most `deviation` from them [rad]."""
         self._waypoints = waypoints
         segments = np.diff(waypoints, axis=0)
         lengths = np.linalg.norm(segments, axis=1)
@@ -39,7 +39,7 @@ class BlendedPath:
     def evaluate(self, parameter: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Positions and their first two derivatives, (M, dof) each, at parameters (M,).
 
-        Where the second derivative jumps its value from above is given (from below at the end).
+        Where the second derivative jumps, its value is the limit from above (at the end: below).
         """
         s = np.atleast_1d(np.asarray(parameter, dtype=float))
         segment = np.clip(

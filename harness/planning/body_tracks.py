@@ -1,4 +1,4 @@
-"""Where bodies of a recorded run were, sample by sample, and how far they moved."""
+"""Poses of the bodies of a recorded run at every sample, and how far they move."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -24,8 +24,8 @@ class Track:
     """A rigid body over N samples.
 
     Attributes:
-        rotations: T_world_body's, shape (N, 3, 3).
-        translations: T_world_body's [m], shape (N, 3); NaN while absent.
+        rotations: The rotations of T_world_body, shape (N, 3, 3).
+        translations: The translations of T_world_body [m], shape (N, 3); NaN while absent.
     """
 
     rotations: FloatArray
@@ -33,7 +33,7 @@ class Track:
 
     @cached_property
     def turns(self) -> FloatArray:
-        """Angle turned between neighbouring samples [rad], shape (N - 1,)."""
+        """Rotation angle between neighbouring samples [rad], shape (N - 1,)."""
         steps = np.diff(self.rotations, axis=0).reshape(-1, 9)
         chords = np.sqrt(np.einsum("ij,ij->i", steps, steps)) / (2 * np.sqrt(2))
         return 2 * np.arcsin(np.minimum(chords, 1.0))
@@ -82,10 +82,10 @@ def object_track(
     signals: Signals,
     links: LinkPoses,
 ) -> Track:
-    """An object's track: recorded by the physics, else as the planning scene believes it.
+    """An object's track: as the physics recorded it, otherwise as the planning scene assumes it.
 
-    An object of the planning scene alone stands where it was added, moves with the link that holds
-    it, and stays where it was let go.
+    An object of the planning scene alone stays where it is added, moves with the link to which it
+    is attached, and stays where it is detached.
     """
     times = signals.times
     recorded = signals.object_poses.get(record.name)
@@ -117,14 +117,14 @@ def object_track(
 
 @dataclass(frozen=True, eq=False)
 class TrackedShape:
-    """A collision shape of a body, with a sphere about it.
+    """A collision shape of a body, with its bounding sphere.
 
     Attributes:
-        body: Name of its body.
-        geometry: Coal's.
-        pose: T_body_shape, Coal's.
-        center: Of the sphere, in the body frame [m].
-        radius: Of the sphere [m]; inf for a half space.
+        body: The name of the body.
+        geometry: The shape as Coal's geometry.
+        pose: T_body_shape as Coal's transform.
+        center: The bounding sphere's centre in the body frame [m].
+        radius: The bounding sphere's radius [m]; inf for a half space.
     """
 
     body: str
@@ -135,7 +135,7 @@ class TrackedShape:
 
 
 def tracked_shapes(body: str, shapes: Sequence[Shape]) -> tuple[TrackedShape, ...]:
-    """A body's shapes, ready to be measured."""
+    """Convert a body's shapes for distance measurements."""
     found = []
     for shape in shapes:
         geometry = coal_geometry(shape)
@@ -154,14 +154,14 @@ def tracked_shapes(body: str, shapes: Sequence[Shape]) -> tuple[TrackedShape, ..
 
 
 def relative(first: Track, second: Track) -> Track:
-    """Track of the first body as seen from the second: T_second_first."""
+    """Track of the first body in the frame of the second: T_second_first."""
     turned = np.swapaxes(second.rotations, 1, 2)
     offset = (first.translations - second.translations)[:, :, None]
     return Track(turned @ first.rotations, (turned @ offset)[:, :, 0])
 
 
 def travel(seen: Track, shape: TrackedShape) -> FloatArray:
-    """Path length that no point of a shape exceeds, summed from the first sample [m], shape (N,).
+    """Bound the path length of every point of a shape since the first sample [m], shape (N,).
 
     Between two samples a point of the shape moves at most as far as the centre of its sphere plus
     the sphere's radius times the angle turned.

@@ -1,4 +1,4 @@
-"""Inverse kinematics in an explanation: each branch and what removed it."""
+"""Explains inverse kinematics: each branch, and why it is ruled out."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ import numpy as np
 from harness.planning.checker import touch_facts
 from harness.planning.goal_study import GoalStudy
 from harness.planning.ik_numeric import LinkGoal
-from harness.planning.nearest_pose import NearestPose, nearest_free_shift
+from harness.planning.nearest_pose import SHIFTS, NearestPose, nearest_free_shift
 from harness.planning.stage_request import Finding, StageRequest, nearest_facts
 from harness.planning.wording import count, joint_value, length, padding_advice, touches
 from harness.recording.explanation import Stage
 
 MOST_DETAILS = 8
-"""Branches that are told one by one."""
+"""Number of branches that are listed individually."""
 
 _METHODS = {
     "ur": "closed form of Universal Robots",
@@ -25,7 +25,7 @@ _METHODS = {
 
 
 def branches_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> Finding:
-    """What became of every branch: free, in which collision, beyond which limit by how much."""
+    """The result of every branch: free, in collision, or beyond a joint limit, with the numbers."""
     answer = study.answer
     kind = f"{_METHODS[answer.method]}, solved for the {answer.task}"
     if not answer.solutions and not answer.outside_limits:
@@ -33,22 +33,22 @@ def branches_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) ->
     free = sum(not branch.touches for branch in study.branches)
     parts = [f"{free} free", f"{len(study.branches) - free} in collision"]
     parts.append(f"{len(answer.outside_limits)} beyond a joint limit")
-    parts.append(f"{study.unchecked} farther ones not looked at")
-    told = [part for part in parts if not part.startswith("0 ") or part == "0 free"]
+    parts.append(f"{study.unchecked} more distant ones not checked")
+    counted = [part for part in parts if not part.startswith("0 ") or part == "0 free"]
     total = count(len(answer.solutions) + len(answer.outside_limits), "branch")
-    text = f"{total} ({kind}): {', '.join(told)}"
+    text = f"{total} ({kind}): {', '.join(counted)}"
     details = _branch_lines(request, study)
     if free:
         return Finding(Stage("inverse kinematics", "passed", text, "", details))
     if not study.branches:
         stage = Stage("inverse kinematics", "failed", text, "NO_IK_SOLUTION", details)
-        return Finding(stage, {}, "turn the goal or move it, so that no joint meets its limit")
+        return Finding(stage, {}, "turn or move the goal, so that every joint is inside its limits")
     stage = Stage("inverse kinematics", "failed", text, "GOAL_IN_COLLISION", details)
     return Finding(stage, *_in_collision(request, goal, study))
 
 
 def _branch_lines(request: StageRequest, study: GoalStudy) -> tuple[str, ...]:
-    """Each branch and what removed it."""
+    """Describe each branch, and why it is ruled out."""
     lines = [
         f"{branch.name or f'solution {number}'}: "
         + (touches(branch.touches, most=1) if branch.touches else "free")
@@ -68,7 +68,7 @@ def _branch_lines(request: StageRequest, study: GoalStudy) -> tuple[str, ...]:
 def _in_collision(
     request: StageRequest, goal: LinkGoal, study: GoalStudy
 ) -> tuple[dict[str, Any], str]:
-    """The nearest branch as it collides, and the shortest way out."""
+    """The collision of the nearest branch, and the shortest move that frees the goal."""
     branch = study.branches[0]
     pose = request.kinematics.link_pose(request.space.whole(branch.positions), goal.link)
     nearest = NearestPose(branch.positions, pose, *branch.residual)
@@ -93,7 +93,12 @@ def _in_collision(
         lambda positions: not request.touches(positions),
     )
     if found is None:
-        return facts, f"nothing within a hand's breadth is free: move the goal farther; {otherwise}"
+        farthest = length(SHIFTS[-1])
+        return (
+            facts,
+            f"no position within {farthest} along a world axis is free: move the goal farther; "
+            f"{otherwise}",
+        )
     shift, positions = found
     facts["nearest_free"] = {
         "shift": shift.tolist(),

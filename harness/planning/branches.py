@@ -1,4 +1,4 @@
-"""Names of inverse kinematics' branches: which way an arm stands at joint positions."""
+"""Names the branches of inverse kinematics: the posture of an arm at joint positions."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.planning.robot_model import GroupSpace
 
-_UNTOLD = 1e-6  # [m] an elbow this near the line from shoulder to wrist is neither up nor down
+_STRAIGHT = 1e-6  # [m] an elbow this near the line from shoulder to wrist is neither up nor down
 
 
 class _Poses(Protocol):
@@ -18,16 +18,16 @@ class _Poses(Protocol):
 
 
 def branch_name(kinematics: _Poses, space: GroupSpace, method: str, positions: FloatArray) -> str:
-    """How an arm with named branches stands: `forwards, elbow up, wrist_2_joint < 0`.
+    """Name the posture of an arm: `forwards, elbow up, wrist_2_joint < 0`.
 
     Forwards is the side to which the arm is stretched at zero; up is along joint 1's axis. Both
-    need a turntable (joint 1) with two links behind it (joints 2 and 3), which analytic solvers do.
+    require a turntable (joint 1) followed by two links (joints 2 and 3), as for analytic solvers.
 
     Args:
-        kinematics: Of the robot.
-        space: The group.
-        method: Of the solver; a numeric one has no branches, and the name is empty.
-        positions: Of the group.
+        kinematics: The robot's kinematics.
+        space: The planning group.
+        method: The solver's name; a numeric solver has no branches, so the name is empty.
+        positions: Group positions.
     """
     if method == "numeric":
         return ""
@@ -40,7 +40,7 @@ def branch_name(kinematics: _Poses, space: GroupSpace, method: str, positions: F
     normal = up - reach * float(up @ reach) / max(float(reach @ reach), 1e-12)
     rise = float((elbow - shoulder) @ normal)
     words.append(
-        "elbow straight" if abs(rise) < _UNTOLD else f"elbow {'up' if rise > 0 else 'down'}"
+        "elbow straight" if abs(rise) < _STRAIGHT else f"elbow {'up' if rise > 0 else 'down'}"
     )
     if method == "ur":
         turned = float(np.sin(positions[4]))

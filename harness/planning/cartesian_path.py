@@ -1,4 +1,4 @@
-"""Plans MoveIt's Cartesian path: straight through waypoints as far as goes, and says how far."""
+"""Plans MoveIt's Cartesian path: lines through waypoints, and the fraction that is feasible."""
 
 from __future__ import annotations
 
@@ -20,22 +20,23 @@ from harness.planning.tracing import STEP_ANGLE, STEP_LENGTH, Trace, trace
 from harness.ports import CartesianPathOptions, Goal, MotionPlan
 
 CORNER_SHARE = 0.45
-"""Of the shorter neighbouring line that the rounding of a corner takes at most."""
+"""Largest part of the shorter adjacent line that the rounding of a corner may use."""
 
-_NOWHERE = 1e-9  # [m, rad]
+_NO_MOTION = 1e-9  # [m, rad]
 
 
 def plan_waypoints(
-    motions: LinkMotions, goals: Sequence[Goal], wanted: CartesianPathOptions
+    motions: LinkMotions, goals: Sequence[Goal], path_options: CartesianPathOptions
 ) -> MotionPlan:
-    """A verified motion of the link through poses, its corners rounded within the precision.
+    """Plan a verified motion of the link through poses, with corners rounded within the precision.
 
     Raises:
-        PlanningFailed: PLANNING_FAILED, when less than the least fraction can be followed;
-            INVALID_MOTION_PLAN, when the timed motion leaves its lines farther than the precision.
+        PlanningFailed: PLANNING_FAILED, when less than the required fraction is feasible;
+            INVALID_MOTION_PLAN, when the timed motion deviates from its lines by more than the
+            precision.
     """
     task = motions.task
-    legs, lines, steps, stopped = _follow(motions, goals, wanted)
+    legs, lines, steps, stopped = _follow(motions, goals, path_options)
     whole = sum(_amount(line) for line in lines)
     done = sum(_amount(leg.path) for leg in legs if isinstance(leg.path, Line))
     fraction = 1.0 if stopped is None else done / whole
@@ -43,17 +44,17 @@ def plan_waypoints(
         "fraction": fraction,
         "largest_joint_step": max(steps, default=0.0),
     }
-    if fraction < wanted.min_fraction or not legs:
+    if fraction < path_options.min_fraction or not legs:
         why = "" if stopped is None else f": {stopped.stop}"
-        least = f"{100 * wanted.min_fraction:.0f} %"
+        least = f"{100 * path_options.min_fraction:.0f} %"
         raise PlanningFailed(
             "PLANNING_FAILED",
-            f"{lines[0].link} can follow {100 * fraction:.1f} % of its way, at least {least} are "
-            f"asked for{why}",
-            {**result, "min_fraction": wanted.min_fraction}
+            f"{lines[0].link} can follow {100 * fraction:.1f} % of its path, at least {least} is "
+            f"required{why}",
+            {**result, "min_fraction": path_options.min_fraction}
             | ({} if stopped is None else {"reason": stopped.reason, **stopped.facts}),
         )
-    runs = runs_of(legs, _radii(legs, wanted.precision), motions)
+    runs = runs_of(legs, _radii(legs, path_options.precision), motions)
     explanation = {
         "lowered_margins": list(task.checker.lowered),
         "stopped_by": "" if stopped is None else stopped.stop,
@@ -64,11 +65,11 @@ def plan_waypoints(
     trajectory = time_runs(runs, motions)
     task.accept(trajectory, end, "the Cartesian path")
     result["deviation"] = _deviation(legs, trajectory, motions)
-    if result["deviation"] > wanted.precision:
+    if result["deviation"] > path_options.precision:
         raise PlanningFailed(
             "INVALID_MOTION_PLAN",
-            f"{lines[0].link} would leave its lines by {1000 * result['deviation']:.2f} mm, more "
-            f"than the precision of {1000 * wanted.precision:.2f} mm",
+            f"{lines[0].link} would deviate from its lines by {1000 * result['deviation']:.2f} mm, "
+            f"more than the precision of {1000 * path_options.precision:.2f} mm",
             result,
         )
     waypoints = np.concatenate([leg.positions for leg in legs])
@@ -77,9 +78,9 @@ def plan_waypoints(
 
 
 def _follow(
-    motions: LinkMotions, goals: Sequence[Goal], wanted: CartesianPathOptions
+    motions: LinkMotions, goals: Sequence[Goal], path_options: CartesianPathOptions
 ) -> tuple[list[Leg], list[Line], list[float], Trace | None]:
-    """Lines that were followed, all lines, largest joint steps, and what stopped the last line."""
+    """The lines followed, all lines, the largest joint steps, and the trace that was stopped."""
     task = motions.task
     rates = LinkRates.of(task.options.cartesian_limits, task.options)
     legs: list[Leg] = []
@@ -93,18 +94,18 @@ def _follow(
         pose = pose or motions.pose(start, target.link)
         line = Line.between(target.link, pose, target.pose)
         pose = target.pose
-        if line.length < _NOWHERE and line.angle < _NOWHERE:
+        if line.length < _NO_MOTION and line.angle < _NO_MOTION:
             continue
         lines.append(line)
         if stopped is not None:
             continue
-        traced = trace(line, task.checker, start, wanted.max_step, wanted.jump)
+        traced = trace(line, task.checker, start, path_options.max_step, path_options.jump)
         if not traced.reached_end:
             stopped = traced
             if traced.share <= 0:
                 continue
             line = line.part(traced.share)
-            traced = trace(line, task.checker, start, wanted.max_step, wanted.jump)
+            traced = trace(line, task.checker, start, path_options.max_step, path_options.jump)
             if not traced.reached_end:
                 continue
         if task.space.dof < 6:
@@ -117,12 +118,12 @@ def _follow(
 
 
 def _amount(line: Line) -> float:
-    """How much of the path a line is: its length, or its turn as the steps count it [m]."""
+    """The size of a line: its length, or its rotation converted by the ratio of the steps [m]."""
     return max(line.length, line.angle * STEP_LENGTH / STEP_ANGLE)
 
 
 def _radii(legs: Sequence[Leg], precision: float) -> list[float]:
-    """How far before each corner it may be cut: half of it is farther off than any point is."""
+    """Blend radius of each corner; the deviation is less than half of it."""
     lengths = [leg.path.length if leg.path is not None else 0.0 for leg in legs]
     return [
         min(1.8 * precision, CORNER_SHARE * min(before, after))
@@ -131,7 +132,7 @@ def _radii(legs: Sequence[Leg], precision: float) -> list[float]:
 
 
 def _deviation(legs: Sequence[Leg], trajectory: JointTrajectory, motions: LinkMotions) -> float:
-    """Largest distance of a sample's link from the nearest of the lines [m]."""
+    """Largest distance of the link from the nearest line over all samples [m]."""
 
     def off(positions: FloatArray) -> float:
         pose = motions.pose(positions, legs[0].link)

@@ -1,4 +1,4 @@
-"""Lays a group's motion and the scene's covers out in arrays, to certify edges with."""
+"""Arranges a group's motion and the scene's sphere covers in arrays that certify edges."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -21,19 +21,19 @@ from harness.planning.scene import Body, BodyPair, CollisionModel
 from harness.robot.description import Joint
 
 BOX, CYLINDER, CAPSULE, SPHERE, PLANE, MESH = range(6)
-"""Kinds of shapes, as the compiled stage knows them."""
+"""Shape kinds of the compiled stage."""
 
 ROUNDING = 1e-5
-"""What is left undecided about a margin, for Coal's own tolerance [m]."""
+"""Band around a margin that is left undecided, because of Coal's tolerance [m]."""
 
 
 @dataclass(frozen=True, eq=False)
 class MotionArrays:
-    """What a motion of one group in one scene is checked with; `edge_kernel.certify` explains each.
+    """Arrays that check a motion of one group in one scene; `edge_kernel.certify` explains each.
 
     Attributes:
-        columns: Of the moving joints, in description order.
-        rows: Of Coal's collision pairs, by check.
+        columns: The indices of the moving joints in description order.
+        rows: The indices of Coal's collision pairs for each check.
     """
 
     columns: IntArray
@@ -77,7 +77,7 @@ class MotionArrays:
 def motion_arrays(
     model: CollisionModel, space: GroupSpace, margins: Mapping[tuple[str, str], float]
 ) -> MotionArrays:
-    """Arrays of a scene for the motions of a group; pairs that move together are left out."""
+    """Create the arrays of a scene for a group's motions; pairs that move together are left out."""
     moving = MovingJoints(space)
     layout = _layout(model, moving)
     margin = np.array([margins[pair.first, pair.second] for pair in model.pairs])[layout.pairs]
@@ -102,13 +102,13 @@ def motion_arrays(
 
 
 class MovingJoints:
-    """The joints that a group's motion turns, those in between taken as fixed.
+    """The joints that a group's motion moves; all other joints are fixed.
 
     Attributes:
-        columns: Their places in description order, shape (M,).
+        columns: Their indices in description order, shape (M,).
         parent: The moving joint before each, or -1, shape (M,).
         chain: Pose on the parent at zero (12), axis (3), 1 if prismatic, shape (M, 16).
-        above: Of each Pinocchio joint, the moving joint that carries it, or -1.
+        above: For each Pinocchio joint, the moving joint that carries it, or -1.
     """
 
     def __init__(self, space: GroupSpace) -> None:
@@ -144,13 +144,13 @@ class MovingJoints:
         self.chain: FloatArray = np.array(rows).reshape(-1, 16)
 
     def _seen(self, moving: int, joint: int) -> FloatArray:
-        """Pose of a Pinocchio joint on a moving joint (-1: in the world), shape (4, 4)."""
+        """Pose of a Pinocchio joint relative to a moving joint (-1: the world), shape (4, 4)."""
         if moving < 0:
             return self._poses[joint]
         return np.linalg.inv(self._poses[self._at[moving]]) @ self._poses[joint]
 
     def body_poses(self, bodies: tuple[Body, ...]) -> FloatArray:
-        """Poses of bodies on the moving joints that carry them, shape (B, 12)."""
+        """Poses of bodies relative to the moving joints that carry them, shape (B, 12)."""
         rows = [_flat(self._seen(self.above[body.joint], body.joint)) for body in bodies]
         return np.array(rows).reshape(-1, 12)
 
@@ -165,7 +165,7 @@ class MovingJoints:
 
 @dataclass(frozen=True, eq=False)
 class _Trees:
-    """Spheres of all bodies (K, 5), where their subtrees end (K,), and each body's range (B, 2)."""
+    """Spheres of all bodies (K, 5), the ends of their subtrees (K,), and body ranges (B, 2)."""
 
     nodes: FloatArray
     skip: IntArray
@@ -173,19 +173,19 @@ class _Trees:
 
 
 class _Layout:
-    """What is checked against what: numbers of covers, parts and keys.
+    """The checks of a scene as indices of covers, parts and keys.
 
     Attributes:
-        nodes: Spheres of all bodies.
-        skip: Where their subtrees end.
-        body_rows: Of each body: the joint that carries it, and its range of spheres.
-        parts: Of the shapes that spheres are checked against: body, kind, first sphere.
-        part_data: Their poses and sizes.
-        keys: Which joints move two bodies against each other.
-        joints: Of the keys.
-        checks: Body with the spheres, part of the other, key.
-        pairs: Of each check, the place of its pair among the scene's.
-        rows: Of each check, Coal's collision pairs.
+        nodes: The spheres of all bodies.
+        skip: The ends of their subtrees.
+        body_rows: For each body, the joint that carries it and its range of spheres.
+        parts: For each shape that spheres are checked against: body, kind, first sphere.
+        part_data: The poses and sizes of the parts.
+        keys: The joints that move two bodies relative to each other, as ranges of `joints`.
+        joints: The joints of all keys.
+        checks: For each check, the body with the spheres, the other body's part, and the key.
+        pairs: For each check, the index of its pair in the scene.
+        rows: For each check, the indices of Coal's collision pairs.
     """
 
     def __init__(self, model: CollisionModel, moving: MovingJoints) -> None:
@@ -222,7 +222,7 @@ class _Layout:
                 self.rows.append(pair_rows)
 
     def _checks_of(self, pair: BodyPair) -> list[tuple[int, int, int, tuple[int, ...]]]:
-        """Body with the tree, part of the other, key and Coal's rows, for each part."""
+        """For each part: the body with the tree, the other body's part, the key and Coal's rows."""
         first, second = self._index[pair.first], self._index[pair.second]
         if self._carrier[first] == self._carrier[second]:
             return []
@@ -231,11 +231,11 @@ class _Layout:
             key=lambda b: (self._has_plane[b], self._only_solid[b], self._radius[b]),
         )
         by_shape: dict[int, list[int]] = {}
-        mine = set(self._bodies[body].geometries)
+        tree_geometries = set(self._bodies[body].geometries)
         for row in pair.pairs:
             ends = self._geometry.collisionPairs[row]
-            theirs = ends.second if ends.first in mine else ends.first
-            by_shape.setdefault(int(theirs), []).append(row)
+            geometry = ends.second if ends.first in tree_geometries else ends.first
+            by_shape.setdefault(int(geometry), []).append(row)
         key = self._key(body, other)
         if not self._only_solid[other]:
             return [(body, self._tree_part(other), key, tuple(pair.pairs))]
@@ -245,7 +245,7 @@ class _Layout:
         ]
 
     def _solid_parts(self, body: int) -> list[tuple[int, int]]:
-        """Part and Coal's geometry of each shape of a body."""
+        """The part and Coal's geometry index of each shape of a body."""
         if body not in self._parts_of:
             found = []
             for geometry, shape in zip(
@@ -259,7 +259,7 @@ class _Layout:
         return self._parts_of[body]
 
     def _tree_part(self, body: int) -> int:
-        """The part that is a body's whole tree."""
+        """The part that stands for a body's whole tree."""
         if body not in self._parts_of:
             self._parts_of[body] = [(len(self.parts), -1)]
             self.parts.append((body, MESH, int(self.body_rows[body, 1])))
@@ -267,17 +267,17 @@ class _Layout:
         return self._parts_of[body][0][0]
 
     def _key(self, body: int, other: int) -> int:
-        """The joints that move a body against another one's carrier."""
+        """The joints that move a body relative to the joint that carries another."""
         carrier = self._carrier[other]
         if (body, carrier) in self._key_of and carrier < 0:
             return self._key_of[body, carrier]
-        mine, theirs = self._moving.path(self._carrier[body]), self._moving.path(carrier)
-        own = [joint for joint in mine if joint not in theirs]
-        its = [joint for joint in theirs if joint not in mine]
+        first, second = self._moving.path(self._carrier[body]), self._moving.path(carrier)
+        near = [joint for joint in first if joint not in second]
+        far = [joint for joint in second if joint not in first]
         start = len(self.joints)
-        self.joints += own + its
-        middle, end = start + len(own), start + len(own) + len(its)
-        self.keys.append((body if own else -1, other if its else -1, start, middle, middle, end))
+        self.joints += near + far
+        middle, end = start + len(near), start + len(near) + len(far)
+        self.keys.append((body if near else -1, other if far else -1, start, middle, middle, end))
         self._key_of[body, carrier] = len(self.keys) - 1
         return len(self.keys) - 1
 
@@ -289,7 +289,7 @@ _layout_cache: WeakKeyDictionary[CollisionModel, dict[tuple[int, ...], _Layout]]
 
 
 def _layout(model: CollisionModel, moving: MovingJoints) -> _Layout:
-    """The layout of a scene for one set of moving joints; made once for both."""
+    """The cached layout of a scene for one set of moving joints."""
     layouts = _layout_cache.setdefault(model, {})
     key = (*moving.above, *moving.parent.tolist())
     if key not in layouts:
@@ -298,7 +298,7 @@ def _layout(model: CollisionModel, moving: MovingJoints) -> _Layout:
 
 
 def _trees(model: CollisionModel) -> _Trees:
-    """The trees of a scene's bodies, one after the other; made once for a scene."""
+    """The concatenated sphere trees of a scene's bodies; cached per scene."""
     if model not in _cover_cache:
         covers = [cover_shapes(body.shapes) if _has_tree(body) else None for body in model.bodies]
         sizes = [0 if cover is None else len(cover.outer) for cover in covers]
@@ -314,7 +314,7 @@ def _trees(model: CollisionModel) -> _Trees:
 
 
 def _has_tree(body: Body) -> bool:
-    """Whether a body is compared as a tree: whatever moves, and meshes; never planes."""
+    """Whether a body has a sphere tree: movable bodies and meshes have one, planes have none."""
     kinds = {type(shape.geometry) for shape in body.shapes}
     return Plane not in kinds and (body.joint != 0 or Mesh in kinds)
 
@@ -336,7 +336,7 @@ def _kind_and_size(geometry: Geometry) -> tuple[int, FloatArray]:
 
 
 def _joint_motion(joint: Joint, value: float) -> FloatArray:
-    """What a joint's position does in its own frame, shape (4, 4)."""
+    """The transform of a joint at a position, in the joint's frame, shape (4, 4)."""
     axis = np.asarray(joint.axis, dtype=float)
     motion = np.eye(4)
     if joint.kind == "prismatic":

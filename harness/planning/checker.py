@@ -1,4 +1,4 @@
-"""Checks states and whole edges of a group's motion against the scene, and counts the states."""
+"""Checks states and edges of a group's motion for collisions, and counts the states."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -20,56 +20,56 @@ from harness.planning.certificates import MotionArrays, motion_arrays
 from harness.planning.compiled import compiled_stage, count_states
 from harness.planning.robot_model import GroupSpace
 from harness.planning.scene import CoalScene
-from harness.planning.stretches import Stretches, coarse_to_fine
+from harness.planning.stretches import ClearanceCertificates, coarse_to_fine
 from harness.ports import Touch
 
 DEEPEST_START = 0.002
-"""Penetration at the start of a motion above which it is refused [m]."""
+"""Penetration at the start above which a motion is rejected [m]."""
 
 FEW_OPEN = 3
-"""States and pairs left open after which Coal is asked first whether one of them is blocked."""
+"""Number of undecided states and pairs at which Coal first checks whether one is blocked."""
 
 MOST_OPEN = 4096
-"""States and pairs that the covers may leave open on an edge; more are checked all by Coal."""
+"""Largest number of undecided states and pairs on an edge; with more, Coal checks all states."""
 
 MOST_SINGLE_PAIRS = 12
-"""Pairs of shapes of one state that are checked one by one; more go through the broad phase."""
+"""Largest number of shape pairs of one state that are checked without the broad phase."""
 
-_MEASURED = 1e-4  # [m] beyond a limit, what collision checks find is measured
+_MEASURED = 1e-4  # [m] extra margin within which found pairs are measured
 
 TOUCHING = 0.0001
-"""Gap at the start of a motion below which a pair touches, as an object does its table [m]."""
+"""Distance at the start below which a pair is in contact, like an object and its table [m]."""
 
 MARGIN_SLACK = 0.0005
-"""A pair that is too near at the start may come this much nearer during the motion [m]."""
+"""How much nearer a pair may get that is below its margin at the start [m]."""
 
 
 class MotionChecker:
     """Answers whether a group's joint positions, and straight lines between them, are free.
 
-    Every pair keeps its margin: the padding between robot and objects, zero elsewhere. A pair
-    that is nearer than that at the start (an object resting on its table, a finger beside what it
-    will grasp) keeps its distance at the start less `MARGIN_SLACK` instead: it may leave, it may
-    slide along, it may not go deeper. What does not touch at the start never does.
+    Every pair keeps its margin: the padding between robot and objects, zero for other pairs. A pair
+    that is nearer at the start (an object resting on its table, a finger next to the object that it
+    grasps) keeps its start distance minus `MARGIN_SLACK` instead: it may separate and slide, but
+    not penetrate deeper. A pair without contact at the start never gets into contact.
 
-    Whole edges are checked in two stages where the compiled one is there: covers certify stretches
-    of the motion as free, or a state as blocked; Coal's exact shapes decide what they leave open.
-    Where it is not, states whose margins are wide speak for those around them (`Stretches`). An
-    edge is free when all its states are, at the spacing asked for, and it counts as so many states,
-    whichever stage decided: verdicts, counts and plans are the same with and without.
+    With the compiled stage, edges are checked in two stages: sphere covers certify parts of the
+    motion as free or a state as blocked, and Coal's exact shapes decide what remains undecided.
+    Without it, states with enough clearance certify their neighbourhood (`ClearanceCertificates`).
+    An edge is free when all its states at the requested spacing are free, and it counts as that
+    many states in either case: results, counts and plans do not depend on the stage.
 
     Attributes:
-        checks: States checked so far.
-        lowered: Pairs whose margin was lowered: `pair`, `start_distance`, `margin`.
+        checks: The number of states checked.
+        lowered: The pairs with a lowered margin: `pair`, `start_distance`, `margin`.
     """
 
     def __init__(
         self, scene: CoalScene, space: GroupSpace, start: FloatArray, padding: float
     ) -> None:
-        """Take the scene as it is now.
+        """Create a checker of the current scene.
 
         Raises:
-            PlanningFailed: START_STATE_IN_COLLISION, deeper than `DEEPEST_START`.
+            PlanningFailed: START_STATE_IN_COLLISION, when a pair is deeper than `DEEPEST_START`.
         """
         self.scene = scene
         self._scene_model = scene.collision_model()
@@ -81,7 +81,7 @@ class MotionChecker:
         self._pairs = model.pairs
         self._robot = model.robot.model
         self._data = self._robot.createData()
-        self._geometry = geometry = model.geometry  # kept: the manager below does not keep it
+        self._geometry = geometry = model.geometry  # the manager below holds no reference
         self._geometry_data = geometry.createData()
         self._margins = self._choose_margins(start)
         self._set_margins(0.0)
@@ -125,7 +125,7 @@ class MotionChecker:
                 requests[row].security_margin = margin
 
     def _near(self, positions: FloatArray, slack: float) -> list[Touch]:
-        """Pairs nearer than margin and slack, nearest first; only those are measured."""
+        """Pairs nearer than margin plus slack, nearest first; only those are measured."""
         geometry, found = self._geometry, self._geometry_data
         self._set_margins(slack + _MEASURED)
         configuration = self.space.robot.configuration(self.space.whole(positions))
@@ -148,19 +148,19 @@ class MotionChecker:
         return self._exact(positions)
 
     def edge_free(self, first: FloatArray, second: FloatArray, resolution: float) -> bool:
-        """Whether the straight line between two positions is free, its first end taken as checked.
+        """Whether the straight line between two positions is free; its start is not checked.
 
         Args:
-            first: Group positions, checked before.
-            second: Group positions.
-            resolution: Largest joint-space distance between checked states [rad].
+            first: Group positions at the start, known to be free.
+            second: Group positions at the end.
+            resolution: The largest joint-space distance between checked states [rad].
         """
         count = max(1, int(np.ceil(self.space.distance(first, second) / resolution)))
         shares = np.arange(1, count + 1) / count
         return self._all_free(first + (second - first) * shares[:, None], straight=True)
 
     def states_free(self, states: FloatArray) -> bool:
-        """Whether all states of a motion are free, shape (N, dof), neighbours near each other."""
+        """Whether all states of a motion are free, shape (N, dof), densely sampled."""
         return self._all_free(states, straight=False)
 
     def first_blocked(self, states: FloatArray) -> int | None:
@@ -174,10 +174,10 @@ class MotionChecker:
         certify = compiled_stage()
         if certify is None:
             count_states(len(states))
-            return self._stretches.are_free(states, self._exact)
+            return self._clearance_certificates.are_free(states, self._exact)
         arrays = self._arrays
         values = np.ascontiguousarray(self.space.whole(states)[:, arrays.columns])
-        for room in (self._open[:FEW_OPEN], self._open):  # what is left open may be blocked
+        for room in (self._open[:FEW_OPEN], self._open):  # undecided pairs may be blocked
             blocked, left_open = arrays.certify(certify, values, straight, room)
             if blocked >= 0:
                 return False
@@ -188,8 +188,8 @@ class MotionChecker:
         return all(self._exact(states[step - 1]) for step in coarse_to_fine(len(states)))
 
     @cached_property
-    def _stretches(self) -> Stretches:
-        return Stretches(self._scene_model, self.space, self._margins)
+    def _clearance_certificates(self) -> ClearanceCertificates:
+        return ClearanceCertificates(self._scene_model, self.space, self._margins)
 
     @cached_property
     def _arrays(self) -> MotionArrays:
@@ -200,7 +200,7 @@ class MotionChecker:
         return np.empty((MOST_OPEN, 2), dtype=np.int64)
 
     def _decide(self, states: FloatArray, left_open: IntArray) -> bool:
-        """Whether the pairs that the covers left open are free, by Coal's exact shapes."""
+        """Whether the pairs that the covers leave undecided are free, by Coal's exact shapes."""
         rows_of = self._arrays.rows
         by_state: dict[int, list[int]] = {}
         for state, check in left_open.tolist():
@@ -224,7 +224,7 @@ class MotionChecker:
         )
 
     def path_free(self, waypoints: FloatArray, resolution: float) -> bool:
-        """Whether all edges of a path are free, its first waypoint taken as checked."""
+        """Whether all edges of a path are free; its first waypoint is not checked."""
         return all(
             self.edge_free(first, second, resolution) for first, second in pairwise(waypoints)
         )
@@ -240,7 +240,7 @@ class MotionChecker:
     def first_block(
         self, first: FloatArray, second: FloatArray, resolution: float
     ) -> tuple[float, list[Touch]] | None:
-        """Where along a straight line (0 to 1) the first check fails, and what touches there."""
+        """Where a straight line (0 to 1) is first blocked, and the pairs too near there."""
         count = max(1, int(np.ceil(self.space.distance(first, second) / resolution)))
         states = first + (second - first) * (np.arange(1, count + 1) / count)[:, None]
         index = self.first_blocked(states)

@@ -1,4 +1,4 @@
-"""Arcs of a link in space, through a point or about a centre: the way of Pilz's CIRC."""
+"""Arcs of a link in space, through a point or about a centre: the path of Pilz's CIRC."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -12,27 +12,27 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 
 LARGEST_RADIUS_DIFFERENCE = 1e-2
-"""Of start and goal about a given centre [m]: Pilz's rule; the centre is moved by half of it."""
+"""Largest difference of the radii of start and goal [m], as in Pilz; the centre is corrected."""
 
 FLATTEST = 1e-5
-"""Height of a triangle over its longest side below which its corners are on one line [m].
+"""Height of a triangle over its longest side below which its corners are collinear [m].
 
-Pilz looks at twice the area instead, with 1e-5 m^2: the same for sides of a metre, but it refuses
-small arcs, as a twelfth of a circle of 2 cm.
+Pilz compares twice the area with 1e-5 m^2: the same for sides of a metre, but it rejects small
+arcs, such as a twelfth of a circle of 2 cm.
 """
 
 _STRAIGHT_ANGLE = 1e-3  # [rad] nearer to half a circle about a centre, the plane is undefined
 
 
 class Arc:
-    """A link's way on a circle, the link turning at an even rate from its start to its end.
+    """A link's path on a circle; the link rotates at a constant rate from start to end.
 
     Attributes:
         start: T_world_link at parameter 0.
-        center: Of the circle, in the world [m].
-        axis: Unit normal of its plane; the link goes round it to the left.
-        sweep: Angle of the arc [rad], 0 to 2 pi.
-        turn: Rotation vector of the link from 0 to 1, world axes [rad].
+        center: The circle's centre in the world [m].
+        axis: The unit normal of its plane; the link moves counterclockwise about it.
+        sweep: The angle of the arc [rad], 0 to 2 pi.
+        turn: The rotation vector of the link from 0 to 1, world axes [rad].
     """
 
     name = "arc"
@@ -50,11 +50,10 @@ class Arc:
 
     @classmethod
     def through(cls, link: str, start: SE3, interim: FloatArray, end: SE3) -> Arc:
-        """The arc from one pose through a point to another pose.
+        """Create the arc from one pose through a point to another pose.
 
         Raises:
-            PlanningFailed: INVALID_MOTION_PLAN, when the three points are on one line, or two of
-                them are one.
+            PlanningFailed: INVALID_MOTION_PLAN, when the points are collinear or two coincide.
         """
         first, last = start.translation, end.translation
         u, t = interim - first, last - first
@@ -69,11 +68,11 @@ class Arc:
 
     @classmethod
     def about(cls, link: str, start: SE3, center: FloatArray, end: SE3) -> Arc:
-        """The shorter arc from one pose about a centre to another.
+        """Create the shorter arc from one pose about a centre to another.
 
         Raises:
-            PlanningFailed: INVALID_MOTION_PLAN, when start and goal are not equally far from the
-                centre, or opposite to each other, or one.
+            PlanningFailed: INVALID_MOTION_PLAN, when start and goal have different radii, are
+                opposite to each other, or coincide.
         """
         first, last = start.translation - center, end.translation - center
         radii = float(np.linalg.norm(first)), float(np.linalg.norm(last))
@@ -99,17 +98,17 @@ class Arc:
 
     @property
     def radius(self) -> float:
-        """Of the circle [m]."""
+        """The circle's radius [m]."""
         return float(np.linalg.norm(self._spoke))
 
     @property
     def length(self) -> float:
-        """Of the arc [m]."""
+        """The arc's length [m]."""
         return self.radius * self.sweep
 
     @property
     def angle(self) -> float:
-        """Of the link's turn [rad]."""
+        """The angle of the link's rotation [rad]."""
         return float(np.linalg.norm(self.turn))
 
     def pose(self, parameter: float) -> SE3:
@@ -118,7 +117,7 @@ class Arc:
         return SE3(pin.exp3(parameter * self.turn) @ self.start.rotation, place)
 
     def nearest(self, pose: SE3) -> tuple[float, float]:
-        """The parameter at which the arc comes nearest to a pose's origin, and its distance [m]."""
+        """The parameter of the arc's point nearest to a pose's origin, and its distance [m]."""
         offset = pose.translation - self.center
         height = float(offset @ self.axis)
         level = offset - height * self.axis
@@ -130,13 +129,13 @@ class Arc:
 
 
 def _angle(first: FloatArray, second: FloatArray, axis: FloatArray) -> float:
-    """How far to turn left about an axis from one spoke to another [rad], 0 to 2 pi."""
+    """Counterclockwise angle about an axis from one radius vector to another [rad], 0 to 2 pi."""
     angle = np.arctan2(float(np.cross(first, second) @ axis), float(first @ second))
     return float(angle % (2 * np.pi))
 
 
 def _equidistant(center: FloatArray, first: FloatArray, second: FloatArray) -> FloatArray:
-    """The point nearest to a centre that is equally far from two points."""
+    """The point nearest to a centre that is equidistant from two points."""
     across = second - first
     return center - across * float((center - 0.5 * (first + second)) @ across) / float(
         across @ across
@@ -144,7 +143,7 @@ def _equidistant(center: FloatArray, first: FloatArray, second: FloatArray) -> F
 
 
 def _longest(*sides: FloatArray) -> float:
-    """Length of the longest of some ways [m]."""
+    """Length of the longest vector [m]."""
     return max(float(np.linalg.norm(side)) for side in sides)
 
 

@@ -1,4 +1,4 @@
-"""Distances along a recorded run: robot to objects and itself, held objects to other objects."""
+"""Distances along a recorded run: robot to objects and itself, attached to other objects."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ ROBOT = "robot"
 
 @dataclass(eq=False)
 class _Clearances:
-    """What is being filled in."""
+    """Distances of each pair, and the nearest links, while they are being measured."""
 
     count: int
     distances: dict[tuple[str, str], FloatArray] = field(default_factory=dict)
@@ -59,7 +59,7 @@ class _Clearances:
             self.links[key][samples] = links
 
     def refined(self, finer: _Clearances, samples: IntArray, near: IntArray) -> IntArray:
-        """Take in what was measured at other samples; returns all samples, in order."""
+        """Merge measurements at further samples; returns all samples in order."""
         merged = np.union1d(samples, near)
         old, new = np.searchsorted(merged, samples), np.searchsorted(merged, near)
         for key, values in self.distances.items():
@@ -120,7 +120,7 @@ class CoalClearance:
         attachments: Sequence[AttachmentRecord],
         cutoff: float,
     ) -> Mapping[tuple[str, str], FloatArray]:
-        """Distances at every sample that is given, by pair as in `Signals.clearances`."""
+        """Distances at every given sample, by pair as in `Signals.clearances`."""
         return self._measured(signals, objects, attachments, cutoff).distances
 
     def _measured(
@@ -130,7 +130,7 @@ class CoalClearance:
         attachments: Sequence[AttachmentRecord],
         cutoff: float,
     ) -> _Clearances:
-        """Distances at every sample that is given."""
+        """Distances at every given sample."""
         found = _Clearances(len(signals.times))
         links = LinkPoses(self.description, signals.joint_positions)
         tracks = {
@@ -193,7 +193,7 @@ class CoalClearance:
         signals: Signals,
         cutoff: float,
     ) -> None:
-        """Distances of what is held, as the physics has it and, under its own name, as believed."""
+        """Distances of an attached object: in the physics, and as assumed by the planning scene."""
         times = signals.times
         during = (times >= attachment.start_time) & (times <= attachment.end_time)
         believed = carried_track(link_track(links, attachment.link), attachment.pose_in_link)
@@ -240,7 +240,7 @@ class CoalClearance:
 
 
 def _held(name: str, attachments: Sequence[AttachmentRecord], signals: Signals) -> BoolArray:
-    """Samples in which an object, or what represents it, is attached."""
+    """Samples in which an object, or the object that represents it, is attached."""
     times = signals.times
     held = np.zeros(len(times), dtype=bool)
     for attachment in attachments:

@@ -1,4 +1,4 @@
-"""Our shapes as geometries of Pinocchio's models."""
+"""Converts shapes to geometries of Pinocchio's models."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -15,6 +15,6 @@ from harness.robot.solids import coal_geometry
 def geometry_object(
     name: str, parent_joint: int, T_joint_body: SE3, shape: Shape
 ) -> pin.GeometryObject:
-    """A shape of a body, fixed to a Pinocchio joint (0: the world)."""
+    """Convert a shape of a body that is fixed to a Pinocchio joint (0: the world)."""
     placement = pin_from_se3(T_joint_body @ shape.pose)
     return pin.GeometryObject(name, parent_joint, placement, coal_geometry(shape))

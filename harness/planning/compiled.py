@@ -1,4 +1,4 @@
-"""Whether edges are certified by compiled code: the extra `fast`, loaded when it pays."""
+"""Selects the compiled edge checks of the extra `fast`; they are loaded when it pays off."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from functools import cache
 from typing import Any, Literal
 
 PAYS_AFTER = 20_000
-"""States checked without it before the compiled stage is loaded; half a second's worth at most.
+"""States that are checked before the compiled stage is loaded: at most half a second of work.
 
-Loading it takes half a second once it has been compiled, and several seconds the first time. Its
-answers are the same, so that nothing but time depends on when it is loaded.
+Loading takes half a second when it is compiled already, and several seconds the first time. The
+results are the same, so only the computing time depends on when it is loaded.
 """
 
 When = Literal["always", "when it pays", "never"]
@@ -20,19 +20,19 @@ _states = 0
 
 
 def use_compiled(when: When) -> None:
-    """Choose for this process when the compiled stage is used; benchmarks and tests do."""
+    """Choose when this process uses the compiled stage, for benchmarks and tests."""
     global _when
     _when = when
 
 
 def count_states(number: int) -> None:
-    """Note states that were checked one by one."""
+    """Count states that are checked without the compiled stage."""
     global _states
     _states += number
 
 
 def compiled_stage() -> Callable[..., Any] | None:
-    """`edge_kernel.certify`, or None when it is not there or does not pay yet."""
+    """`edge_kernel.certify`, or None when it is not installed or does not pay off yet."""
     if _when == "never" or (_when == "when it pays" and _states < PAYS_AFTER):
         return None
     return _load()
@@ -42,6 +42,6 @@ def compiled_stage() -> Callable[..., Any] | None:
 def _load() -> Callable[..., Any] | None:
     try:
         from harness.planning.edge_kernel import certify
-    except (ImportError, RuntimeError):  # not installed; nowhere to keep what is compiled
+    except (ImportError, RuntimeError):  # not installed; no writable cache folder
         return None
     return certify

@@ -1,4 +1,4 @@
-"""Finds motions along which path constraints hold: two trees whose every step is projected."""
+"""Finds motions that satisfy path constraints, with two trees whose steps are projected."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ from harness.ports import MotionPlan
 PLANNER_ID = "RRTConnect, projected"
 
 LONGEST_STEP = 0.1
-"""Between neighbouring states of a tree [rad]; less for narrow tolerances."""
+"""Largest distance between adjacent states of a tree [rad]; smaller for narrow tolerances."""
 
 RESOLUTIONS = (FINAL_RESOLUTION, FINAL_RESOLUTION / 2, FINAL_RESOLUTION / 4)
-"""Between checked states while searching [rad]; finer when a path fails."""
+"""Distances between checked states during a search [rad]; finer after a path has failed."""
 
 _LEAST_STEP = 0.01
 _SHORTCUTS = 60
@@ -42,17 +42,17 @@ def find_constrained_motion(
     goals: Sequence[FloatArray],
     explanation: dict[str, Any],
 ) -> MotionPlan:
-    """A verified motion from the task's start to a goal, the constraints holding on every sample.
+    """Plan a verified motion to a goal that satisfies the constraints at every sample.
 
     Args:
-        task: What is asked; its verification knows the constraints too.
-        held: The constraints; they hold at the start.
-        goals: Free group positions at which they hold, nearest first.
-        explanation: Of the goals.
+        task: The planning call; its verification checks the constraints too.
+        held: The constraints; the start satisfies them.
+        goals: Free group positions that satisfy the constraints, nearest first.
+        explanation: The explanation of the goals.
 
     Raises:
         PlanningFailed: PLANNING_FAILED, when the budget is used up; INVALID_MOTION_PLAN, when no
-            path that was found holds once it is timed.
+            path passes verification after timing.
 
     References:
         D. Berenson, S. Srinivasa, D. Ferguson, J. Kuffner, "Manipulation planning on constraint
@@ -82,19 +82,19 @@ def find_constrained_motion(
     if defect is not None:
         raise PlanningFailed(
             "INVALID_MOTION_PLAN",
-            "paths were found, but none that holds when it is checked finely: " + defect.message,
+            "paths were found, but none passes verification: " + defect.message,
             {**explanation, **defect.facts},
         )
     raise PlanningFailed(
         "PLANNING_FAILED",
-        "no free path along which the constraints hold was found in at most "
+        "no free path that satisfies the constraints was found in at most "
         f"{task.options.max_state_checks} state checks",
         {**explanation, "state_checks": task.checker.checks + held.checks},
     )
 
 
 def _timed(task: PlanningTask, path: FloatArray) -> JointTrajectory | Defect:
-    """The path's curve as fast as it goes; else its polyline, at rest at every corner."""
+    """Time the path as a smooth curve, otherwise as a polyline with a stop at every corner."""
     names, end = task.space.joint_names, path[-1]
     spline = JointSpline(path)
     try:
@@ -114,12 +114,12 @@ class _Tree:
     parents: list[int]
 
     def nearest(self, positions: FloatArray, metric: FloatArray) -> int:
-        """Index of the node nearest to some positions."""
+        """Index of the node nearest to group positions."""
         away = (np.array(self.nodes) - positions) * metric
         return int(np.argmin((away**2).sum(axis=1)))
 
-    def way(self, index: int) -> list[FloatArray]:
-        """From the root to a node."""
+    def branch(self, index: int) -> list[FloatArray]:
+        """The states from the root to a node."""
         found: list[FloatArray] = []
         while index >= 0:
             found.append(self.nodes[index])
@@ -162,15 +162,15 @@ class _Search:
             target = first.nodes[reached]
             met = self._extend(second, second.nearest(target, metric), target)
             if space.distance(second.nodes[met], target) < 1e-9:
-                ways = first.way(reached), second.way(met)
-                forth, back = ways if from_start else ways[::-1]
+                branches = first.branch(reached), second.branch(met)
+                forth, back = branches if from_start else branches[::-1]
                 return [*forth, *back[::-1][1:]]
             first, second = second, first
             from_start = not from_start
         return None
 
     def _extend(self, tree: _Tree, index: int, target: FloatArray) -> int:
-        """Walk from a node towards a target as far as goes, adding nodes; the last one's index."""
+        """Extend a tree from a node towards a target as far as possible; the last node's index."""
         for positions in self._walk(tree.nodes[index], target):
             tree.nodes.append(positions)
             tree.parents.append(index)
@@ -178,7 +178,7 @@ class _Search:
         return index
 
     def _walk(self, start: FloatArray, target: FloatArray) -> list[FloatArray]:
-        """States one step from each other towards a target, free and inside the constraints."""
+        """Free states that satisfy the constraints, one step apart, towards a target."""
         space, here, found = self.task.space, start, list[FloatArray]()
         left = space.distance(here, target)
         while left > 1e-9 and not self._is_over:
@@ -219,7 +219,7 @@ class _Search:
         return path
 
     def smooth(self, path: list[FloatArray]) -> FloatArray:
-        """Even out the corners of a path, every state projected again, as long as it is free."""
+        """Smooth the corners of a path and project every state again, while the path stays free."""
         points = list(_resampled(np.array(path), 0.5 * self.step))
         for _ in range(_SMOOTHINGS):
             middles = [points[0]]

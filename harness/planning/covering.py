@@ -1,4 +1,4 @@
-"""Covers shapes with trees of spheres: what no sphere reaches, the shape does not reach."""
+"""Covers shapes with trees of spheres that contain every point of the shape."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from harness.core.types import FloatArray, IntArray
 from harness.robot.mesh_file import convex_hull, read_triangles
 
 OVERSHOOT = 0.006
-"""How far the smallest spheres reach beyond the shape, where `MOST_SPHERES` allows it [m]."""
+"""How far the smallest spheres extend beyond the shape, if `MOST_SPHERES` permits [m]."""
 
 MOST_SPHERES = 16_384
-"""Spheres on one level of a tree at most; a large shape is covered more coarsely."""
+"""Largest number of spheres on one level of a tree; large shapes are covered more coarsely."""
 
 _ROUNDING = 1e-7  # [m]
 
@@ -26,14 +26,14 @@ class Cover:
     """A tree of spheres about a shape, in preorder: children follow their parent.
 
     Every point of the shape is in a sphere without children (a leaf), and in all spheres above it.
-    All shapes are solids, meshes by their convex hulls, but for exact meshes: those are surfaces.
+    All shapes are solids, and meshes are their convex hulls; only exact meshes are surfaces.
 
     Attributes:
-        centers: In the frame of the shape or body [m], shape (N, 3).
-        outer: Radii [m], shape (N,).
-        inner: Radius of a ball about the centre that is inside the shape; where it is negative,
+        centers: The centres in the frame of the shape or body [m], shape (N, 3).
+        outer: The radii [m], shape (N,).
+        inner: The radius of a ball about the centre that is inside the shape; where it is negative,
             minus the distance from the centre to some point of the shape [m], shape (N,).
-        skip: Index behind the last sphere of each subtree, shape (N,).
+        skip: The index after the last sphere of each subtree, shape (N,).
     """
 
     centers: FloatArray
@@ -42,12 +42,12 @@ class Cover:
     skip: IntArray
 
     def placed(self, rotation: FloatArray, translation: FloatArray) -> Cover:
-        """The same cover, the shape moved."""
+        """The cover of the moved shape."""
         return Cover(self.centers @ rotation.T + translation, self.outer, self.inner, self.skip)
 
 
 def cover_shapes(shapes: Sequence[Shape]) -> Cover:
-    """A cover of several shapes that move together, in their common frame; none may be a plane."""
+    """Cover several shapes that move together, in their common frame; none may be a plane."""
     covers = [
         cover(shape.geometry).placed(shape.pose.rotation, shape.pose.translation)
         for shape in shapes
@@ -74,10 +74,10 @@ def cover_shapes(shapes: Sequence[Shape]) -> Cover:
 
 @lru_cache(maxsize=256)
 def cover(geometry: Geometry) -> Cover:
-    """A cover of a geometry, in its own frame.
+    """Cover a geometry with spheres, in its own frame.
 
     Raises:
-        TypeError: It is a plane, which nothing covers.
+        TypeError: The geometry is a plane, which is unbounded.
         RobotError: A mesh file cannot be read.
     """
     if isinstance(geometry, Plane):
@@ -127,7 +127,7 @@ def signed_distance(geometry: Geometry, points: FloatArray) -> FloatArray:
 
 
 def _cover_capsule(geometry: Capsule) -> Cover:
-    """The two end balls and, between them, balls wide enough to meet each other."""
+    """The two end balls and, between them, balls wide enough to overlap."""
     radius, length = geometry.radius, geometry.length
     widest = radius + OVERSHOOT
     count = max(1, int(np.ceil(0.5 * length / np.sqrt(widest**2 - radius**2))))
@@ -146,11 +146,11 @@ def _cover_capsule(geometry: Capsule) -> Cover:
 
 
 Bounds = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
-"""Least and largest that the signed distance from points to a solid can be; equal inside it."""
+"""Lower and upper bound of the signed distance from points to a solid; equal inside it."""
 
 
 def _cover_hull(geometry: Mesh) -> Cover:
-    """A cover of a mesh's convex hull, told by its faces' planes and its corners."""
+    """Cover a mesh's convex hull, given by the planes of its faces and its corners."""
     hull = convex_hull(geometry)
     points = np.array(hull.points(), dtype=float).reshape(-1, 3)
     faces = [hull.polygons(index) for index in range(hull.num_polygons)]
@@ -176,7 +176,7 @@ def _cover_hull(geometry: Mesh) -> Cover:
 
 
 def _cover_solid(bounds: Bounds, center: FloatArray, half: FloatArray) -> Cover:
-    """Halve the box about the solid until the spheres about the parts barely leave the solid."""
+    """Halve the bounding box until the spheres about its parts extend by at most `OVERSHOOT`."""
     centers, halves = center[None], half[None]
     levels: list[_Level] = []
     parents = np.full(1, -1, dtype=np.int64)
@@ -198,7 +198,7 @@ def _cover_solid(bounds: Bounds, center: FloatArray, half: FloatArray) -> Cover:
 
 
 def _cover_surface(geometry: Mesh) -> Cover:
-    """Cut large triangles up, then halve the set of pieces until the spheres are small."""
+    """Subdivide large triangles, then halve the set of pieces until the spheres are small."""
     corners = _pieces(_corners(geometry), OVERSHOOT)  # (K, 3, 3)
     middles = corners.mean(axis=1)
     members = np.arange(len(corners))  # pieces, sorted by node
@@ -241,7 +241,7 @@ def _cover_surface(geometry: Mesh) -> Cover:
 
 @dataclass(frozen=True, eq=False)
 class _Level:
-    """The nodes of a tree that are equally deep; `parents` index the level above."""
+    """The nodes at one depth of a tree; `parents` index the level above."""
 
     centers: FloatArray
     outer: FloatArray
@@ -250,7 +250,7 @@ class _Level:
 
 
 def _preorder(levels: Sequence[_Level]) -> Cover:
-    """Bring a tree, given level by level, into preorder; children of a node are neighbours."""
+    """Convert the levels of a tree to preorder; the children of a node are adjacent."""
     sizes = [np.ones(len(level.outer), dtype=np.int64) for level in levels]
     for depth in range(len(levels) - 1, 0, -1):
         np.add.at(sizes[depth - 1], levels[depth].parents, sizes[depth])

@@ -1,4 +1,4 @@
-"""Times a smooth joint-space curve under limits of the joints and of a link along it."""
+"""Times a smooth joint-space curve under the limits of the joints and of a link."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -25,12 +25,12 @@ _TINY = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class RatedCurve:
-    """A curve and what the link may do at each of its knots.
+    """A curve and the Cartesian limits of the link at each of its knots.
 
     Attributes:
-        spline: In joint space.
-        link: Whose motion is limited.
-        rates: Of the link at every knot; None where joints alone are limited.
+        spline: The curve in joint space.
+        link: The link whose motion is limited.
+        rates: The link's limits at every knot; None where only the joints are limited.
     """
 
     spline: JointSpline
@@ -41,10 +41,10 @@ class RatedCurve:
 def time_curve(
     curve: RatedCurve, joint_names: tuple[str, ...], space: GroupSpace, limits: Limits
 ) -> JointTrajectory:
-    """The fastest motion along a curve from rest to rest.
+    """Compute the fastest motion along a curve from rest to rest.
 
     Raises:
-        TimingError: The limits cannot be kept.
+        TimingError: The limits cannot be satisfied.
     """
     spline = curve.spline
     if spline.length < _TINY:
@@ -62,11 +62,11 @@ def time_curve(
             return trajectory
         total = on_grid(total * excess * 1.001)
         timed = stretched(base, length, total)
-    raise TimingError(f"{curve.link} exceeds its Cartesian limits {excess:.3g} times")
+    raise TimingError(f"{curve.link} exceeds its Cartesian limits by a factor of {excess:.3g}")
 
 
 def nearest_knots(spline: JointSpline, trajectory: JointTrajectory) -> IntArray:
-    """The knot of a curve that each sample of a motion along it is nearest to, never going back."""
+    """The nearest knot of a curve for each sample of a motion along it, in ascending order."""
     nearest: list[int] = []
     low, before = 0, trajectory.positions[0]
     for positions in trajectory.positions:
@@ -79,7 +79,7 @@ def nearest_knots(spline: JointSpline, trajectory: JointTrajectory) -> IntArray:
 
 
 def link_excess(curve: RatedCurve, space: GroupSpace, trajectory: JointTrajectory) -> float:
-    """How many times too fast the link is between samples; at most 1 when it keeps its limits."""
+    """Factor by which the link exceeds its limits between samples; at most 1 within the limits."""
     if all(rates is None for rates in curve.rates):
         return 0.0
     near = nearest_knots(curve.spline, trajectory)
@@ -155,5 +155,5 @@ def _link_rates(
     frame = robot.frame_id(link)
     pin.updateFramePlacement(model, data, frame)
     jacobian = pin.getFrameJacobian(model, data, frame, pin.LOCAL_WORLD_ALIGNED)
-    jacobian = jacobian.reshape(6, -1)  # of one joint it comes with one axis
+    jacobian = jacobian.reshape(6, -1)  # one joint gives a one-dimensional array
     return jacobian[:, robot.velocity_columns] @ (space.matrix @ rates)

@@ -1,4 +1,4 @@
-"""The compiled first stage of edge checks: spheres certify stretches of a motion (needs numba)."""
+"""The compiled first stage of edge checks: spheres certify parts of a motion (needs numba)."""
 
 # The functions below are compiled: plain loops over arrays, no objects, no exceptions.
 
@@ -15,9 +15,9 @@ FREE, UNDECIDED, BLOCKED = 0, 1, 2
 BOX, CYLINDER, CAPSULE, SPHERE, PLANE, MESH = range(6)
 
 GIVE_UP = 0.7
-"""Spheres smaller than this share of the stretch's motion are not refined: halving it is better."""
+"""Share of an interval's motion below which spheres are not refined: the interval is halved."""
 
-_DEEPEST = 512  # pairs of spheres that wait while two trees are compared
+_DEEPEST = 512  # stack size of sphere pairs when two trees are compared
 
 _compiled: Any = numba.njit(cache=True, error_model="numpy", nogil=True)
 
@@ -63,7 +63,7 @@ def compose(first, second, out):  # noqa: ANN001, ANN201
 
 @_compiled
 def relative(base, other, out):  # noqa: ANN001, ANN201
-    """The transform that `other` has as seen from `base`."""
+    """The transform of `other` relative to `base`."""
     x, y, z = other[9] - base[9], other[10] - base[10], other[11] - base[11]
     for i in range(3):
         a, b, c = base[i], base[3 + i], base[6 + i]
@@ -102,7 +102,7 @@ def joint_poses(values, parent, chain, out):  # noqa: ANN001, ANN201
 
 @_compiled
 def shift_bound(widths, joints, first, last, chain, poses, x, y, z, radius):  # noqa: ANN001, ANN201
-    """How far a point of a ball can move when joints, tip first, turn by at most their widths."""
+    """Motion bound of a ball's points when joints, tip first, move by at most their widths."""
     moved = 0.0
     for k in range(first, last):
         m = joints[k]
@@ -124,7 +124,7 @@ def shift_bound(widths, joints, first, last, chain, poses, x, y, z, radius):  # 
 def tree_to_solid(nodes, skip, start, end, T, kind, p, free, blocked, moved):  # noqa: ANN001, ANN201
     """Whether a tree of spheres, placed at T in a solid's frame, keeps a distance from the solid.
 
-    `free`: distance that certifies; `blocked`: distance below which the bodies touch for certain.
+    `free` is the distance that certifies; below the distance `blocked` the bodies collide.
     """
     answer = FREE
     i = start
@@ -151,7 +151,7 @@ def tree_to_solid(nodes, skip, start, end, T, kind, p, free, blocked, moved):  #
 
 @_compiled
 def tree_to_tree(nodes, skip, a0, b0, T, free, blocked, moved, stack):  # noqa: ANN001, ANN201
-    """The same for two trees; the first placed at T in the second's frame."""
+    """Whether two trees keep a distance; the first is placed at T in the second's frame."""
     stack[0, 0], stack[0, 1] = a0, b0
     waiting = 1
     while waiting > 0:
@@ -209,31 +209,31 @@ def certify(  # noqa: ANN201
     joints,  # noqa: ANN001
     found,  # noqa: ANN001
 ):
-    """Sort the states of a motion into free, blocked and undecided.
+    """Classify the states of a motion as free, blocked or undecided.
 
-    The whole motion is taken first, then halves: a stretch about its middle state is free for a
-    check when the spheres keep more distance there than anything moves on the stretch.
+    The whole motion is certified first, then its halves: an interval is free for a check when the
+    clearance of the spheres at its middle state exceeds the motion bound of the interval.
 
     Args:
-        values: Of the moving joints, shape (N, M).
-        straight: Whether the values change evenly.
-        nodes: Spheres: centre, outer and inner radius, shape (K, 5).
-        skip: Of the spheres, shape (K,).
-        parent: Of the moving joints, before them, or -1, shape (M,).
+        values: The positions of the moving joints, shape (N, M).
+        straight: Whether the positions change at a constant rate.
+        nodes: The spheres: centre, outer and inner radius, shape (K, 5).
+        skip: The end of each sphere's subtree, shape (K,).
+        parent: The moving joint before each moving joint, or -1, shape (M,).
         chain: Each joint's pose on its parent at 0 (12), axis (3), 1 if prismatic, shape (M, 16).
-        body_poses: On their joints or in the world, shape (B, 12).
-        bodies: Joint or -1, first sphere, end, shape (B, 3).
-        part_data: Shapes on their bodies: pose (12), size (3), shape (P, 15).
-        parts: Body, kind, first sphere, shape (P, 3).
-        margins: Free above, touching below, shape (C, 2).
-        checks: Body, part, key, shape (C, 3).
-        keys: Body and other body (-1: stands still), and the joints that move one against the
-            other, as ranges of `joints`, shape (R, 6).
+        body_poses: The bodies' poses on their joints or in the world, shape (B, 12).
+        bodies: For each body its joint or -1, first sphere and end, shape (B, 3).
+        part_data: For each part its pose on the body (12) and size (3), shape (P, 15).
+        parts: For each part its body, kind and first sphere, shape (P, 3).
+        margins: The distances above which a check is free and below which it is blocked, (C, 2).
+        checks: For each check its body, part and key, shape (C, 3).
+        keys: For each key the two bodies (-1: static), and the joints that move them relative to
+            each other, as ranges of `joints`, shape (R, 6).
         joints: Moving joints, tip first.
-        found: To be filled: undecided states and their checks, shape (F, 2).
+        found: Output: the undecided states and their checks, shape (F, 2).
 
     Returns:
-        A state that is blocked or -1; how many undecided were found, -1 when too many.
+        A blocked state or -1; the number of undecided pairs, -1 when there are too many.
     """
     count, width = values.shape
     total = checks.shape[0]
@@ -328,7 +328,7 @@ def certify(  # noqa: ANN201
             start, stop = bodies[body, 1], bodies[body, 2]
             free, blocked = margins[check, 0], margins[check, 1]
             P = part_at[part]
-            if kind != MESH:  # the whole body's sphere first, in the part's frame
+            if kind != MESH:  # the root sphere of the body first, in the part's frame
                 B = body_at[body]
                 u, v, t = nodes[start, 0], nodes[start, 1], nodes[start, 2]
                 x = B[0] * u + B[1] * v + B[2] * t + B[9] - P[9]
@@ -344,7 +344,7 @@ def certify(  # noqa: ANN201
                 if gap - nodes[start, 3] > free + moved:
                     continue
             relative(P, body_at[body], T)
-            for turn in range(2):  # the stretch, then its middle state alone
+            for turn in range(2):  # the interval, then its middle state alone
                 if kind == MESH:
                     answer = tree_to_tree(
                         nodes, skip, start, parts[part, 2], T, free, blocked, moved, stack

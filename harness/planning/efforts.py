@@ -1,4 +1,4 @@
-"""Efforts that a motion takes of the joints, by inverse dynamics, with what the robot holds."""
+"""Joint efforts of a motion by inverse dynamics, attached payloads included."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -19,12 +19,12 @@ from harness.planning.scene import Payload
 
 @dataclass(frozen=True, eq=False)
 class InverseDynamics:
-    """Of a group's joints, the rest of the robot at rest; friction is left out.
+    """Inverse dynamics of a group's joints, the other joints at rest; friction is neglected.
 
     Attributes:
-        joint_names: Of the group.
-        limits: Of its joints' efforts [N m or N], shape (dof,); inf where there is none.
-        payloads: What the robot holds.
+        joint_names: The joints of the group.
+        limits: The effort limits [N m or N], shape (dof,); inf where there is none.
+        payloads: The attached objects with a mass.
     """
 
     joint_names: tuple[str, ...]
@@ -35,7 +35,7 @@ class InverseDynamics:
 
     @classmethod
     def of(cls, space: GroupSpace, payloads: Sequence[Payload]) -> InverseDynamics | None:
-        """None when no joint of the group has an effort limit."""
+        """Create the inverse dynamics; None when no joint of the group has an effort limit."""
         description = space.robot.description
         limits = np.array([description.joint_by_name[name].effort for name in space.joint_names])
         if not np.any(np.isfinite(limits)):
@@ -53,7 +53,7 @@ class InverseDynamics:
     def efforts(
         self, positions: FloatArray, velocities: FloatArray, accelerations: FloatArray
     ) -> FloatArray:
-        """Efforts of a motion, shape (N, dof), for rows (N, dof) of its states."""
+        """Compute the efforts of a motion, shape (N, dof), from its states, shape (N, dof) each."""
         space, model, data = self._space, self._model, self._model.createData()
         columns = space.robot.velocity_columns
         found = np.empty_like(positions)
@@ -67,10 +67,10 @@ class InverseDynamics:
         return found
 
     def standing_overload(self, positions: FloatArray) -> tuple[str, dict[str, Any]]:
-        """Message and facts of the joint that standing still at positions (dof,) overloads most.
+        """Message and facts of the joint with the largest static overload at positions (dof,).
 
-        `effort` and `limit` are its own, `unloaded` is its effort without what the robot holds,
-        and `most_mass` what the robot can hold there [kg].
+        `effort` and `limit` are the joint's; `unloaded` is its effort without the payload, and
+        `most_mass` is the mass that the robot can hold there [kg].
         """
         still = np.zeros((1, len(positions)))
         standing = self.efforts(positions[None], still, still)[0]

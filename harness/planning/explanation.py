@@ -1,9 +1,10 @@
-"""Says of a motion that was not found what became of each stage of planning it, in order."""
+"""Explains a failed planning call: the result of each planning stage, in order."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import wraps
+from inspect import signature
 from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
 
 import numpy as np
@@ -36,11 +37,12 @@ _S = TypeVar("_S", bound=_Planner)
 def explained(
     method: Callable[Concatenate[_S, _P], _R],
 ) -> Callable[Concatenate[_S, _P], _R]:
-    """Let a planner's method explain its failures: `stages`, `nearest`, `advice` in the facts.
+    """Add `stages`, `nearest` and `advice` to the facts of a planner method's failures.
 
-    The method takes `group`, `start`, then a goal (a Goal, or joint positions) where it has one,
-    and PlanningOptions somewhere behind.
+    The method has parameters named `group`, `start` and `options`. A `goal` or the joint
+    `positions` of a goal are explained; other methods have no goal of their own.
     """
+    parameters = signature(method)
 
     @wraps(method)
     def explaining(self: _S, *args: _P.args, **kwargs: _P.kwargs) -> _R:
@@ -48,7 +50,8 @@ def explained(
             return method(self, *args, **kwargs)
         except PlanningFailed as failure:
             if failure.code not in _NO_STAGE and "stages" not in failure.facts:
-                request = _request(failure, self, [*args, *kwargs.values()])
+                call = parameters.bind(self, *args, **kwargs).arguments
+                request = _request(failure, self, call)
                 failure.facts.update(explanation_of(request))
             raise
 
@@ -56,10 +59,10 @@ def explained(
 
 
 def explanation_of(request: StageRequest) -> dict[str, Any]:
-    """Of a failed call as plain data.
+    """Explain a failed call as plain data.
 
-    `stages` in the order of `recording.explanation.STAGES`; of the first that failed `nearest`, a
-    state of the robot to draw, and `advice`, what to do.
+    `stages` follow the order of `recording.explanation.STAGES`. `nearest` is a robot state to draw
+    and `advice` is what to do; both belong to the first stage that has them.
     """
     findings: list[Finding] = goal_findings(request)
     findings += [start_finding(request), path_finding(request, target_positions(request))]
@@ -74,33 +77,35 @@ def explanation_of(request: StageRequest) -> dict[str, Any]:
     return facts
 
 
-def _request(failure: PlanningFailed, planner: _Planner, asked: list[Any]) -> StageRequest:
-    """What was asked in a call `(group, start, goal, ...)`, and what checks its states."""
-    start = np.asarray(asked[1], dtype=float)
-    options = next((item for item in asked if isinstance(item, PlanningOptions)), PlanningOptions())
-    space = GroupSpace(planner.kinematics.robot, str(asked[0]), start)
+def _request(failure: PlanningFailed, planner: _Planner, call: Mapping[str, Any]) -> StageRequest:
+    """The stages' input, from the call's arguments by parameter name."""
+    start = np.asarray(call["start"], dtype=float)
+    options: PlanningOptions = call["options"]
+    space = GroupSpace(planner.kinematics.robot, call["group"], start)
     return StageRequest(
         failure=failure,
         kinematics=planner.kinematics,
         scene=planner.scene,
         space=space,
         start=start,
-        goal=_goal(asked[2]),
+        goal=_goal(call),
         options=options,
         checker=_checker(planner.scene, space, start, options),
     )
 
 
-def _goal(asked: Any) -> Goal | None:
-    if isinstance(asked, JointGoal | PoseGoal | PositionGoal):
-        return asked
-    return JointGoal(asked) if isinstance(asked, np.ndarray) else None
+def _goal(call: Mapping[str, Any]) -> Goal | None:
+    """The single goal of a call; None where it has none, or a choice of several."""
+    if "positions" in call:
+        return JointGoal(np.asarray(call["positions"], dtype=float))
+    goal = call.get("goal")
+    return goal if isinstance(goal, JointGoal | PoseGoal | PositionGoal) else None
 
 
 def _checker(
     scene: CoalScene, space: GroupSpace, start: FloatArray, options: PlanningOptions
 ) -> MotionChecker | None:
-    """None where no motion can begin."""
+    """The checker of the motion; None where no motion can begin from the start state."""
     try:
         return MotionChecker(scene, space, space.part(start), options.padding)
     except PlanningFailed:

@@ -1,4 +1,4 @@
-"""Link poses of many samples at once, in plain arrays."""
+"""Computes link poses of many samples as arrays."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def _ancestors(description: RobotDescription, links: Sequence[str] | None) -> se
 
 
 def quats_wxyz(rotations: FloatArray) -> FloatArray:
-    """Unit quaternions with w >= 0 of rotations (N, 3, 3), shape (N, 4); Shepperd's choice."""
+    """Convert rotations (N, 3, 3) to unit quaternions with w >= 0, shape (N, 4), by Shepperd."""
     m = rotations
     diagonal = m[:, [0, 1, 2], [0, 1, 2]]
     trace = diagonal.sum(axis=1)

@@ -1,4 +1,4 @@
-"""Finds a free, verified motion to one of several goals: straight if it can, else searched."""
+"""Finds a free, verified motion to one of several goals: a straight one, or by a search."""
 
 from __future__ import annotations
 
@@ -28,20 +28,19 @@ from harness.planning.verify import (
 from harness.ports import MotionPlan, PlanningOptions
 
 BLEND_DEVIATIONS = (0.05, 0.01)
-"""How far the timed path may leave the checked one at its corners [rad]; then it stops there."""
+"""Largest deviations of the blends at the corners [rad]; after these, the motion stops there."""
 
 CHEAPER = 0.95
-"""Length at most, as a share of the way that was found, of one to another solution worth a search.
-"""
+"""Largest effort of a motion to another solution that is searched, as a share of the one found."""
 
 CHEAPER_CHECKS = 10_000
-"""State checks to search ways to cheaper solutions; as many as the first way took, if more, and
-never more than the budget of a search."""
+"""State checks of the search for cheaper solutions; as many as the first search used, if more, but
+at most the budget of a search."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Motion:
-    """A verified motion, its statistics, and how much of the arm it moves."""
+    """A verified motion, its end, its statistics, and its effort (weighted joint-space length)."""
 
     trajectory: JointTrajectory
     end: FloatArray
@@ -52,19 +51,20 @@ class _Motion:
 def find_motion(
     task: PlanningTask, goals: Sequence[FloatArray], explanation: dict[str, Any]
 ) -> MotionPlan:
-    """A verified motion from the task's start to the goal that is cheapest to reach.
+    """Plan a verified motion from the task's start to the goal with the least effort.
 
-    Cheap is what moves little of the arm, along the whole way. The first straight way that is free
-    is taken for a start, else a way that is searched to any of the goals. Then those that are
-    nearer than that way is long are searched, as long as one of them is found with few checks.
+    The effort is the joint-space length weighted by the leverage of the joints. The first candidate
+    is a free straight motion, or else the result of a search to any of the goals. Goals whose
+    straight effort is less than the candidate's are then searched with a small budget.
 
     Args:
-        task: What is asked.
+        task: The planning call.
         goals: Free group positions, nearest first.
-        explanation: Of the goals; the plan carries it on, the solution taken marked.
+        explanation: The explanation of the goals; the plan contains it with the chosen solution.
 
     Raises:
-        PlanningFailed: PLANNING_FAILED (budget used up), INVALID_MOTION_PLAN (nothing found holds).
+        PlanningFailed: PLANNING_FAILED, when the budget is used up; INVALID_MOTION_PLAN, when no
+            path passes verification.
     """
     try:
         found = _straight(task, goals) or _searched(task, goals, explanation)
@@ -76,7 +76,7 @@ def find_motion(
 
 
 def _straight(task: PlanningTask, goals: Sequence[FloatArray]) -> _Motion | None:
-    """A verified straight motion to the first goal that has one, or None."""
+    """A verified straight motion to the first goal for which there is one, or None."""
     space, checker = task.space, task.checker
     for end in goals:
         if checker.edge_free(task.start, end, FINAL_RESOLUTION):
@@ -91,19 +91,19 @@ def _straight(task: PlanningTask, goals: Sequence[FloatArray]) -> _Motion | None
 def _searched(
     task: PlanningTask, goals: Sequence[FloatArray], explanation: dict[str, Any]
 ) -> _Motion:
-    """Search, shorten, time and verify; finer when verification finds something."""
+    """Search, shorten, time and verify; with a finer resolution after a failed verification."""
     effort = Effort()
-    found = _first_that_holds(task, goals, task.options, effort)
+    found = _first_verified_motion(task, goals, task.options, effort)
     if isinstance(found, _Motion):
         return found
-    raise _not_found(task, goals, explanation, effort.checks, effort.gaps, found)
+    raise _search_failure(task, goals, explanation, effort.checks, effort.gaps, found)
 
 
 def _cheapest(task: PlanningTask, goals: Sequence[FloatArray], found: _Motion) -> _Motion:
-    """The motion that was found, or one to a goal that is cheaper to reach."""
-    wanted = max(CHEAPER_CHECKS, found.statistics.get("search_checks", 0))
-    budget = min(wanted, task.options.max_state_checks)
-    untried = _others(goals, found)
+    """The motion found, or a motion to another goal with less effort."""
+    budget = max(CHEAPER_CHECKS, found.statistics.get("search_checks", 0))
+    budget = min(budget, task.options.max_state_checks)
+    untried = _other_goals(goals, found)
     while budget > 0:
         most = CHEAPER * found.effort
         untried = [goal for goal in untried if task.space.effort(task.start, goal) < most]
@@ -112,25 +112,25 @@ def _cheapest(task: PlanningTask, goals: Sequence[FloatArray], found: _Motion) -
         effort = Effort()
         options = replace(task.options, max_state_checks=budget, attempts=1)
         try:
-            other = _first_that_holds(task, untried, options, effort)
-        except TimingError:  # of that way; the one that was found has its times
+            other = _first_verified_motion(task, untried, options, effort)
+        except TimingError:  # the motion found is timed already
             break
         if not isinstance(other, _Motion):
             break
         budget -= effort.checks
-        untried = _others(untried, other)
+        untried = _other_goals(untried, other)
         found = other if other.effort < most else found
     return found
 
 
-def _others(goals: Sequence[FloatArray], found: _Motion) -> list[FloatArray]:
+def _other_goals(goals: Sequence[FloatArray], found: _Motion) -> list[FloatArray]:
     return [goal for goal in goals if not np.allclose(goal, found.end, atol=1e-9)]
 
 
-def _first_that_holds(
+def _first_verified_motion(
     task: PlanningTask, goals: Sequence[FloatArray], options: PlanningOptions, effort: Effort
 ) -> _Motion | Defect | None:
-    """The first path found that makes a verified motion; else what was wrong with the last.
+    """The first path that becomes a verified motion; otherwise the defect of the last path.
 
     Raises:
         ValueError: A planner or a parameter is unknown.
@@ -167,7 +167,7 @@ def _statistics(
 
 
 def _timed(task: PlanningTask, waypoints: FloatArray) -> JointTrajectory | Defect:
-    """The fastest of three ways to time a path that passes verification."""
+    """Time a path with the largest blends that pass verification, or with stops."""
     names, end = task.space.joint_names, waypoints[-1]
     if len(waypoints) == 2:
         trajectory = time_straight(names, waypoints[0], end, task.limits)
@@ -185,7 +185,7 @@ def _timed(task: PlanningTask, waypoints: FloatArray) -> JointTrajectory | Defec
     return departure or task.defect(trajectory, end) or trajectory
 
 
-def _not_found(
+def _search_failure(
     task: PlanningTask,
     goals: Sequence[FloatArray],
     explanation: dict[str, Any],
@@ -196,7 +196,7 @@ def _not_found(
     if defect is not None:
         return PlanningFailed(
             "INVALID_MOTION_PLAN",
-            "paths were found, but none that holds when it is checked finely: " + defect.message,
+            "paths were found, but none passes verification: " + defect.message,
             {**explanation, **defect.facts},
         )
     options = task.options
@@ -213,13 +213,14 @@ def _not_found(
         share, touches = blocked
         facts["straight_way"] = {"free_share": share, "touches": touch_facts(touches)}
         message += (
-            f"; the straight way is blocked after {100 * share:.0f} % by {wording.touches(touches)}"
+            f"; the straight path is blocked after {100 * share:.0f} % by "
+            f"{wording.touches(touches)}"
         )
     return PlanningFailed("PLANNING_FAILED", message, facts)
 
 
 def _chosen(explanation: dict[str, Any], end: FloatArray) -> dict[str, Any]:
-    """The explanation with the solution that was taken marked."""
+    """The explanation, with the status `chosen` for the solution at the end of the motion."""
     solutions = explanation.get("ik_solutions")
     if not solutions:
         return explanation

@@ -1,4 +1,4 @@
-"""Joint positions for several goals, and for a goal with room: regions become sampled poses."""
+"""Chooses joint positions for several goals and for goal regions, which are sampled."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -18,16 +18,17 @@ from harness.planning.goals import GoalCandidates, find_goals
 from harness.planning.kinematics import PinocchioKinematics
 from harness.planning.path_constraints import HeldConstraints
 from harness.planning.task import PlanningTask
+from harness.planning.wording import count
 from harness.ports import AnyGoal, Goal, PoseGoal
 
 SAMPLES = 24
-"""Poses taken of a region besides its middle."""
+"""Number of poses sampled in a region in addition to its centre."""
 
 ROOM = (0.005, 0.05)
-"""A tolerance from which on a goal is a region [m], [rad]; below, its middle alone is sought."""
+"""Smallest tolerances of a goal region [m], [rad]; below them only the centre is solved."""
 
 WIDE = 0.2
-"""A turn about one axis from which on every pose of a region is as good as its middle [rad]."""
+"""Angle tolerance from which all poses of a region are equivalent to its centre [rad]."""
 
 MOST_CANDIDATES = 16
 
@@ -39,17 +40,17 @@ def choose_goals(
     goal: Goal | AnyGoal,
     held: HeldConstraints | None,
 ) -> GoalCandidates:
-    """Free joint positions that reach a goal, one of several, or somewhere in a region.
+    """Find free joint positions that reach a goal, one of several goals, or a goal region.
 
     Args:
-        kinematics: Of the robot.
-        task: Of the motion.
-        start: Description order.
-        goal: As asked.
-        held: What must hold there too.
+        kinematics: The robot's kinematics.
+        task: The planning call.
+        start: The start positions in description order.
+        goal: The requested goal.
+        held: Path constraints that the goal must satisfy, or None.
 
     Raises:
-        PlanningFailed: As `find_goals`, and GOAL_VIOLATES_PATH_CONSTRAINTS.
+        PlanningFailed: The errors of `find_goals`, or GOAL_VIOLATES_PATH_CONSTRAINTS.
     """
 
     def find(one: Goal) -> GoalCandidates:
@@ -77,7 +78,7 @@ def choose_goals(
     if not found:
         if isinstance(middle, PlanningFailed):
             raise middle
-        raise ValueError("the middle was found")
+        raise ValueError("the centre has a solution")
     explanation = dict(found[0].explanation) | {"poses_of_region": len(found)}
     return _merged(found, task, explanation)
 
@@ -88,7 +89,7 @@ def has_room(goal: PoseGoal) -> bool:
 
 
 def poses_in(goal: PoseGoal, seed: int) -> list[SE3]:
-    """Poses inside a goal's tolerances, T_world_link: seeded, evenly drawn."""
+    """Sample poses T_world_link uniformly inside a goal's tolerances, from a seed."""
     rng = np.random.default_rng(seed % 2**63)
     poses: list[SE3] = []
     for _ in range(SAMPLES):
@@ -109,7 +110,7 @@ def _limited(goal: PoseGoal) -> FloatArray:
 
 
 def _holding(found: GoalCandidates, held: HeldConstraints) -> GoalCandidates:
-    """The candidates at which the path constraints hold."""
+    """The candidates that satisfy the path constraints."""
     kept = tuple(positions for positions in found.positions if held.hold(positions))
     if kept:
         return replace(found, positions=kept)
@@ -117,8 +118,8 @@ def _holding(found: GoalCandidates, held: HeldConstraints) -> GoalCandidates:
     why = "" if broken is None else f": {broken.what}"
     raise PlanningFailed(
         "GOAL_VIOLATES_PATH_CONSTRAINTS",
-        f"the goal is reached in {len(found.positions)} free ways, but the path constraints hold "
-        f"at none of them{why}",
+        f"the goal has {count(found.positions, 'free solution')}, but none satisfies the path "
+        f"constraints{why}",
         {**found.explanation, **({} if broken is None else broken.facts)},
     )
 
@@ -126,10 +127,10 @@ def _holding(found: GoalCandidates, held: HeldConstraints) -> GoalCandidates:
 def _one_of(
     goals: Sequence[Goal], find: Callable[[Goal], GoalCandidates], task: PlanningTask
 ) -> GoalCandidates:
-    """Candidates of all goals that have some, cheapest first.
+    """Collect the candidates of all goals, least effort first.
 
     Raises:
-        PlanningFailed: None has; the failure of the goal that came farthest.
+        PlanningFailed: No goal has candidates; the code is that of the most advanced failure.
     """
     found: list[GoalCandidates] = []
     failures: list[PlanningFailed] = []
@@ -148,7 +149,7 @@ def _one_of(
     worst = max(failures, key=lambda failure: failure.code != "NO_IK_SOLUTION")
     raise PlanningFailed(
         worst.code,
-        f"none of {len(goals)} goals can be taken: "
+        f"none of {len(goals)} goals is feasible: "
         + "; ".join(f"{index + 1}: {each.message}" for index, each in enumerate(failures)),
         {**worst.facts, "alternatives": alternatives},
     )

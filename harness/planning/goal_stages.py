@@ -1,4 +1,4 @@
-"""The first two stages of an explanation: does the arm reach the goal, and in which branches."""
+"""Explains the first two planning stages: whether the arm reaches the goal, and its branches."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from harness.recording.explanation import Stage
 
 
 def goal_findings(request: StageRequest) -> list[Finding]:
-    """Reach, then inverse kinematics; nothing where the motion has no goal of its own."""
+    """Explain reach and inverse kinematics; empty where the motion has no goal of its own."""
     goal = request.goal
     if goal is None:
         return []
@@ -28,7 +28,7 @@ def goal_findings(request: StageRequest) -> list[Finding]:
 
 
 def target_positions(request: StageRequest) -> FloatArray | None:
-    """Group positions that a motion would go to first; None where none is free."""
+    """Group positions of the first free solution; None where none is free."""
     goal = request.goal
     if goal is None:
         return None

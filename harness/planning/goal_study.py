@@ -1,4 +1,4 @@
-"""What inverse kinematics and the scene say of a goal: every solution and what became of it."""
+"""Studies a goal: its solutions of inverse kinematics, and whether each is free."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from harness.planning.wording import joint_value
 from harness.ports import Touch
 
 MOST_GOALS = 8
-"""Inverse kinematics' solutions that are checked and planned to, nearest first."""
+"""Number of solutions of inverse kinematics that are checked and planned to, nearest first."""
 
 FindTouches = Callable[[FloatArray], Sequence[Touch]]
 """Pairs too near at group positions; empty where they are free."""
@@ -28,11 +28,11 @@ class Branch:
     """A solution inside the limits, and whether it is free.
 
     Attributes:
-        positions: Of the group.
-        name: Which way the arm stands; empty where its solver knows no branches.
-        distance: From the start [rad].
-        touches: What is too near there.
-        residual: How far the goal is missed by: [m], [rad].
+        positions: The group positions.
+        name: The posture of the arm; empty where the solver has no branches.
+        distance: The joint-space distance from the start [rad].
+        touches: The pairs that are too near.
+        residual: The position error [m] and the orientation error [rad].
     """
 
     positions: FloatArray
@@ -42,7 +42,7 @@ class Branch:
     residual: tuple[float, float]
 
     def facts(self) -> dict[str, Any]:
-        """As plain data."""
+        """The facts as plain data."""
         return {
             "joint_positions": [float(value) for value in self.positions],
             "branch": self.name,
@@ -55,13 +55,13 @@ class Branch:
 
 @dataclass(frozen=True, eq=False)
 class GoalStudy:
-    """What inverse kinematics and the scene say of a goal.
+    """The solutions of inverse kinematics for a goal, and the collisions of the nearest ones.
 
     Attributes:
-        answer: Of inverse kinematics.
-        branches: The nearest solutions, each checked, nearest first.
-        unchecked: How many solutions more there are.
-        outside: Names of the branches that the limits forbid, in the answer's order.
+        answer: The result of inverse kinematics.
+        branches: The nearest solutions, all checked, nearest first.
+        unchecked: The number of further solutions.
+        outside: The names of the branches outside the limits, in the answer's order.
     """
 
     answer: IkAnswer
@@ -70,7 +70,7 @@ class GoalStudy:
     outside: tuple[str, ...]
 
     def facts(self) -> dict[str, Any]:
-        """As plain data."""
+        """The facts as plain data."""
         return {
             "ik_method": self.answer.method,
             "ik_task": self.answer.task,
@@ -116,7 +116,7 @@ def study_goal(
 
 
 def broken_limits(space: GroupSpace, positions: FloatArray) -> list[dict[str, Any]]:
-    """Joints outside their limits, and by how much, in the group's order."""
+    """The joints outside their limits and their excess, in the group's order."""
     return [
         {
             "joint": name,

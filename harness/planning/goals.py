@@ -1,4 +1,4 @@
-"""Turns a goal into joint positions that reach it, and says what became of each candidate."""
+"""Converts a goal to joint positions that reach it, and explains every candidate."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from harness.planning.robot_model import GroupSpace
 from harness.planning.wording import angle, count, joint_value, length, point, touches
 from harness.ports import Goal, JointGoal, PoseGoal, PositionGoal, Touch
 
-_REACHED = 1e-6  # [m] a nearest attempt this near has reached the point
+_REACHED = 1e-6  # [m, rad] the point is reached within this distance
 
 
 @dataclass(frozen=True, eq=False)
 class GoalCandidates:
-    """Joint positions that reach a goal and are free, nearest first, with the explanation."""
+    """Free joint positions that reach a goal, nearest first, with the explanation."""
 
     positions: tuple[FloatArray, ...]
     explanation: dict[str, Any]
@@ -37,14 +37,14 @@ def find_goals(
     goal: Goal,
     seed: int,
 ) -> GoalCandidates:
-    """Free joint positions that reach a goal.
+    """Find free joint positions that reach a goal.
 
     Args:
-        kinematics: Of the robot.
-        checker: Of the motion that is to be planned.
-        start: Description order.
-        goal: What is wanted.
-        seed: Of numeric restarts.
+        kinematics: The robot's kinematics.
+        checker: The checker of the planned motion.
+        start: The start positions in description order.
+        goal: The requested goal.
+        seed: The seed of numeric restarts.
 
     Raises:
         PlanningFailed: GOAL_STATE_INVALID (joints outside their limits), NO_IK_SOLUTION,
@@ -99,7 +99,7 @@ def _joint_goal(checker: MotionChecker, goal: JointGoal) -> GoalCandidates:
 def _no_solution(
     space: GroupSpace, study: GoalStudy, start: FloatArray, goal: PoseGoal | PositionGoal, seed: int
 ) -> PlanningFailed:
-    """Say why nothing reaches the goal, and what comes nearest."""
+    """Explain why no solution reaches the goal, with the nearest pose."""
     missed = study.answer.missed
     if missed:
         return _constraints_violated(space, study, missed[0], goal)
@@ -130,7 +130,7 @@ def _no_solution(
     else:
         what = "orientation" if isinstance(goal, PoseGoal) else "pitch"
         message = (
-            f"{goal.link} reaches {point(target)}, but not with the {what} asked for: the nearest "
+            f"{goal.link} reaches {point(target)}, but not with the requested {what}: the nearest "
             f"pose is {length(nearest.shift)} and {angle(nearest.turn)} away"
         )
     return PlanningFailed("NO_IK_SOLUTION", message, facts)
@@ -139,7 +139,7 @@ def _no_solution(
 def _constraints_violated(
     space: GroupSpace, study: GoalStudy, missed: MissedSolution, goal: PoseGoal | PositionGoal
 ) -> PlanningFailed:
-    """The arm reaches what its joints can choose, and misses the rest of the pose."""
+    """The failure of an arm with too few joints, which misses part of the pose."""
     turned_by = angle(missed.turn)
     write = "`position` and `pitch`" if "pitch" in study.answer.task else "`position`"
     return PlanningFailed(

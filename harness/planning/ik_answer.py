@@ -1,4 +1,4 @@
-"""What inverse kinematics found: solutions, and those that limits or tolerances forbid."""
+"""Results of inverse kinematics: solutions, and those outside limits or tolerances."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from harness.core.types import FloatArray
 
 @dataclass(frozen=True, eq=False)
 class LimitedSolution:
-    """A solution of the geometry that the position limits forbid.
+    """A geometric solution outside the position limits.
 
     Attributes:
-        positions: Group positions, as near to the limits as whole turns bring them.
+        positions: Group positions, turned by whole turns towards the limits.
         joint: The joint that is farthest outside.
-        value: Its position [rad or m].
-        limit: The limit it breaks.
+        value: The joint's position [rad or m].
+        limit: The limit that it exceeds.
     """
 
     positions: FloatArray
@@ -26,7 +26,7 @@ class LimitedSolution:
     limit: float
 
     def facts(self) -> dict[str, Any]:
-        """As plain data."""
+        """The facts as plain data."""
         return {
             "joint_positions": [float(value) for value in self.positions],
             "joint": self.joint,
@@ -38,13 +38,13 @@ class LimitedSolution:
 
 @dataclass(frozen=True, eq=False)
 class MissedSolution:
-    """Inside the limits, at the goal in what the arm can choose, too far from it in the rest.
+    """A solution inside the limits of the part of a pose that the arm can choose.
 
     Attributes:
         positions: Group positions.
-        pose: T_world_link there.
-        shift: From the goal's point [m].
-        turn: From the goal's orientation [rad].
+        pose: T_world_link at these positions.
+        shift: The position error [m].
+        turn: The orientation error [rad], which exceeds the tolerance.
     """
 
     positions: FloatArray
@@ -55,16 +55,16 @@ class MissedSolution:
 
 @dataclass(frozen=True)
 class IkAnswer:
-    """Everything inverse kinematics found.
+    """The complete result of inverse kinematics.
 
     Attributes:
-        solutions: Inside the limits and the tolerance, nearest to the seed first.
-        outside_limits: Solutions of the geometry that limits forbid.
-        excess: How much too far away the goal is for the chain [m]; 0 when unknown or within.
-        method: `ur`, `open_manipulator_x` or `numeric`.
-        task: What was solved for: `pose`; of an arm with too few joints for one, `position and
-            pitch` (four or five joints) or `position` (three).
-        missed: Solutions of that task that miss the pose's tolerance, least turned first.
+        solutions: Solutions inside the limits and the tolerance, nearest to the seed first.
+        outside_limits: Geometric solutions outside the limits.
+        excess: How far the goal is beyond the chain's reach [m]; 0 when unknown or within reach.
+        method: The solver: `ur`, `open_manipulator_x` or `numeric`.
+        task: What is solved for: `pose`, or for an arm with too few joints `position and pitch`
+            (four or five joints) or `position` (three).
+        missed: Solutions of that task outside the pose's tolerance, least error first.
     """
 
     solutions: tuple[FloatArray, ...]

@@ -15,13 +15,13 @@ from harness.ports import PoseGoal, PositionGoal
 LinkGoal = PoseGoal | PositionGoal
 
 RESTARTS, MOST_RESTARTS = 24, 64
-"""Searches from random positions beside the one from the seed, and while nothing is found. What
-they find of random reachable goals of every bundled arm is in robots/INVERSE_KINEMATICS.md."""
+"""Searches from random positions after the one from the seed, and the limit while none succeeds.
+Success rates of every bundled arm are in robots/INVERSE_KINEMATICS.md."""
 
-_CONVERGED = 1e-9  # [m, rad] least squares end there
-_FOUND = 1e-8  # [m, rad] a solution misses its goal by less
-_NO_HEADING = 1e-9  # [1] an x axis with a shorter horizontal part is vertical, and heads nowhere
-_VERTICAL = 1e-6  # [1] a pitch with a smaller cosine is a quarter turn
+_CONVERGED = 1e-9  # [m, rad] error at which least squares stop
+_FOUND = 1e-8  # [m, rad] largest error of a solution
+_NO_HEADING = 1e-9  # [1] horizontal part below which the x axis is vertical
+_VERTICAL = 1e-6  # [1] cosine below which a pitch is a quarter turn
 
 
 def pitch_of(rotation: FloatArray) -> float:
@@ -31,12 +31,12 @@ def pitch_of(rotation: FloatArray) -> float:
 
 
 class LinkTask:
-    """How far a link is from its goal, and how the group's joints change that.
+    """The error of a link relative to its goal, and the Jacobian of the error.
 
     Rows are metres and radians in world axes: position (3), then for a pose the rotation vector
     from the link to the goal (3), for a position with pitch the pitch (1; 2 when x is vertical).
-    Rows of turns are multiplied by `metres_per_radian`: what a turn counts beside a distance where
-    both cannot be had.
+    Rotation rows are multiplied by `metres_per_radian`: their weight relative to a distance where
+    both cannot be satisfied.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class LinkTask:
         pin.computeJointJacobians(model, data, configuration)
         placement = pin.updateFramePlacement(model, data, self._frame)
         whole = pin.getFrameJacobian(model, data, self._frame, pin.LOCAL_WORLD_ALIGNED)
-        whole = whole.reshape(6, -1)  # of one joint it comes with one axis
+        whole = whole.reshape(6, -1)  # one joint gives a one-dimensional array
         jacobian = whole[:, self._columns] @ self.space.matrix
         rotation = placement.rotation
         goal = self.goal
@@ -88,11 +88,11 @@ class LinkTask:
         horizontal = float(np.hypot(x_axis[0], x_axis[1]))
         ahead = x_axis[:2] / horizontal if horizontal > _NO_HEADING else np.array([1.0, 0.0])
         slope = x_axis[2] * (ahead @ turned[:2]) - horizontal * turned[2]
-        wanted = float(np.arcsin(np.clip(np.sin(goal.pitch), -1.0, 1.0)))
-        return np.append(shift, wanted - pitch_of(rotation)), np.vstack([jacobian[:3], slope])
+        pitch = float(np.arcsin(np.clip(np.sin(goal.pitch), -1.0, 1.0)))
+        return np.append(shift, pitch - pitch_of(rotation)), np.vstack([jacobian[:3], slope])
 
     def polish(self, positions: FloatArray, iterations: int = 8) -> tuple[FloatArray, float]:
-        """Newton steps on a near solution; returns positions and the error's norm left."""
+        """Refine a near solution by Newton steps; returns positions and the remaining error."""
         positions = np.array(positions, dtype=float)
         error, jacobian = self.evaluate(positions)
         for _ in range(iterations):
@@ -109,8 +109,8 @@ class LinkTask:
     def least_squares(self, seed: FloatArray, iterations: int = 100) -> tuple[FloatArray, float]:
         """Damped least squares inside the position limits, from one seed.
 
-        Levenberg-Marquardt with the damping proportional to the squared error [1]; joints that
-        stand at a limit and would leave it take no part in a step.
+        Levenberg-Marquardt with the damping proportional to the squared error [1]; joints
+        at a limit that would exceed it are excluded from a step.
 
         Returns:
             Joint positions and the norm of the error there.
@@ -152,7 +152,7 @@ class LinkTask:
 
 
 def random_positions(space: GroupSpace, rng: np.random.Generator) -> FloatArray:
-    """Group positions drawn evenly inside the limits; a whole turn where there are none."""
+    """Draw group positions uniformly inside the limits, or in one turn where there are none."""
     lower = np.where(np.isfinite(space.lower), space.lower, -np.pi)
     upper = np.where(np.isfinite(space.upper), space.upper, np.pi)
     return rng.uniform(lower, upper)
@@ -172,12 +172,12 @@ def solve_numeric(
 
     Args:
         space: The group, the rest of the robot at rest.
-        goal: What the link must do.
-        seed_positions: Where the first search starts, shape (dof,).
-        seed: Of the restarts; the same seed gives the same answers.
-        restarts: Searches from random positions after the first.
-        most_restarts: Searches while nothing is found.
-        enough: How many solutions end the search.
+        goal: The goal of the link.
+        seed_positions: The start of the first search, shape (dof,).
+        seed: The seed of the restarts; the same seed gives the same result.
+        restarts: The number of searches from random positions after the first.
+        most_restarts: The largest number of searches while no solution is found.
+        enough: The number of solutions that ends the search.
 
     Returns:
         Distinct solutions in order of finding, exact to 1e-9, inside the limits; may be empty.

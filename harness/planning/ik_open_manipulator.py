@@ -10,7 +10,7 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.robot.description import Joint
 
-_EXACT = 1e-9  # [1] how far a cosine may be above one and still count as one
+_EXACT = 1e-9  # [1] tolerance of a cosine above one
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,11 +20,11 @@ class PlanarArm:
     Vectors are (forward, up) in the plane at zero, shape (2,) [m].
 
     Attributes:
-        axis: T_base_turntable's translation: where joint 1's axis stands, shape (3,).
-        shoulder: From there to joint 2.
-        upper: From joint 2 to joint 3.
-        fore: From joint 3 to joint 4.
-        tip: From joint 4 to the link that is placed.
+        axis: The translation of T_base_turntable, a point on joint 1's axis, shape (3,).
+        shoulder: The vector from that point to joint 2.
+        upper: The vector from joint 2 to joint 3.
+        fore: The vector from joint 3 to joint 4.
+        tip: The vector from joint 4 to the target link.
     """
 
     axis: FloatArray
@@ -35,7 +35,7 @@ class PlanarArm:
 
     @classmethod
     def of_joints(cls, joints: tuple[Joint, ...], T_last_link: SE3) -> PlanarArm:
-        """Read the lengths from the four joints' origins and the link behind the last."""
+        """Read the vectors from the four joints' origins and the link after the last joint."""
         origin = [joint.pose.translation for joint in joints]
         return cls(
             axis=origin[0],
@@ -48,7 +48,7 @@ class PlanarArm:
 
 @dataclass(frozen=True, eq=False)
 class PlanarAnswer:
-    """Angles of the branches that exist, and how far the others are from existing [m]."""
+    """Joint angles of the branches within reach, and how far the target is out of reach [m]."""
 
     solutions: tuple[FloatArray, ...]
     excess: float
@@ -72,7 +72,7 @@ def is_planar_arm(joints: tuple[Joint, ...], T_last_link: SE3) -> bool:
 
 
 def headings(arm: PlanarArm, position: FloatArray) -> tuple[float, float]:
-    """The two angles of joint 1 whose plane holds a point in the base frame: facing it, or away."""
+    """The two angles of joint 1 whose plane contains a point in the base frame."""
     facing = float(np.arctan2(position[1] - arm.axis[1], position[0] - arm.axis[0]))
     return facing, facing + np.pi
 
@@ -84,19 +84,19 @@ def pitch_in_plane(heading: float, x_axis: FloatArray) -> float:
 
 
 def pitches_below(heading: float, down: FloatArray, pitch: float) -> tuple[float, ...]:
-    """Pitches in the plane at a heading that point so far below the horizontal of the world.
+    """Pitches in the plane at a heading that give a pitch below the world's horizontal.
 
     The link's x axis at an in-plane pitch b is cos(b) forward - sin(b) up, in the base frame; its
     part along `down` must be sin(pitch). On a level base that is `pitch`, pointing away from the
     base, and pi - pitch, pointing to it.
 
     Args:
-        heading: Of the plane [rad].
+        heading: The heading of the plane [rad].
         down: The world's downward direction in the base frame, shape (3,).
-        pitch: Below the horizontal [rad].
+        pitch: The angle below the horizontal [rad].
 
     Returns:
-        Two angles [rad], or none where the plane is too steep for that pitch.
+        Two angles [rad], or none where the plane cannot contain that pitch.
     """
     ahead = float(down[0] * np.cos(heading) + down[1] * np.sin(heading))
     below = float(-down[2])
@@ -112,13 +112,13 @@ def pitches_below(heading: float, down: FloatArray, pitch: float) -> tuple[float
 def solve_planar(
     arm: PlanarArm, position: FloatArray, heading: float, pitch: float
 ) -> PlanarAnswer:
-    """Both elbow branches that put the link at a point, at a heading and a pitch in its plane.
+    """Solve both elbow branches for a point, a heading and a pitch in the plane.
 
     Args:
         arm: The arm's lengths.
-        position: In the base frame [m], shape (3,).
-        heading: Joint 1 [rad]; one of `headings`.
-        pitch: Sum of joints 2, 3 and 4 [rad]: how far the plane arm is turned downwards.
+        position: The target in the base frame [m], shape (3,).
+        heading: The angle of joint 1 [rad]; one of `headings`.
+        pitch: The sum of joints 2, 3 and 4 [rad], downwards.
     """
     offset = position - arm.axis
     forward = offset[0] * np.cos(heading) + offset[1] * np.sin(heading)

@@ -1,4 +1,4 @@
-"""How often inverse kinematics finds what forward kinematics has shown to be there."""
+"""Measures the success rate of inverse kinematics on poses from forward kinematics."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from harness.ports import PoseGoal
 
 @dataclass(frozen=True)
 class IkTrial:
-    """What became of poses that the robot can take.
+    """The result of a trial on reachable poses.
 
     Attributes:
-        solver: That was asked: `ur`, `open_manipulator_x` or `numeric`.
-        solved: Poses for which it found joint positions.
-        poses: How many there were.
-        worst: Largest distance of a found solution from its pose [m].
+        solver: The solver: `ur`, `open_manipulator_x` or `numeric`.
+        solved: The number of poses with a solution.
+        poses: The number of poses.
+        worst: The largest distance of a found solution from its pose [m].
     """
 
     solver: str
@@ -30,17 +30,17 @@ class IkTrial:
 
     @property
     def rate(self) -> float:
-        """Part of the poses that were solved."""
+        """Share of the poses that are solved."""
         return self.solved / self.poses if self.poses else 0.0
 
 
 def try_ik(kinematics: PinocchioKinematics, positions: FloatArray, seed: int) -> IkTrial:
-    """Ask for the TCP's poses at joint positions, from where the robot starts.
+    """Solve for the TCP's poses at joint positions, seeded with the robot's start state.
 
     Args:
-        kinematics: Of a robot with an arm group.
-        positions: Description order, shape (N, n).
-        seed: Of the restarts of numeric solvers.
+        kinematics: The kinematics of a robot with an arm group.
+        positions: Joint positions in description order, shape (N, n).
+        seed: The seed of the restarts of numeric solvers.
     """
     description = kinematics.description
     start = description.start_positions()

@@ -12,14 +12,14 @@ from harness.core.spatial import SE3, rotation_from_rpy
 from harness.core.types import FloatArray
 from harness.robot.description import Joint
 
-_EXACT = 1e-9  # [1] how far a cosine may be above one and still count as one
-_NEARLY = 1e-3  # [1] how far above one it still gets a try, see `solve_ur`
+_EXACT = 1e-9  # [1] tolerance of a cosine above one
+_NEARLY = 1e-3  # [1] tolerance for a candidate near a singularity, see `solve_ur`
 _WRIST_SINGULAR = 1e-7  # [rad] below, joints 4 and 6 turn about the same axis
 
 
 @dataclass(frozen=True)
 class UrGeometry:
-    """The six lengths that tell one UR from another [m], in Denavit-Hartenberg's words."""
+    """The six Denavit-Hartenberg lengths of a UR arm [m]."""
 
     d1: float
     a2: float
@@ -49,13 +49,13 @@ class UrGeometry:
 
 @dataclass(frozen=True, eq=False)
 class UrAnswer:
-    """The branches that exist, and by how much the others do not.
+    """The branches within reach, and how far the wrist is out of reach.
 
     Attributes:
-        branches: Angles in (-pi, pi], exact for the ideal geometry only, shape (N, 6) with N up
-            to 8; by shoulder, then wrist, then elbow, the positive one first.
-        excess: How far the wrist is beyond what the upper arm and forearm can span, over the
-            branches that were tried [m]; 0 when one was within reach.
+        branches: Joint angles in (-pi, pi], exact for the ideal geometry only, shape (N, 6) with
+            N up to 8; by shoulder, then wrist, then elbow, the positive one first.
+        excess: How far the wrist is beyond what the upper arm and forearm can span, over all
+            branches [m]; 0 when one is within reach.
     """
 
     branches: FloatArray
@@ -63,7 +63,7 @@ class UrAnswer:
 
 
 def is_ur_like(joints: tuple[Joint, ...]) -> bool:
-    """Whether six joints are arranged as a UR's (up to a calibration's small angles)."""
+    """Whether six joints are arranged like a UR's, up to the small angles of a calibration."""
     if len(joints) != 6 or any(joint.kind == "prismatic" for joint in joints):
         return False
     turns = [(0, 0, 0), (np.pi / 2, 0, 0), (0, 0, 0), (0, 0, 0), (np.pi / 2, 0, 0)]
@@ -76,20 +76,20 @@ def is_ur_like(joints: tuple[Joint, ...]) -> bool:
 
 
 def solve_ur(geometry: UrGeometry, T_base_wrist3: SE3, wrist_3_seed: float) -> UrAnswer:
-    """All joint angles that put wrist_3_link at a pose in the frame that joint 1 stands in.
+    """Solve for all joint angles that put wrist_3_link at a pose in joint 1's parent frame.
 
     With z the common axis of joints 2, 3 and 4, seen from wrist 3 as (s5 c6, -s5 s6, c5), the
     shoulder follows from the wrist centre, the wrist from z, the elbow from a planar two-link arm.
-    All in plain floats: a call is too short for arrays.
+    The computation uses plain floats, because arrays are slower for so few operations.
 
-    Descriptions have their right angles rounded (1.570796327), which the division by s5 turns into
-    much more beside the wrist's singularity: a stretched arm may then seem a little too short. It
-    is answered all the same, and whoever refines the answer finds whether it was.
+    Descriptions contain rounded right angles (1.570796327). Near the wrist singularity the division
+    by s5 amplifies the rounding, so that a stretched arm seems slightly too short. The solution is
+    returned nevertheless; the refinement decides whether it is valid.
 
     Args:
         geometry: The arm's lengths.
-        T_base_wrist3: Target.
-        wrist_3_seed: Angle given to joint 6 where joints 4 and 6 are parallel and it is free.
+        T_base_wrist3: The target pose.
+        wrist_3_seed: The preferred angle of joint 6 where joints 4 and 6 are parallel.
 
     References:
         K. P. Hawkins, "Analytic Inverse Kinematics for the Universal Robots UR-5/UR-10 Arms",
@@ -126,7 +126,7 @@ def solve_ur(geometry: UrGeometry, T_base_wrist3: SE3, wrist_3_seed: float) -> U
         shift_x, shift_y = g.d5 * (s6 * x0 + c6 * x1), g.d5 * (s6 * r20 + c6 * r21)
         turn = atan2(
             c5 * (c6 * r20 - s6 * r21) - s5 * r22, c5 * (c6 * x0 - s6 * x1) - s5 * x2
-        )  # of the plane's x axis behind joint 4
+        )  # of the plane's x axis after joint 4
         for wrist, wrist_2, wrist_3 in wrists:
             x, y = along + wrist * shift_x, height + wrist * shift_y
             bend = (x * x + y * y - g.a2 * g.a2 - g.a3 * g.a3) / (2 * g.a2 * g.a3)
@@ -150,7 +150,7 @@ def solve_ur(geometry: UrGeometry, T_base_wrist3: SE3, wrist_3_seed: float) -> U
 
 
 class _Circle(NamedTuple):
-    """Where joint 4 can be when joint 6 is free: `(x, y) + sin(q6) (a, b) + cos(q6) (c, d)`."""
+    """Positions of joint 4 when joint 6 is free: `(x, y) + sin(q6) (a, b) + cos(q6) (c, d)`."""
 
     x: float
     y: float
@@ -159,22 +159,22 @@ class _Circle(NamedTuple):
     b: float
     d: float
 
-    def squared_way(self, q6: float) -> float:
-        """From joint 2 [m^2]."""
+    def squared_distance(self, q6: float) -> float:
+        """The squared distance from joint 2 [m^2]."""
         s, c = sin(q6), cos(q6)
         return (self.x + s * self.a + c * self.c) ** 2 + (self.y + s * self.b + c * self.d) ** 2
 
 
 def _free_wrist_3(spans: tuple[float, float], circle: _Circle, seed: float) -> float:
-    """The angle nearest to a seed at which the arm can span the way to joint 4, which q6 moves.
+    """The angle q6 nearest to a seed at which the arm can span the distance to joint 4.
 
-    With joints 4 and 6 parallel, joint 4 lies on a circle about joint 6, and the square of the way
-    is `middle + cosine cos(q6) + sine sin(q6)`. The seed, where no angle will do.
+    With joints 4 and 6 parallel, joint 4 lies on a circle about joint 6, and the squared distance
+    is `middle + cosine cos(q6) + sine sin(q6)`. The seed itself where no angle is feasible.
     """
     shortest, longest = spans
-    if shortest**2 <= circle.squared_way(seed) <= longest**2:
+    if shortest**2 <= circle.squared_distance(seed) <= longest**2:
         return seed
-    east, north, west = (circle.squared_way(angle) for angle in (0.0, 0.5 * pi, pi))
+    east, north, west = (circle.squared_distance(angle) for angle in (0.0, 0.5 * pi, pi))
     middle = 0.5 * (east + west)
     cosine, sine = 0.5 * (east - west), north - middle
     swing, phase = hypot(cosine, sine), atan2(sine, cosine)

@@ -1,4 +1,4 @@
-"""The fastest way from 0 to 1 under a jerk limit, by Ruckig."""
+"""Computes the fastest motion from 0 to 1 under a jerk limit, by Ruckig."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -16,10 +16,10 @@ from harness.planning.profiles import on_grid
 
 @dataclass(frozen=True, eq=False)
 class JerkLimited:
-    """From 0 to 1, at rest and without acceleration on both ends, stretched to the time grid.
+    """From 0 to 1, without velocity and acceleration at both ends, stretched to the time grid.
 
     Attributes:
-        duration: A whole multiple of `GRID` [s].
+        duration: The duration, a whole multiple of `GRID` [s].
     """
 
     duration: float
@@ -27,7 +27,7 @@ class JerkLimited:
 
     @classmethod
     def fastest(cls, velocity: float, acceleration: float, jerk: float) -> JerkLimited:
-        """Under limits of the parameter's rate, its change, and the change of that.
+        """The fastest profile under limits of the parameter's rate, acceleration and jerk.
 
         Raises:
             TimingError: Ruckig has no solution.
@@ -36,12 +36,12 @@ class JerkLimited:
             L. Berscheid, T. Kroeger, "Jerk-limited Real-time Trajectory Generation with Arbitrary
             Target States", Robotics: Science and Systems, 2021.
         """
-        wanted = ruckig.InputParameter(1)
-        wanted.current_position, wanted.target_position = [0.0], [1.0]
-        wanted.max_velocity, wanted.max_acceleration = [velocity], [acceleration]
-        wanted.max_jerk = [jerk]
+        problem = ruckig.InputParameter(1)
+        problem.current_position, problem.target_position = [0.0], [1.0]
+        problem.max_velocity, problem.max_acceleration = [velocity], [acceleration]
+        problem.max_jerk = [jerk]
         found = ruckig.Trajectory(1)
-        answer = ruckig.Ruckig(1).calculate(wanted, found)
+        answer = ruckig.Ruckig(1).calculate(problem, found)
         if answer not in (ruckig.Result.Working, ruckig.Result.Finished):
             raise TimingError(f"Ruckig finds no motion under the jerk limit: {answer.name}")
         return cls(on_grid(found.duration), found)

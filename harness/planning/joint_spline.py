@@ -1,4 +1,4 @@
-"""A smooth curve through many joint positions, parametrised by the way the joints go."""
+"""A smooth curve through many joint positions, parametrised by joint-space length."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from scipy.interpolate import CubicSpline
 
 from harness.core.types import FloatArray
 
-_NEAREST = 1e-7  # [rad] samples nearer than this to the one before are left out
+_NEAREST = 1e-7  # [rad] samples nearer than this to the previous one are left out
 
 
 class JointSpline:
-    """Twice differentiable through samples that lie densely on a curve without corners.
+    """A twice differentiable curve through dense samples of a path without corners.
 
     Attributes:
-        samples: Group positions that it passes, shape (K, dof).
-        kept: Which of the given samples these are, shape (K,).
+        samples: The group positions on the curve, shape (K, dof).
+        kept: Their indices among the given samples, shape (K,).
         knots: Their parameters, shape (K,), from 0 to `length` [rad].
-        length: Of the polyline through the samples [rad].
+        length: The length of the polyline through the samples [rad].
     """
 
     def __init__(self, samples: FloatArray) -> None:
@@ -38,7 +38,7 @@ class JointSpline:
         return self._spline(s), self._spline(s, 1), self._spline(s, 2)
 
     def grid(self, pieces: int = 2) -> FloatArray:
-        """The knots, and points evenly between them."""
+        """The knots, and evenly spaced points between them."""
         parts = np.linspace(0.0, 1.0, pieces, endpoint=False)
         inner = self.knots[:-1, None] + np.diff(self.knots)[:, None] * parts
         return np.append(inner.ravel(), self.length)

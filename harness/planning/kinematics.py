@@ -1,4 +1,4 @@
-"""Kinematics of a composed robot: analytic inverse where the arm has one, else numeric."""
+"""Kinematics of a composed robot, with an analytic inverse where one exists, else a numeric one."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ from harness.ports import PoseGoal, PositionGoal
 from harness.robot.description import Joint, RobotDescription
 
 WHOLE_POSE_JOINTS, PITCH_JOINTS = 6, 4
-"""Joints that an arm needs to take any pose, and any position with any pitch."""
+"""Joints that an arm needs for an arbitrary pose, and for an arbitrary position and pitch."""
 
 PITCH_SAMPLES = 73
 """Pitches tried for a position goal that leaves the pitch free: every 5 degrees of a whole turn."""
 
-_POLISHED = 1e-7  # [m, rad] closed forms that Newton's method cannot bring below are no solutions
-_LIMIT_SLACK = 1e-9  # [rad] a solution this far outside a limit is put on it
+_POLISHED = 1e-7  # [m, rad] largest error of a closed-form solution after refinement
+_LIMIT_SLACK = 1e-9  # [rad] a solution this far outside a limit is set to the limit
 
 
 class PinocchioKinematics:
@@ -69,7 +69,7 @@ class PinocchioKinematics:
     def analyse(
         self, space: GroupSpace, goal: LinkGoal, seed_positions: FloatArray, seed: int
     ) -> IkAnswer:
-        """Solutions, and what became of those that are none.
+        """Solve inverse kinematics and classify every candidate.
 
         Raises:
             PlanningFailed: INVALID_LINK_NAME, when the link is not moved by the group alone.
@@ -80,7 +80,7 @@ class PinocchioKinematics:
             goal = PositionGoal(goal.link, point, position_tolerance=goal.position_tolerance)
         reference = space.part(seed_positions)
         joints = tuple(self.description.joint_by_name[name] for name in space.joint_names)
-        T_last_link = self._behind(joints[-1], goal.link)
+        T_last_link = self._fixed_offset(joints[-1], goal.link)
         solver = self.description.ik_solver
         whole_pose = isinstance(goal, PoseGoal)
         excess = 0.0
@@ -102,7 +102,7 @@ class PinocchioKinematics:
     def residual(
         self, space: GroupSpace, goal: LinkGoal, positions: FloatArray
     ) -> tuple[float, float]:
-        """How far group positions miss a goal: [m], and [rad] of what it says of the turn."""
+        """Position error [m] and orientation error [rad] of a goal at group positions."""
         return distance_to_goal(goal, self.link_pose(space.whole(positions), goal.link))
 
     def _sort(
@@ -114,7 +114,7 @@ class PinocchioKinematics:
         *,
         polish: bool,
     ) -> tuple[list[FloatArray], list[LimitedSolution], list[MissedSolution]]:
-        """Polish, turn into the limits, part from what misses the tolerance, nearest first."""
+        """Refine candidates, turn them into the limits, and sort them: inside, outside, missed."""
         task = LinkTask(space, goal)
         inside: list[FloatArray] = []
         outside: list[LimitedSolution] = []
@@ -147,7 +147,7 @@ class PinocchioKinematics:
         pose: SE3,
         reference: FloatArray,
     ) -> list[MissedSolution]:
-        """One at a pose's point inside the limits, turned away from it; or none."""
+        """The candidate as a missed solution if it reaches the position inside the limits."""
         kept = into_limits(space, positions, reference)
         shift, turn = distance_to_goal(goal, pose)
         at_the_point = isinstance(goal, PoseGoal) and shift <= goal.position_tolerance
@@ -158,7 +158,7 @@ class PinocchioKinematics:
     def _ur(
         self, joints: tuple[Joint, ...], T_last_link: SE3, goal: PoseGoal, reference: FloatArray
     ) -> tuple[list[FloatArray], float]:
-        T_world_base = self._in_front(joints[0])
+        T_world_base = self._base_pose(joints[0])
         T_base_wrist3 = T_world_base.inverse() @ goal.pose @ T_last_link.inverse()
         answer = solve_ur(UrGeometry.of_joints(joints), T_base_wrist3, float(reference[-1]))
         return list(answer.branches), max(answer.excess, 0.0)
@@ -172,7 +172,7 @@ class PinocchioKinematics:
         seed_positions: FloatArray,
     ) -> tuple[list[FloatArray], float]:
         arm = PlanarArm.of_joints(joints, T_last_link)
-        T_base_world = self._in_front(joints[0]).inverse()
+        T_base_world = self._base_pose(joints[0]).inverse()
         target = goal.pose.translation if isinstance(goal, PoseGoal) else goal.position
         position = T_base_world.apply(np.asarray(target, dtype=float))
         found: list[FloatArray] = []
@@ -204,18 +204,18 @@ class PinocchioKinematics:
                 {"link": link, "group": space.group},
             )
 
-    def _behind(self, joint: Joint, link: str) -> SE3:
-        """T_child_link from the joint's child to a link rigidly behind it."""
+    def _fixed_offset(self, joint: Joint, link: str) -> SE3:
+        """T_child_link from the joint's child link to a link that is fixed to it."""
         robot = self.robot
         return robot.placement(joint.child).inverse() @ robot.placement(link)
 
-    def _in_front(self, joint: Joint) -> SE3:
-        """T_world_parent of a first joint's parent, which stands still."""
+    def _base_pose(self, joint: Joint) -> SE3:
+        """T_world_parent of the first joint's parent link, which is static."""
         return self.link_pose(np.zeros(len(self.description.joint_names)), joint.parent)
 
 
 def task_of(space: GroupSpace, goal: LinkGoal) -> str:
-    """What is solved for, chosen from the arm: fewer than six joints cannot take any pose."""
+    """The quantities that are solved for; fewer than six joints cannot reach every pose."""
     if isinstance(goal, PositionGoal):
         return "position" if goal.pitch is None else "position and pitch"
     if space.dof >= WHOLE_POSE_JOINTS:
@@ -232,7 +232,7 @@ def reduced(space: GroupSpace, goal: PoseGoal) -> PositionGoal:
 def into_limits(
     space: GroupSpace, positions: FloatArray, reference: FloatArray
 ) -> FloatArray | LimitedSolution:
-    """A solution turned by whole turns: inside the limits, nearest to a reference."""
+    """Shift a solution by whole turns into the limits, nearest to a reference."""
     turned = np.array(positions, dtype=float)
     worst: tuple[float, int, float] | None = None  # excess, joint, limit
     turn = 2 * np.pi
@@ -240,10 +240,10 @@ def into_limits(
         lower, upper = space.lower[index] - _LIMIT_SLACK, space.upper[index] + _LIMIT_SLACK
         value = turned[index]
         if space.wraps[index]:
-            wanted = np.round((reference[index] - value) / turn)
+            turns = np.round((reference[index] - value) / turn)
             fewest, most = np.ceil((lower - value) / turn), np.floor((upper - value) / turn)
             if fewest <= most:
-                value = value + turn * np.clip(wanted, fewest, most)
+                value = value + turn * np.clip(turns, fewest, most)
             else:
                 middle = 0.5 * (lower + upper)
                 value = value + turn * np.round((middle - value) / turn)

@@ -1,4 +1,4 @@
-"""Where a line or an arc ends: the pose of its link that a goal of any kind means."""
+"""Converts a goal of any kind to the end pose of a line or an arc."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -18,17 +18,17 @@ from harness.ports import Goal, JointGoal, PoseGoal, PositionGoal
 def end_pose(
     kinematics: PinocchioKinematics, task: PlanningTask, start: FloatArray, goal: Goal
 ) -> PoseGoal:
-    """The pose goal of a way through space.
+    """Convert a goal to the end pose of a Cartesian path.
 
-    Joint positions mean the pose that they give the TCP, as with Pilz's LIN. A position keeps the
-    link turned as it is but for the pitch that is asked for; an arm of fewer than six joints
-    cannot: its yaw follows from the point.
+    Joint positions stand for the TCP pose that they produce, as in Pilz's LIN. A position goal
+    keeps the link's orientation except for a requested pitch; with fewer than six joints the yaw
+    follows from the position.
 
     Args:
-        kinematics: Of the robot.
-        task: Of the motion.
-        start: Group positions.
-        goal: As stated.
+        kinematics: The robot's kinematics.
+        task: The planning call.
+        start: Group positions at the start.
+        goal: The requested goal.
     """
     if isinstance(goal, PoseGoal):
         return goal
@@ -40,8 +40,8 @@ def end_pose(
     turned = now.rotation if goal.pitch is None else pitched(now.rotation, goal.pitch)
     if task.space.dof < 6:
         pitch = pitch_of(now.rotation) if goal.pitch is None else goal.pitch
-        wanted = PositionGoal(goal.link, goal.position, pitch)
-        solutions = kinematics.solve(task.space.group, wanted, whole, task.options.seed)
+        reduced = PositionGoal(goal.link, goal.position, pitch)
+        solutions = kinematics.solve(task.space.group, reduced, whole, task.options.seed)
         if solutions:
             end = task.space.whole(solutions[0])
             turned = kinematics.link_pose(end, goal.link).rotation
@@ -51,15 +51,15 @@ def end_pose(
 def pitched(rotation: FloatArray, pitch: float) -> FloatArray:
     """A rotation turned about a level axis until its x axis is `pitch` below the horizontal [rad].
 
-    The heading stays; that of a vertical x axis is where its z axis, or the opposite, points.
+    The heading is unchanged; for a vertical x axis it is that of the z axis or its opposite.
     """
     x_axis = rotation[:, 0]
     level = np.array([x_axis[0], x_axis[1], 0.0])
     if np.linalg.norm(level) < 1e-6:
         level = np.sign(-x_axis[2]) * np.array([rotation[0, 2], rotation[1, 2], 0.0])
     level /= np.linalg.norm(level)
-    wanted = np.cos(pitch) * level - np.sin(pitch) * np.array([0.0, 0.0, 1.0])
-    across = np.cross(x_axis, wanted)
+    direction = np.cos(pitch) * level - np.sin(pitch) * np.array([0.0, 0.0, 1.0])
+    across = np.cross(x_axis, direction)
     about = np.array([-level[1], level[0], 0.0])
-    angle = np.arctan2(float(across @ about), float(x_axis @ wanted))
+    angle = np.arctan2(float(across @ about), float(x_axis @ direction))
     return pin.exp3(angle * about) @ rotation

@@ -57,7 +57,7 @@ class VerifiedPlanner:
 
     @property
     def description(self) -> RobotDescription:
-        """Of the robot that is planned for."""
+        """The robot for which motions are planned."""
         return self.scene.description
 
     @explained
@@ -104,8 +104,8 @@ class VerifiedPlanner:
             except TimingError as problem:
                 raise _untimed(problem) from problem
         else:
-            task = replace(task, limits=_whole_limits(task))
-            trajectory = _timed_by_hand(task, end, duration)
+            task = replace(task, limits=_unscaled_limits(task))
+            trajectory = _timed_to_duration(task, end, duration)
         task.accept(trajectory, end, "the straight joint motion")
         explanation = {"lowered_margins": list(task.checker.lowered)}
         statistics = task.statistics("PTP", trajectory, [task.start, end])
@@ -135,7 +135,7 @@ class VerifiedPlanner:
         distances: tuple[float, float],
         options: PlanningOptions,
     ) -> MotionPlan:
-        """Move a link along a direction as far as goes between two distances."""
+        """Move a link along a direction as far as possible between two distances."""
         return self._links(group, start, options).relative(link, twist, distances)
 
     @explained
@@ -170,7 +170,7 @@ class VerifiedPlanner:
         options: PlanningOptions,
         constraints: PathConstraints | None = None,
     ) -> Mapping[str, Any]:
-        """What can be said of a goal without planning to it: each IK solution's fate.
+        """Explain a goal without planning to it: the status of each solution of inverse kinematics.
 
         `positions` are the group's at the free solution that would be tried first.
         """
@@ -192,7 +192,7 @@ class VerifiedPlanner:
         return LinkMotions(self.kinematics, self._task(group, start, options))
 
 
-def _whole_limits(task: PlanningTask) -> Limits:
+def _unscaled_limits(task: PlanningTask) -> Limits:
     whole = Limits.scaled(task.space.velocity, task.space.acceleration, 1.0, 1.0)
     return replace(whole, dynamics=task.limits.dynamics, jerk=task.limits.jerk)
 
@@ -201,11 +201,11 @@ def _untimed(problem: TimingError) -> PlanningFailed:
     return PlanningFailed("INVALID_MOTION_PLAN", str(problem), problem.facts)
 
 
-def _timed_by_hand(task: PlanningTask, end: FloatArray, duration: float) -> JointTrajectory:
-    """A cubic from rest to rest in exactly the duration asked for; a quintic under a jerk limit.
+def _timed_to_duration(task: PlanningTask, end: FloatArray, duration: float) -> JointTrajectory:
+    """A cubic from rest to rest in exactly the requested duration; a quintic under a jerk limit.
 
     Raises:
-        PlanningFailed: INVALID_MOTION_PLAN, when a joint cannot do it; says how long it needs.
+        PlanningFailed: INVALID_MOTION_PLAN, when a joint cannot do it; names the shortest duration.
     """
     limits, total = task.limits, on_grid(duration)
     span = np.abs(end - task.start)

@@ -15,7 +15,7 @@ from harness.planning.wording import count, padding_advice, touch, touches
 from harness.recording.explanation import Stage
 
 RESOLUTION = FINAL_RESOLUTION
-"""Joint-space distance between states when a straight way is looked along [rad]."""
+"""Joint-space distance between checked states of a straight path [rad]."""
 
 _GOAL_CODES = (
     "NO_IK_SOLUTION",
@@ -35,7 +35,7 @@ _TIMING_DEFECTS = (
 
 
 def start_finding(request: StageRequest) -> Finding:
-    """Whether the motion could begin where the robot stands."""
+    """Whether the motion can begin at the robot's current state."""
     failure = request.failure
     if failure.code == "START_STATE_INVALID":
         stage = Stage("start state", "failed", failure.message, failure.code)
@@ -44,8 +44,8 @@ def start_finding(request: StageRequest) -> Finding:
     if request.checker is not None:
         to_objects = [item for item, pair in found if pair.keeps_padding]
         nearest = (to_objects or [item for item, _ in found])[:1]
-        said = f"; nearest are {touch(nearest[0])}" if nearest else ""
-        return Finding(Stage("start state", "passed", f"free{said}"))
+        clause = f"; nearest are {touch(nearest[0])}" if nearest else ""
+        return Finding(Stage("start state", "passed", f"free{clause}"))
     deep = [item for item, _ in found if item.distance < 0]
     first, second = deep[0].first, deep[0].second
     stage = Stage(
@@ -62,13 +62,13 @@ def start_finding(request: StageRequest) -> Finding:
     }
     advice = (
         f"move {second} away, or start elsewhere (`robot: {{start_state: ...}}`); where the "
-        f"contact is meant, plan inside `allow_collisions` with the pair [{first}, {second}]"
+        f"contact is intended, plan inside `allow_collisions` with the pair [{first}, {second}]"
     )
     return Finding(stage, nearest_state, advice)
 
 
 def path_finding(request: StageRequest, target: FloatArray | None) -> Finding:
-    """What blocked the way; `target` are the group's positions it would have gone to first."""
+    """What blocks the path; `target` are the group positions of the first free solution."""
     failure = request.failure
     if failure.code.startswith("START_STATE"):
         return Finding(Stage("path", "not reached", "there is no start to go from"))
@@ -82,7 +82,7 @@ def path_finding(request: StageRequest, target: FloatArray | None) -> Finding:
 
 
 def timing_finding(request: StageRequest) -> Finding:
-    """Whether a path could be given times under the limits."""
+    """Whether a path can be timed under the limits."""
     failure = request.failure
     if not is_timing(request):
         return Finding(Stage("time parameterisation", "not reached", "there is no path"))
@@ -96,7 +96,7 @@ def timing_finding(request: StageRequest) -> Finding:
 
 
 def _overload_advice(facts: Mapping[str, Any]) -> str:
-    """What helps an arm that cannot hold itself or its load still; going slower does not."""
+    """Advice for an arm that cannot hold itself or its payload statically."""
     most = facts.get("most_mass", 0.0)
     if most >= 0.01:
         held = " and ".join(facts["held"])
@@ -112,13 +112,13 @@ def _overload_advice(facts: Mapping[str, Any]) -> str:
 
 
 def is_timing(request: StageRequest) -> bool:
-    """Whether the failure came when a path was given its times."""
+    """Whether the failure occurred in time parameterisation."""
     facts = request.failure.facts
     return facts.get("broken") in _TIMING_DEFECTS or "shortest_duration" in facts
 
 
 def _blocked(request: StageRequest, target: FloatArray | None) -> tuple[list[str], dict[str, Any]]:
-    """How far the motion came, and a state to draw: its end, or where the straight way ends."""
+    """Details of a blocked motion, and a state to draw: its end, or the first blocked state."""
     facts, options = request.failure.facts, request.options
     details: list[str] = []
     shown: dict[str, Any] = {}
@@ -134,7 +134,7 @@ def _blocked(request: StageRequest, target: FloatArray | None) -> tuple[list[str
         if blocked is not None:
             share, found = blocked
             details.append(
-                f"what blocks: after {100 * share:.0f} % of the straight way, {touches(found)}"
+                f"what blocks: after {100 * share:.0f} % of the straight path, {touches(found)}"
             )
             shown = {
                 "shows": "where the straight way is blocked",
@@ -143,8 +143,8 @@ def _blocked(request: StageRequest, target: FloatArray | None) -> tuple[list[str
             }
     if "gap" in facts:
         details.append(
-            f"how far the trees came: {facts['gap']:.2f} rad of joint space are left between what "
-            "was reached from the start and the goal"
+            f"gap between the search trees: {facts['gap']:.2f} rad of joint space remain between "
+            "the states reached from the start and the goal"
         )
     if "state_checks" in facts:
         searches = count(options.attempts, "search")

@@ -21,7 +21,7 @@ _FIRST_CHUNK, _LARGEST_CHUNK = 8, 512  # samples looked ahead at once
 
 @dataclass(frozen=True, eq=False)
 class ShapePair:
-    """Two shapes whose distance is wanted.
+    """Two shapes whose distance is measured.
 
     Attributes:
         first: A shape of the moving body.
@@ -67,7 +67,7 @@ def smallest_distances(pairs: Sequence[ShapePair], cutoff: float) -> tuple[Float
 
     Args:
         pairs: All over the same N samples, none absent.
-        cutoff: Larger distances are not told apart [m].
+        cutoff: Larger distances are reported as the cutoff [m].
 
     Returns:
         Distances (N,), at most `cutoff`, and indices of pairs (N,), -1 at the cutoff.

@@ -14,7 +14,7 @@ from harness.planning.robot_model import GroupSpace
 from harness.ports import PoseGoal, PositionGoal
 
 RESTARTS = 12
-"""Searches from random positions beside the one from the seed."""
+"""Number of searches from random positions, in addition to the one from the seed."""
 
 EVEN, KEEP_TURN, KEEP_POINT = 0.1, 100.0, 1e-3
 """Metres that a radian counts: as a hand's breadth, above all, nearly nothing."""
@@ -63,8 +63,8 @@ def distance_to_goal(goal: LinkGoal, pose: SE3) -> tuple[float, float]:
     shift = float(np.linalg.norm(goal.position - pose.translation))
     if goal.pitch is None:
         return shift, 0.0
-    wanted = float(np.arcsin(np.clip(np.sin(goal.pitch), -1.0, 1.0)))
-    return shift, abs(pitch_of(pose.rotation) - wanted)
+    pitch = float(np.arcsin(np.clip(np.sin(goal.pitch), -1.0, 1.0)))
+    return shift, abs(pitch_of(pose.rotation) - pitch)
 
 
 def nearest_pose(
@@ -75,7 +75,7 @@ def nearest_pose(
     *,
     metres_per_radian: float = EVEN,
 ) -> NearestPose:
-    """The pose inside the joint limits that comes nearest to a goal; collisions are not asked.
+    """The pose inside the joint limits that comes nearest to a goal; collisions are ignored.
 
     Damped least squares from the seed and from random positions: what it says can be reached is
     reached; that nothing is nearer is not proved.

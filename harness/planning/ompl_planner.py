@@ -1,4 +1,4 @@
-"""Asks OMPL for a path between positions of a group, with our edge checks and a counted budget."""
+"""Searches a path with OMPL, with the harness's edge checks and a counted budget."""
 
 # pyright: reportAttributeAccessIssue=false, reportIndexIssue=false
 
@@ -20,8 +20,8 @@ from harness.planning.planner_parameters import parameter_names, set_parameters
 from harness.planning.roadmap import find_in_roadmap
 
 DEFAULTS: Mapping[str, float] = {"range": 1.5, "find_approximate_solutions": 1}
-"""Of the planners that have them: a tree's longest edge [rad], of which OMPL makes a fifth of the
-space's extent; and that BITstar tells how near it came."""
+"""Parameters of the planners that have them: a tree's longest edge [rad], by default a fifth of the
+space's extent in OMPL, and approximate solutions, which give BITstar's remaining distance."""
 
 IMPROVING_SHARE = 0.2
 """Part of the budget in which planners that improve their path (RRTstar, PRMstar, BITstar ...) do
@@ -29,11 +29,11 @@ so; the rest is for hard problems, and for a finer search should the path not ho
 budget BITstar improves for 0.6 s; 9 s would go into half of it."""
 
 STALLED = 100_000
-"""Turns of a planner without a state check after which it will make none any more."""
+"""Iterations of a planner without a state check after which it has stalled."""
 
 
-class _Ending:
-    """When a planner has to stop: the budget used, its path improved long enough, or stalled."""
+class _Termination:
+    """Stops a planner whose budget is used, whose path is improved enough, or that stalls."""
 
     def __init__(self, planner: ob.Planner, checker: MotionChecker, enough: int, end: int) -> None:
         self._best_cost: Callable[[], ob.Cost] | None = getattr(planner, "bestCost", None)
@@ -52,8 +52,8 @@ class _Ending:
             return False
         return math.isfinite(self._best_cost().value())
 
-    def let_go(self) -> None:
-        """Forget the planner, which may keep this (AORRTC does): a cycle that nobody frees."""
+    def release(self) -> None:
+        """Drop the planner, which may hold this condition (AORRTC does): an uncollectable cycle."""
         self._best_cost = None
 
 
@@ -104,9 +104,9 @@ def search_ompl(
         ends = [tuple(map(float, positions)) for positions in (start, *goals)]
         way, gap = find_in_roadmap(planner, ends, lambda: checker.checks, improving, end)
         return way, checker.checks - before, planner.milestoneCount(), gap
-    ending = _Ending(planner, checker, enough, end)
+    ending = _Termination(planner, checker, enough, end)
     planner.solve(ob.PlannerTerminationCondition(ending))
-    ending.let_go()
+    ending.release()
     used = checker.checks - before
     vertices, gap = _reached(planner, problem, checker.space.dof)
     if not problem.definition.hasExactSolution():
@@ -124,14 +124,14 @@ def _seed_ompl(seed: int) -> None:
 
 
 def _reached(planner: ob.Planner, problem: OmplProblem, dof: int) -> tuple[int, float]:
-    """Vertices, and how near they came to the goal, or the two trees to each other [rad].
+    """Vertices, and the remaining distance to the goal, or between the two trees [rad].
 
-    0 when OMPL does not tell. BITstar is not asked for its graph: OMPL 2.0 keeps every state of
-    one that was asked for until the process ends (5 MB a plan). Its vertices are its samples.
+    The distance is 0 when OMPL reports none. BITstar's graph is not read: OMPL 2.0 keeps all its
+    states until the process ends (5 MB a plan); its samples are counted as vertices instead.
     """
-    told = max(0.0, float(problem.definition.getSolutionDifference()))
+    gap = max(0.0, float(problem.definition.getSolutionDifference()))
     if isinstance(planner, og.BITstar):
-        return problem.free_states.count, told
+        return problem.free_states.count, gap
     data = ob.PlannerData(problem.information)
     planner.getPlannerData(data)
     count = int(data.numVertices())
@@ -141,5 +141,5 @@ def _reached(planner: ob.Planner, problem: OmplProblem, dof: int) -> tuple[int, 
     tags = np.array([data.getVertex(v).getTag() for v in range(count)])
     if len(set(tags.tolist())) == 2:
         first, second = (points[tags == tag] for tag in sorted(set(tags.tolist())))
-        told = float(np.sqrt(min(((first - q) ** 2).sum(axis=1).min() for q in second)))
-    return count, told
+        gap = float(np.sqrt(min(((first - q) ** 2).sum(axis=1).min() for q in second)))
+    return count, gap

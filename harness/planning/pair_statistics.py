@@ -73,10 +73,7 @@ class SelfTouches:
         """Pairs that need not be checked, with the reason; adjacent ones first."""
         reasons = {pair: self._reason(index) for index, pair in enumerate(self.pairs)}
         return {
-            pair: wanted
-            for wanted in REASONS
-            for pair, reason in reasons.items()
-            if reason == wanted
+            pair: kind for kind in REASONS for pair, reason in reasons.items() if reason == kind
         }
 
     def _reason(self, index: int) -> Reason | None:
@@ -117,7 +114,7 @@ def self_touches(description: RobotDescription, positions: FloatArray) -> SelfTo
 
 
 class _Checker:
-    """All shapes of a robot, and the pairs of links that can come to touch."""
+    """All shapes of a robot, and the pairs of links that can collide."""
 
     def __init__(self, description: RobotDescription) -> None:
         self._robot = RobotModel(description)

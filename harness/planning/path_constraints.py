@@ -41,7 +41,7 @@ class HeldConstraints:
         space: The group.
         lower: Of each value, shape (m,).
         upper: Shape (m,).
-        checks: States looked at so far.
+        checks: The number of states evaluated.
     """
 
     def __init__(self, constraints: PathConstraints, space: GroupSpace) -> None:

@@ -20,11 +20,11 @@ from other seeds."""
 
 @dataclass(eq=False)
 class Effort:
-    """What a search has cost so far.
+    """The cost of the searches of one planning call.
 
     Attributes:
-        checks: State checks of all searches.
-        gaps: Of the searches that found nothing [rad].
+        checks: The state checks of all searches.
+        gaps: The remaining distances of the searches that failed [rad].
     """
 
     checks: int = 0

@@ -1,4 +1,4 @@
-"""Which OMPL planners a scenario may ask for, and under which names."""
+"""The planners that a scenario may select, and their names."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _CLASSES: Mapping[str, str] = {
     "PRMstar": "PRMstar",
     "BITstar": "BITstar",
 }
-"""Planner name -> class of the OMPL wheel; the first two are our own."""
+"""Planner name -> class of the OMPL wheel; the first two are built in."""
 
 _REFUSED: Mapping[str, str] = {
     "LazyPRM": "the OMPL wheel does not have it",
@@ -61,7 +61,7 @@ def planner_names() -> tuple[str, ...]:
 
 
 def resolve_planner_id(name: str) -> str:
-    """The planner that a name means: OMPL's class, or one of our own.
+    """The planner that a name means: OMPL's class, or a built-in one.
 
     `geometric::RRTConnect` (OMPL), `RRTConnectkConfigDefault` (MoveIt), `RRTConnect` and
     `rrtconnect` are one planner.
@@ -84,7 +84,7 @@ def resolve_planner_id(name: str) -> str:
 
 
 def check_planner(name: str, parameters: Mapping[str, float]) -> str:
-    """The planner that a name means, after it was asked whether it takes parameters.
+    """Resolve a planner name and check that the planner accepts the parameters.
 
     Raises:
         ValueError: The planner is unknown or refused, or does not take one; says what there is.

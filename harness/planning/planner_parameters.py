@@ -25,14 +25,14 @@ _NAMES: Mapping[str, tuple[str, ...]] = {
     "StopOnSolnImprovement": ("stop_on_each_solution_improvement",),
     "StrictQueueOrdering": ("use_strict_queue_ordering",),
 }
-"""Setter -> parameter, where OMPL spells them apart (its planners' printSettings tells)."""
+"""Setter -> parameter, where OMPL spells them apart (as printSettings prints them)."""
 
 _RANGES: Mapping[str, tuple[int, int]] = {
     "max_nearest_neighbors": (1, 1_000),
     "num_samples": (1, 1_000_000),
     "samples_per_batch": (1, 1_000_000),
 }
-"""Counts with which a planner comes to an end; OMPL suggests these and does not check them."""
+"""Counts with which a planner terminates; OMPL suggests these and does not check them."""
 
 _NO_PARAMETERS = {
     "DefaultConnectionStrategy",

@@ -1,4 +1,4 @@
-"""Reach in an explanation: the nearest pose to a goal that cannot be had, and what to ask for."""
+"""Explains reach: the pose nearest to an unreachable goal, and a reachable alternative."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ _STEPS_BACK = (0.0, 0.001, 0.002, 0.005, 0.01, 0.02)  # [m] from the edge of the
 
 
 def reach_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> Finding:
-    """Whether the arm reaches the goal at all, else the nearest it comes, and what to write."""
+    """Whether the arm reaches the goal; otherwise the nearest pose and a reachable goal."""
     target = point(target_of(goal))
     if study.answer.solutions:
-        text = f"{goal.link} reaches {target} as asked"
+        text = f"{goal.link} reaches {target} as requested"
         if study.answer.task != "pose" and isinstance(goal, PoseGoal):
             shift, turn = study.branches[0].residual
-            text += f", but for {length(shift)} and {angle(turn)}"
+            text += f", except for {length(shift)} and {angle(turn)}"
         return Finding(Stage("reach", "passed", text))
     if study.answer.missed:
         return _too_few_joints(request, goal, study)
@@ -42,16 +42,16 @@ def reach_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> Fi
         request.space, goal, request.space.part(request.start), request.options.seed
     )
     if nearest.is_reached:
-        return Finding(Stage("reach", "passed", f"{goal.link} reaches {target} as asked"))
+        return Finding(Stage("reach", "passed", f"{goal.link} reaches {target} as requested"))
     others = dict(_alternatives(request, goal, nearest))
     stage = Stage(
         "reach",
         "failed",
         f"nearest reachable pose: {point(nearest.pose.translation)}, {_away(goal, nearest)} away",
         "NO_IK_SOLUTION",
-        tuple(f"{how}: {_told(how, other)}" for how, other in others.items()),
+        tuple(f"{how}: {_describe(how, other)}" for how, other in others.items()),
     )
-    advice = _reached_goal(request, goal, others.get(_AS_ASKED, nearest))
+    advice = _reached_goal(request, goal, others.get(_SAME_ORIENTATION, nearest))
     return Finding(stage, nearest_facts(request, goal, nearest), advice)
 
 
@@ -68,43 +68,45 @@ def _too_few_joints(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> 
     keys = "`position` and `pitch`" if "pitch" in task else "`position`"
     tolerance = np.ceil(1000 * nearest.turn + 0.5) / 1000
     advice = (
-        f"ask for {keys} instead of `pose`, or allow `tolerance: {{orientation: {tolerance:.3f}}}`"
+        f"give {keys} instead of `pose`, or allow `tolerance: {{orientation: {tolerance:.3f}}}`"
     )
     return Finding(stage, nearest_facts(request, goal, nearest), advice)
 
 
-_AS_ASKED, _AS_IT_MAY, _AT_THE_PLACE = "turned as asked", "turned as it may", "at the place asked"
+_SAME_ORIENTATION = "with the requested orientation"
+_ANY_ORIENTATION = "with any orientation"
+_SAME_POSITION = "at the requested position"
 
 
 def _alternatives(
     request: StageRequest, goal: LinkGoal, nearest: NearestPose
 ) -> Iterator[tuple[str, NearestPose]]:
-    """The nearest place turned as asked, turned as it may, and the least turn at the place."""
+    """The nearest poses with the requested orientation, any orientation, the requested position."""
     space, seed = request.space, request.options.seed
     if isinstance(goal, PositionGoal) and goal.pitch is None:
         return
     here = nearest.positions
     kept = nearest_pose(space, goal, here, seed, metres_per_radian=KEEP_TURN)
     if kept.turn < _KEPT:
-        yield _AS_ASKED, kept
+        yield _SAME_ORIENTATION, kept
     alone = PositionGoal(goal.link, target_of(goal))
     free = nearest_pose(space, alone, here, seed)
     if free.shift > _KEPT:
-        yield _AS_IT_MAY, free
+        yield _ANY_ORIENTATION, free
         return
     there = nearest_pose(space, goal, free.positions, seed, metres_per_radian=KEEP_POINT)
     if there.shift < _KEPT:
-        yield _AT_THE_PLACE, there
+        yield _SAME_POSITION, there
 
 
-def _told(how: str, other: NearestPose) -> str:
-    if how == _AT_THE_PLACE:
-        return f"{angle(other.turn)} turned away"
+def _describe(how: str, other: NearestPose) -> str:
+    if how == _SAME_POSITION:
+        return f"{angle(other.turn)} away"
     return f"{point(other.pose.translation)}, {length(other.shift)} away"
 
 
 def _reached_goal(request: StageRequest, goal: LinkGoal, near: NearestPose) -> str:
-    """A goal near this one that is reached, rounded as a person writes it, and tried."""
+    """Advice with a reachable goal near this one, rounded and verified by inverse kinematics."""
     way = near.pose.translation - target_of(goal)
     way /= max(float(np.linalg.norm(way)), 1e-9)
     is_pose = isinstance(goal, PoseGoal)
@@ -121,12 +123,12 @@ def _reached_goal(request: StageRequest, goal: LinkGoal, near: NearestPose) -> s
         seed = request.options.seed
         if not request.kinematics.analyse(request.space, moved, request.start, seed).solutions:
             continue
-        said = f"frame: world, xyz: [{_numbers(xyz)}]"
+        value = f"frame: world, xyz: [{_numbers(xyz)}]"
         if is_pose:
-            said += f", quat_xyzw: [{_numbers(xyzw_from_wxyz(quat))}]"
-        turned = ", turned as asked" if kept_turn else ""
+            value += f", quat_xyzw: [{_numbers(xyzw_from_wxyz(quat))}]"
+        turned = ", with the requested orientation" if kept_turn else ""
         key = "pose" if is_pose else "position"
-        return f"`{key}: {{{said}}}` is reached{turned}; or bring base and goal nearer together"
+        return f"`{key}: {{{value}}}` is reached{turned}; or bring base and goal nearer together"
     return "bring base and goal nearer together, or turn the goal"
 
 
@@ -135,7 +137,7 @@ def _numbers(values: FloatArray) -> str:
 
 
 def _away(goal: LinkGoal, nearest: NearestPose) -> str:
-    """`14.0 mm and 18.8°`; one of both where the other is nothing."""
+    """`14.0 mm and 18.8°`; only one of them where the other is zero."""
     if nearest.turn < 1e-4 or (isinstance(goal, PositionGoal) and goal.pitch is None):
         return length(nearest.shift)
     if nearest.shift < 1e-5:

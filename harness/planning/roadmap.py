@@ -1,4 +1,4 @@
-"""Finds a path through a roadmap that OMPL grows: in rounds, on one thread, the query our own."""
+"""Finds a path through a roadmap that OMPL grows: in rounds, on one thread, then queries it."""
 
 # pyright: reportAttributeAccessIssue=false, reportIndexIssue=false
 
@@ -76,7 +76,7 @@ def find_in_roadmap(
     Args:
         planner: Set up, nothing grown yet.
         ends: The start, then the goals; free.
-        used: State checks so far.
+        used: Returns the number of state checks used.
         enough: A way that is found before is improved until then [state checks].
         end: When to stop without one [state checks].
 

@@ -18,12 +18,12 @@ METRES_TO_RADIANS = 10.0
 
 
 def pin_from_se3(pose: SE3) -> pin.SE3:
-    """Our pose as Pinocchio's."""
+    """Convert a pose to Pinocchio's."""
     return pin.SE3(np.asarray(pose.rotation, float), np.asarray(pose.translation, float))
 
 
 def se3_from_pin(pose: pin.SE3) -> SE3:
-    """Pinocchio's pose as ours, copied."""
+    """Copy Pinocchio's pose to an SE3."""
     return SE3(np.array(pose.rotation), np.array(pose.translation))
 
 
@@ -31,7 +31,7 @@ class RobotModel:
     """Pinocchio's model of a description, and the way between both joint orders.
 
     Pinocchio orders joints in its own way and gives a continuous joint two configuration numbers
-    (cosine, sine); everything outside this module speaks description order.
+    (cosine, sine); everything outside this module uses description order.
     """
 
     def __init__(self, description: RobotDescription) -> None:
@@ -147,12 +147,12 @@ class GroupSpace:
         return float(np.linalg.norm((second - first) * self.metric))
 
     def effort(self, first: FloatArray, second: FloatArray) -> float:
-        """How much of the arm moves: turns weighted by the reach behind each joint."""
+        """How much of the arm moves: turns weighted by the reach distal to each joint."""
         return float(np.linalg.norm((second - first) * self.metric * self.leverage))
 
 
 def _leverage(description: RobotDescription, joint_names: tuple[str, ...]) -> FloatArray:
-    """Length of the chain behind each joint over the longest: a wrist's turn counts less."""
+    """Length of the chain distal to each joint over the longest: a wrist's turn counts less."""
     before = {joint.child: joint for joint in description.joints}
     last = description.joint_by_name[joint_names[-1]].child
     tips = [group.tip_link for group in description.groups.values() if group.tip_link]
@@ -168,6 +168,6 @@ def _leverage(description: RobotDescription, joint_names: tuple[str, ...]) -> Fl
         return np.ones(len(joint_names))
     chain = max(chains, key=len)
     lengths = [float(np.linalg.norm(joint.pose.translation)) for joint in chain]
-    behind = {joint.name: sum(lengths[:index]) for index, joint in enumerate(chain)}
-    reach = np.array([behind[name] for name in joint_names])
+    distal = {joint.name: sum(lengths[:index]) for index, joint in enumerate(chain)}
+    reach = np.array([distal[name] for name in joint_names])
     return np.maximum(reach / max(float(reach.max()), 1e-9), 0.1)

@@ -1,4 +1,4 @@
-"""Searches a free path with the planner that is asked for, its budget counted in state checks."""
+"""Searches a free path with the requested planner and a budget of state checks."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ FAST_SHARE = 0.5
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """What a planner came to.
+    """The result of a planner.
 
     Attributes:
-        waypoints: Shape (N, dof), or None when the budget ended first.
-        checks: State checks it used.
-        vertices: Of its trees or graph.
-        gap: Joint-space distance left between its trees, or to the goal [rad]; 0 when solved.
-        planner_id: Which planner it was.
+        waypoints: The path, shape (N, dof), or None when the budget is used up.
+        checks: The number of state checks.
+        vertices: The number of vertices of its trees or graph.
+        gap: The remaining joint-space distance between its trees or to the goal [rad]; 0 if solved.
+        planner_id: The planner's name.
     """
 
     waypoints: FloatArray | None

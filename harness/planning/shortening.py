@@ -28,16 +28,16 @@ def shorten(
     Returns:
         Waypoints, shape (M, dof), M <= N mostly; the ends are the same.
     """
-    path = _without_needless(list(waypoints), checker, resolution)
+    path = _without_redundant_waypoints(list(waypoints), checker, resolution)
     rng = np.random.default_rng(seed)
     for _ in range(TRIES):
         if len(path) < 3:
             break
         path = _shortcut(path, np.sort(rng.random(2)), checker, resolution)
-    return np.array(_without_needless(path, checker, resolution))
+    return np.array(_without_redundant_waypoints(path, checker, resolution))
 
 
-def _without_needless(
+def _without_redundant_waypoints(
     path: list[FloatArray], checker: MotionChecker, resolution: float
 ) -> list[FloatArray]:
     """From each kept waypoint, go straight to the farthest that a free edge reaches."""

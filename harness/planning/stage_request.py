@@ -1,4 +1,4 @@
-"""A planning call that failed, as its explanation looks at it."""
+"""The input and the output of the stages that explain a failed planning call."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from harness.recording.explanation import Stage
 
 @dataclass(frozen=True, eq=False)
 class Finding:
-    """A stage, with what it adds for the report.
+    """A stage's result, with additional data for the report.
 
     Attributes:
-        stage: What became of it.
+        stage: The stage and its status.
         nearest: A state to draw: `shows`, `joint_positions` ...; empty where there is none.
-        advice: What to do, for the first stage that failed.
+        advice: What to do if this is the first failed stage.
     """
 
     stage: Stage
@@ -37,15 +37,17 @@ class Finding:
 
 @dataclass(frozen=True, eq=False)
 class StageRequest:
-    """What was asked, and how it failed.
+    """A failed planning call.
 
     Attributes:
-        failure: As it was raised.
-        space: The group, the rest of the robot at its start.
-        start: Description order.
-        goal: None for a motion without one, as along a direction.
-        options: How it was to be planned.
-        checker: Of the motion's states; None where it cannot begin.
+        failure: The error that was raised.
+        kinematics: The robot's kinematics.
+        scene: The planning scene.
+        space: The group, with the other joints at the start state.
+        start: The start positions in description order.
+        goal: The goal; None for a motion without one, such as a relative motion.
+        options: The planning options.
+        checker: The checker of the motion's states; None where the motion cannot begin.
     """
 
     failure: PlanningFailed

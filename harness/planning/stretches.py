@@ -1,4 +1,4 @@
-"""Checks motions by few states: one with wide margins speaks for the stretch around it."""
+"""Checks motions with few states: a clearance certificate (a free ball) covers several states."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -18,39 +18,39 @@ from harness.planning.nearing import nearing_rates
 from harness.planning.robot_model import GroupSpace
 from harness.planning.scene import CollisionModel
 
-STRETCH = 1 / 40
-"""Joint-space distance for which a state with wide margins speaks [rad]."""
+FREE_BALL_RADIUS = 1 / 40
+"""Joint-space radius of the free ball that a clearance certificate covers [rad]."""
 
 FEW_STATES = 2
-"""States at most that are checked one by one, without asking whether one speaks for the others."""
+"""Largest number of states that are checked individually, without a certificate."""
 
-WORTH = 4.0
-"""States that one with wide margins must speak for on average, to be asked on in a motion."""
+STATES_PER_CERTIFICATE = 4.0
+"""Average number of states that a certificate must cover for certificates to be tried."""
 
-HEAD_START = 30
-"""States taken as spoken for before any was asked."""
+INITIAL_COVERED = 30
+"""Initial number of covered states, before the first certificate is tried."""
 
 
-class Stretches:
-    """Answers whether all states of a motion are free, as checking each of them would."""
+class ClearanceCertificates:
+    """Decides whether all states of a motion are free, with the result of individual checks."""
 
     def __init__(
         self, model: CollisionModel, space: GroupSpace, margins: Mapping[tuple[str, str], float]
     ) -> None:
-        """Take a scene, the group that moves in it, and the margin of every pair [m]."""
+        """Prepare certificates of a scene for a group and the margins of every pair [m]."""
         self._model, self._space, self._margins = model, space, margins
-        self._asked, self._spoken_for = 0, HEAD_START
+        self._tried, self._covered = 0, INITIAL_COVERED
 
     def are_free(self, states: FloatArray, is_free: Callable[[FloatArray], bool]) -> bool:
-        """Whether all states are free, shape (N, dof), neighbours near each other.
+        """Whether all states of a motion are free.
 
         Args:
-            states: Of the group.
-            is_free: Decides about one of them.
+            states: Group positions, densely sampled, shape (N, dof).
+            is_free: The exact check of one state.
         """
         scaled = states * self._space.metric
         length = float(np.linalg.norm(np.diff(scaled, axis=0), axis=1).sum())
-        if len(states) <= FEW_STATES or length > 0.5 * STRETCH * len(states):
+        if len(states) <= FEW_STATES or length > 0.5 * FREE_BALL_RADIUS * len(states):
             return all(is_free(states[step - 1]) for step in coarse_to_fine(len(states)))
         if not is_free(states[-1]):
             return False
@@ -64,20 +64,20 @@ class Stretches:
             middle = before = (start + end) // 2
             after = middle + 1
             if self._has_room(states[middle]):
-                away = np.linalg.norm(scaled[start:end] - scaled[middle], axis=1) > STRETCH
-                before = start + _behind_last(away[: middle - start])
+                away = np.linalg.norm(scaled[start:end] - scaled[middle], axis=1) > FREE_BALL_RADIUS
+                before = start + _after_last(away[: middle - start])
                 after = middle + 1 + _first(away[middle - start + 1 :])
-                self._spoken_for += after - before
+                self._covered += after - before
             elif not is_free(states[middle]):
                 return False
             waiting += [span for span in ((start, before), (after, end)) if span[0] < span[1]]
         return True
 
     def _has_room(self, positions: FloatArray) -> bool:
-        """Whether every pair keeps its margin for `STRETCH` around a state; not asked in vain."""
-        if self._spoken_for < WORTH * self._asked:
+        """Whether a state certifies its free ball; False untried where that rarely helps."""
+        if self._covered < STATES_PER_CERTIFICATE * self._tried:
             return False
-        self._asked += 1
+        self._tried += 1
         robot = self._model.robot
         configuration = robot.configuration(self._space.whole(positions))
         manager, _ = self._wide
@@ -85,13 +85,13 @@ class Stretches:
 
     @cached_property
     def _wide(self) -> tuple[Any, Any]:
-        """Coal's manager with margins as wide as `STRETCH` may take bodies nearer, and its data."""
+        """Coal's manager with margins enlarged by the free ball's motion bound, and its data."""
         model = self._model
         data = model.geometry.createData()
         requests = data.collisionRequests
         rates = nearing_rates(model, self._space)
         for pair, rate in zip(model.pairs, rates.tolist(), strict=True):
-            margin = self._margins[pair.first, pair.second] + STRETCH * rate + ROUNDING
+            margin = self._margins[pair.first, pair.second] + FREE_BALL_RADIUS * rate + ROUNDING
             for row in pair.pairs:
                 requests[row].security_margin = margin
         manager = pin.BroadPhaseManager_DynamicAABBTreeCollisionManager(
@@ -101,7 +101,7 @@ class Stretches:
 
 
 def coarse_to_fine(count: int) -> Iterator[int]:
-    """The numbers 1 to `count`, the end first, then halves, quarters ...: collisions show early."""
+    """The numbers 1 to `count`: the end, then halves, quarters ...; collisions are found early."""
     step = 1
     while step < count:
         step *= 2
@@ -113,10 +113,10 @@ def coarse_to_fine(count: int) -> Iterator[int]:
 
 
 def _first(flags: BoolArray) -> int:
-    """Index of the first that is true, or their number."""
+    """Index of the first true flag, or the number of flags."""
     return int(flags.argmax()) if flags.any() else len(flags)
 
 
-def _behind_last(flags: BoolArray) -> int:
-    """Index behind the last that is true, or 0."""
+def _after_last(flags: BoolArray) -> int:
+    """Index after the last true flag, or 0."""
     return len(flags) - _first(flags[::-1])

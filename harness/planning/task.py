@@ -22,7 +22,7 @@ from harness.planning.verify import Defect, find_defect
 from harness.ports import MotionPlan, PathConstraints, PlanningOptions
 
 START_SLACK = 0.01
-"""How far outside its limit a joint may start; it is not asked to go farther [rad or m]."""
+"""How far outside its limit a joint may start; a motion never extends that distance [rad or m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class PlanningTask:
         checker: Of states and edges, with this motion's margins.
         start: Group positions.
         limits: Of the joints, scaled.
-        options: As asked for.
+        options: The planning options.
         held: Path constraints; None where there are none.
     """
 
@@ -66,7 +66,7 @@ class PlanningTask:
     def jump(
         self, end: FloatArray, explanation: Mapping[str, Any], result: Mapping[str, Any]
     ) -> MotionPlan:
-        """The plan of a motion whose path alone is wanted: its start and its end."""
+        """The plan of a motion of which only the path is requested: its start and its end."""
         ends = np.vstack([self.start, end])
         still = np.zeros_like(ends)
         times = np.array([0.0, SAMPLE_PERIOD])

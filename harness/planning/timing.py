@@ -62,7 +62,7 @@ def time_stopping(
 
 
 def joined(pieces: Sequence[JointTrajectory]) -> JointTrajectory:
-    """One trajectory after the other, each beginning where the one before came to rest."""
+    """One trajectory after the other, each beginning at rest where the previous one ends."""
     times, offset = [pieces[0].times], pieces[0].duration
     for piece in pieces[1:]:
         times.append(piece.times[1:] + offset)

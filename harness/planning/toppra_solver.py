@@ -1,4 +1,4 @@
-"""Asks TOPP-RA for the fastest times along a joint-space curve under its limits."""
+"""Computes the fastest times along a joint-space curve under limits, with TOPP-RA."""
 
 # pyright: reportAttributeAccessIssue=false
 

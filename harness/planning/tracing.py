@@ -1,4 +1,4 @@
-"""Follows a link's way through space with the joints, as far as it goes."""
+"""Follows a link's path through space with the joints, as far as possible."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -86,10 +86,10 @@ class Trace:
     Attributes:
         parameters: Even, from 0; ends at 1 when nothing stopped it, shape (K,).
         positions: Group positions, shape (K, dof).
-        stop: Why it went no farther: in words; empty when it reached the end.
+        stop: Why the trace ends before the path; empty when it reaches the end.
         reason: `end`, `unreachable`, `limit`, `jump` or `collision`.
-        facts: The numbers behind `stop`.
-        stride: How many poses stand for one step that was asked for.
+        facts: The numbers of `stop`.
+        stride: The number of poses per requested step.
     """
 
     parameters: FloatArray
@@ -156,7 +156,7 @@ def trace(
     return Trace(
         traced.parameters[:kept],
         traced.positions[:kept],
-        f"the joints cannot turn as fast as the {path.name} asks (the arm is at or near a "
+        f"the joints cannot turn as fast as the {path.name} requires (the arm is at or near a "
         "singularity)",
         "jump",
         {"deviation": float(off.max())},
@@ -264,10 +264,10 @@ def deviation(
     for positions in trajectory.positions:
         pose = pose_of(positions)
         share, shift = path.nearest(pose)
-        wanted = path.pose(min(max(share, 0.0), 1.0))
+        expected = path.pose(min(max(share, 0.0), 1.0))
         if pitch_only:
-            turn = abs(pitch_of(pose.rotation) - pitch_of(wanted.rotation))
+            turn = abs(pitch_of(pose.rotation) - pitch_of(expected.rotation))
         else:
-            turn = wanted.distance_to(pose)[1]
+            turn = expected.distance_to(pose)[1]
         worst_shift, worst_turn = max(worst_shift, shift), max(worst_turn, turn)
     return worst_shift, worst_turn

@@ -120,8 +120,8 @@ def _stamps(trajectory: JointTrajectory) -> Defect | None:
 
 
 def _ends(trajectory: JointTrajectory, start: FloatArray, end: FloatArray) -> Defect | None:
-    for place, row, wanted in (("start", 0, start), ("end", -1, end)):
-        off = float(np.max(np.abs(trajectory.positions[row] - wanted)))
+    for place, row, expected in (("start", 0, start), ("end", -1, end)):
+        off = float(np.max(np.abs(trajectory.positions[row] - expected)))
         if not off <= END_TOLERANCE:
             return Defect(
                 f"the trajectory's {place} is {off:.2g} rad away from where it should be",

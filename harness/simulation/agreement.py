@@ -1,4 +1,4 @@
-"""Where MuJoCo has a robot's links, and what it has them weigh: to hold against another library."""
+"""Link poses and mass of a robot in MuJoCo, for a comparison with another library."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -15,7 +15,7 @@ from harness.simulation.model import build_model
 def link_poses_in_physics(
     description: RobotDescription, positions: FloatArray
 ) -> tuple[FloatArray, float]:
-    """T_world_link of all links but `world` at joint positions, and the robot's mass.
+    """Compute T_world_link of all links except `world` at joint positions, and the robot's mass.
 
     Args:
         description: The robot.

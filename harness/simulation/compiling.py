@@ -1,4 +1,4 @@
-"""Compiling a MuJoCo specification: what MuJoCo refuses is an error with the body's name."""
+"""Compiles a MuJoCo specification; an error names the body that MuJoCo rejects."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -14,20 +14,20 @@ from harness.core.errors import ModelRefused
 from harness.core.world import WorldObject
 
 SMALLEST_MASS = 1e-14
-"""Mass of an object that moves at least [kg]; MuJoCo refuses less than 1e-15."""
+"""Smallest mass of a movable object [kg]; MuJoCo rejects less than 1e-15."""
 
 SMALLEST_MOMENT = 2e-14
-"""Its principal moments of inertia at least [kg m^2]; MuJoCo refuses less than 1e-14."""
+"""Smallest principal moment of a movable object [kg m^2]; MuJoCo rejects less than 1e-14."""
 
 ELEMENT = re.compile(r"Element name '(?P<name>.*)', id \d+")
 """The part of MuJoCo's message that names what cannot be compiled."""
 
 
 def compile_model(spec: mujoco.MjSpec) -> mujoco.MjModel:
-    """The compiled model.
+    """Compile a specification.
 
     Raises:
-        ModelRefused: With the body that MuJoCo refuses, or that has the geom it refuses.
+        ModelRefused: MuJoCo rejects a body or one of its geoms; the error names the body.
     """
     try:
         return spec.compile()
@@ -44,10 +44,10 @@ def compile_model(spec: mujoco.MjSpec) -> mujoco.MjModel:
 
 
 def refuse_unusable_masses(objects: Iterable[WorldObject]) -> None:
-    """Refuse objects that move and are too light for the physics, or heavier than any number.
+    """Reject movable objects that are too light for the physics, or whose mass is not finite.
 
     Raises:
-        ModelRefused: With the first such object.
+        ModelRefused: The error names the first such object.
     """
     for obj in objects:
         if obj.is_static:

@@ -1,4 +1,4 @@
-"""Every contact of every sample: which geoms touched, where, and how hard."""
+"""Records every contact of every sample: the geoms, the point, the normal and the force."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -17,20 +17,20 @@ ROWS = 4096
 """Samples by which the arrays grow."""
 
 CONTACTS_PER_ROW = 24
-"""Contacts that fit into the first arrays for each sample; more make them grow sooner."""
+"""Contacts per sample for which the first arrays have room; more make them grow sooner."""
 
 BLOCK = 2**19
 """Contacts that are sorted at a time."""
 
 BYTES = 40
-"""Of a contact in the arrays."""
+"""Memory that one contact takes in the arrays."""
 
 BodyPair = tuple[str, str]
 Array = np.ndarray[Any, Any]
 
 
 class ContactRecord:
-    """Contacts one sample behind the other; sums of them by pair of bodies."""
+    """The contacts of consecutive samples, and sums of them for each pair of bodies."""
 
     def __init__(self, physics: PhysicsModel) -> None:
         size = ROWS * CONTACTS_PER_ROW
@@ -49,7 +49,7 @@ class ContactRecord:
             self._end = np.concatenate([self._end, np.zeros(more, dtype=np.int64)])
 
     def keep(self, data: mujoco.MjData, row: int) -> None:
-        """Copy the contacts of the state that the physics is in, as those of a sample."""
+        """Copy the contacts of the current physics state as those of one sample."""
         begin = self.count
         self.count = end = begin + data.ncon
         self._end[row] = end
@@ -74,10 +74,10 @@ class ContactRecord:
         return {pair: found[pair] for pair in sorted(found)}
 
     def presses(self, count: int) -> dict[BodyPair, FloatArray]:
-        """Where a link of the robot presses on something else, and how.
+        """Contact points and forces between a link of the robot and any other body.
 
         Args:
-            count: Samples, from the first on.
+            count: Number of samples, counted from the first.
 
         Returns:
             By link and other body, shape (count, 6): the mean of the contact points, weighted by
@@ -108,7 +108,7 @@ class ContactRecord:
         """Upward part of the normal force [N] of one object on another, shape (count,) each.
 
         Args:
-            count: Samples, from the first on.
+            count: Number of samples, counted from the first.
         """
         names, robot = self._physics.body_names, self._physics.robot_bodies
         found: dict[BodyPair, FloatArray] = {}
@@ -126,11 +126,11 @@ class ContactRecord:
         """Contacts of each pair of bodies in samples first to last - 1.
 
         Contacts are sorted by pair, some samples at a time: the time is linear in their number
-        however many pairs there are, and what is needed besides the record stays small.
+        however many pairs there are, and little memory is needed in addition to the record.
 
         Yields:
-            Numbers of two bodies, the smaller first; of each of their contacts in some samples, in
-            the order of recording, the sample counted from `first`, and its index.
+            The ids of two bodies, the smaller first; then, for their contacts in some samples, in
+            the order of recording, the sample counted from `first` and the contact's index.
         """
         ends = self._end[first:last]
         row = 0
@@ -142,7 +142,7 @@ class ContactRecord:
             row = stop
 
     def _sorted(self, begin: int, end: int) -> Iterator[tuple[tuple[int, int], Array]]:
-        """Numbers of two bodies, the smaller first, and which of some contacts are theirs."""
+        """Ids of two bodies, the smaller first, and the indices of the contacts between them."""
         if begin == end:
             return
         size = self._physics.model.nbody
@@ -161,7 +161,7 @@ class ContactRecord:
         )
 
     def _pair(self, first: int, second: int) -> BodyPair:
-        """Names of two bodies: a robot's link first, else sorted."""
+        """The names of two bodies: the robot's link first, otherwise in alphabetical order."""
         names, robot = self._physics.body_names, self._physics.robot_bodies
         if (first in robot) != (second in robot):
             return (
@@ -172,23 +172,23 @@ class ContactRecord:
 
 
 def _add(sums: FloatArray, rows: Array, values: Array) -> None:
-    """Add values at their rows, which ascend."""
+    """Add values at their rows; rows are in ascending order."""
     part = np.bincount(rows - rows[0], values)
     sums[rows[0] : rows[0] + len(part)] += part
 
 
 def _doubled(values: Array) -> Array:
-    """The values in an array of twice the length, whose second half takes no memory until used."""
+    """Copy values into an array of twice the length; its second half takes no memory until used."""
     larger = np.empty((2 * len(values), *values.shape[1:]), values.dtype)
     larger[: len(values)] = values
     return larger
 
 
 def _normal_forces(data: mujoco.MjData, forces: FloatArray) -> None:
-    """Write the normal force [N] of every contact; one that only touches has no force.
+    """Write the normal force [N] of every contact; an inactive contact has no force.
 
-    Such a contact has no row among the constraints, which MuJoCo says with an address of -1; where
-    nothing else is constrained, as with an arm without a gripper, there are no rows at all.
+    MuJoCo gives an inactive contact no constraint row and the address -1. Without any other
+    constraint, as for an arm without a gripper, there are no rows at all.
     """
     if not data.nefc:
         forces[:] = 0.0

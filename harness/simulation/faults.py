@@ -1,4 +1,4 @@
-"""Breaks things in a running physics: surfaces, motors, sensors, the way of commands."""
+"""Injects faults into a running simulation: surfaces, motors, sensors, command latency."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -21,14 +21,14 @@ STALL_SOLIMP = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 
 
 class Holding(Protocol):
-    """The part of the simulator that a push and a weak grip need."""
+    """The part of the simulator that a push and a weakened gripper need."""
 
     def hold(self, duration: float) -> None: ...
-    def press_again(self) -> None: ...
+    def renew_grip_limit(self) -> None: ...
 
 
 class Faults:
-    """What is broken; the simulator asks `distorted` for what its motors really get."""
+    """The active faults; the simulator passes its controls through `distorted`."""
 
     def __init__(self, simulator: Holding, physics: PhysicsModel, data: mujoco.MjData) -> None:
         self._simulator = simulator
@@ -38,12 +38,12 @@ class Faults:
         self._stalled: set[str] = set()
         self._deviation = 0.0
         self._latency = 0.0
-        self._waiting = np.empty((0, len(physics.actuated)))  # controls on their way, oldest first
+        self._waiting = np.empty((0, len(physics.actuated)))  # delayed controls, oldest first
         self._rng = np.random.default_rng(0)
-        self.noise = np.zeros((1, len(physics.actuated)))  # of the samples advanced last
+        self.noise = np.zeros((1, len(physics.actuated)))  # of the most recent samples
 
     def set_friction(self, name: str, sliding: float) -> float:
-        """Change the sliding friction of an object's surface, its other frictions alike."""
+        """Change an object's sliding friction, and its other frictions in proportion."""
         model, place = self._physics.model, self._physics.objects[name]
         old = place.obj.friction
         before = float(model.geom_friction[place.geoms][0, 0])
@@ -55,13 +55,13 @@ class Faults:
         return before
 
     def weaken_gripper(self, share: float) -> float:
-        """Leave the gripper a share of its effort, now and for every later command."""
+        """Limit the gripper to a share of its effort, now and for every later command."""
         before, self.grip_share = self.grip_share, share
-        self._simulator.press_again()
+        self._simulator.renew_grip_limit()
         return before
 
     def stall_joint(self, joint: str) -> bool:
-        """Hold a joint where it is by closing its range; its motor goes on pulling."""
+        """Hold a joint at its position by closing its range; its motor keeps pulling."""
         model, physics = self._physics.model, self._physics
         index = physics.description.joint_index[joint]
         mujoco_joint = int(model.dof_jntid[physics.dof[index]])
@@ -74,30 +74,30 @@ class Faults:
         return was_stalled
 
     def push(self, forces: Mapping[str, FloatArray], duration: float) -> None:
-        """Push free objects at their centres of mass, all at once."""
+        """Push free objects at their centres of mass, all at the same time."""
         bodies = [self._physics.objects[name].body for name in forces]
         self._data.xfrc_applied[bodies, :3] = list(forces.values())
         self._simulator.hold(duration)
         self._data.xfrc_applied[bodies] = 0.0
 
     def disturb_sensors(self, deviation: float, seed: int) -> float:
-        """Add white noise to the positions that the servos and their tolerances see."""
+        """Add white noise to the positions that the servos and the tolerance checks measure."""
         before, self._deviation = self._deviation, deviation
         self._rng = np.random.default_rng(seed)
         self.noise = self._draw(1)
         return before
 
     def delay_commands(self, latency: float) -> float:
-        """Let set points wait on their way to the motors; the present ones fill the wait."""
+        """Delay set points on the way to the motors; the current ones fill the delay."""
         before, self._latency = self._latency, latency
         samples = round(latency / self._physics.model.opt.timestep)
         self._waiting = np.tile(self._data.ctrl, (samples, 1))
         return before
 
     def distorted(self, controls: FloatArray) -> FloatArray:
-        """What the motors get for controls that are sent, shape (N + 1, m) both.
+        """The controls that arrive at the motors for the controls sent, both of shape (N + 1, m).
 
-        Noise of a measured position acts on a servo as its negative does in the control.
+        Noise on a measured position acts on a servo like noise subtracted from its control.
         """
         if not len(self._waiting) and not self._deviation:
             return controls
@@ -110,7 +110,7 @@ class Faults:
         return arrived
 
     def measured_noise(self, samples: int) -> FloatArray:
-        """Noise in the measurements of the last samples advanced, (samples, m), or zero alike."""
+        """Measurement noise of the most recent samples, shape (samples, m), or (1, m) of zeros."""
         if not self._deviation:
             return np.zeros((1, self.noise.shape[1]))
         return self.noise[-samples:]
@@ -119,7 +119,7 @@ class Faults:
         return self._rng.normal(0.0, self._deviation, (samples, self.noise.shape[1]))
 
     def _rank_surfaces(self) -> None:
-        """Give the most slippery surface the highest priority, as `Surfaces` does at the start."""
+        """Give the surface with the least friction the highest priority, as `Surfaces` does."""
         model = self._physics.model
         frictions = [tuple(row) for row in model.geom_friction]
         ranked = sorted(set(frictions), reverse=True)

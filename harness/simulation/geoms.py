@@ -25,8 +25,8 @@ from harness.robot.mesh_file import hull_points
 CONTACT_SOLREF = (0.002, 1.0)
 """Time constant [s] and damping ratio of a contact: two steps of 1 ms, critically damped.
 
-MuJoCo raises it to two steps where those are longer. What a hand carries on a curve creeps by half
-this constant times its centripetal acceleration in all contacts but those of `grasp_contacts`.
+MuJoCo raises it to two steps where those are longer. An object carried on a curve creeps by half
+this constant times its centripetal acceleration, except between fingers and free objects.
 """
 
 CONTACT_SOLIMP = (0.99, 0.999, 0.001, 0.5, 2.0)
@@ -38,10 +38,10 @@ CONTACT_DIMENSIONS = 6
 
 @dataclass(frozen=True)
 class Surfaces:
-    """Ranks surfaces so that the smaller friction of a touching pair counts.
+    """Ranks surfaces so that the smaller friction of a pair in contact applies.
 
     MuJoCo takes the larger friction of a pair unless one geom has a higher `priority`; then that
-    geom's values count. So the most slippery surface gets the highest priority.
+    geom's values count. So the surface with the least friction gets the highest priority.
     """
 
     ranked: tuple[Friction, ...]
@@ -52,7 +52,7 @@ class Surfaces:
         return cls(tuple(sorted(set(frictions), key=_roughness, reverse=True)))
 
     def smaller(self, first: Friction, second: Friction) -> Friction:
-        """The friction that counts between two surfaces."""
+        """The friction that applies between two surfaces."""
         return min(first, second, key=_roughness)
 
     def priority(self, friction: Friction) -> int:

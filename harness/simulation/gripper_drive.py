@@ -1,4 +1,4 @@
-"""Closes and opens a gripper like a GripperCommand action: until it arrives or stalls."""
+"""Closes and opens a gripper like a GripperCommand action, until it reaches its goal or stalls."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ CLOSING_SPEED = 0.075
 """Rate at which the pad gap changes [m/s]; RH-P12-RN(A) specification table, ROBOTIS e-manual."""
 
 GOAL_TOLERANCE = 0.004
-"""Part of its range by which the joint may miss its position and still have reached it."""
+"""Largest position error at which the joint has reached its goal, as a share of its range."""
 
 STALL_TIME = 0.15
-"""How long the joint must stand still to count as stalled [s]."""
+"""Time for which the joint must be at rest to count as stalled [s]."""
 
 STALL_SPEED = 0.02
-"""Below this part of its closing speed the joint stands still."""
+"""Speed below which the joint is at rest, as a share of its closing speed."""
 
 CHECK_EVERY = 10
-"""Samples between looks at whether it arrived or stalled."""
+"""Samples between two checks whether the joint reached its goal or stalled."""
 
 
 class Servoed(Protocol):
@@ -58,16 +58,16 @@ class GripperDrive:
         self._range = abs(gripper.closed_position - gripper.open_position)
         self._speed = joint_speed(simulator.description, gripper)
         simulator.limit_grip(self._actuator, gripper.grip_effort)
-        self._set_out: SetPoints | None = None
+        self._pending: SetPoints | None = None
 
     def start(self, position: float, max_effort: float) -> None:
-        """Set out for a position; the next motion of the arm takes the gripper along."""
+        """Start moving to a position; the set points join those of the arm's next motion."""
         self._simulator.limit_grip(self._actuator, max_effort)
-        self._set_out = self._ramp(position)
+        self._pending = self._ramp(position)
 
     def join(self, whole: SetPoints) -> SetPoints:
-        """A motion that begins now, with a gripper that set out; the longer of both long."""
-        points, self._set_out = self._set_out, None
+        """Merge the set points of a started gripper into a motion; the shorter one is extended."""
+        points, self._pending = self._pending, None
         if points is None:
             return whole
         missing = max(0, len(points) - len(whole))
@@ -84,7 +84,7 @@ class GripperDrive:
         return joined
 
     def drive(self, position: float, max_effort: float, timeout: float) -> GripperResult:
-        """Move to a position under an effort limit until it arrives, stalls or runs out of time."""
+        """Move to a position under an effort limit until the goal, a stall or the timeout."""
         simulator, timestep = self._simulator, self._recording.timestep
         points = self._ramp(position)
         whole = simulator.whole(points, np.array([self._actuator]))
@@ -124,7 +124,7 @@ class GripperDrive:
         return abs(float(self._simulator.joint_positions()[self._joint]) - position)
 
     def _start(self, position: float) -> float:
-        """The last command, or the joint's position when the command lies behind it."""
+        """The last command, or the joint's position where the command is in the other direction."""
         measured = float(self._simulator.joint_positions()[self._joint])
         commanded = float(self._simulator.commanded_positions()[self._joint])
         turns_back = (position - measured) * (commanded - measured) < 0

@@ -1,4 +1,4 @@
-"""Whether a mesh file can be used, told before anything is built from it."""
+"""Checks that a mesh file can be used, before a model is built from it."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -12,10 +12,10 @@ from harness.simulation.geoms import add_mesh
 
 
 def check_mesh(geometry: Mesh) -> None:
-    """See that a mesh file has a solid that things can touch.
+    """Check that a mesh file contains a solid that can collide.
 
     Raises:
-        RobotError: It is of a kind that is not read, damaged, or flat; says which.
+        RobotError: The format is not supported, or the mesh is damaged or flat.
     """
     spec = mujoco.MjSpec()
     try:

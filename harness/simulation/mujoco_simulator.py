@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import mujoco
 import numpy as np
@@ -17,35 +17,34 @@ from harness.core.world import WorldObject
 from harness.ports import GripperResult
 from harness.recording.run import Signals
 from harness.robot.description import RobotDescription
-from harness.simulation.contact_report import contact_words, strongest_contacts
+from harness.simulation.contact_record import BodyPair
 from harness.simulation.faults import Faults
 from harness.simulation.gripper_drive import GripperDrive
 from harness.simulation.model import build_model
-from harness.simulation.objects import Objects
-from harness.simulation.overlaps import overlaps
+from harness.simulation.objects import Objects, overlaps
 from harness.simulation.recording import Recording, refresh
 from harness.simulation.robot_mjcf import coupling
 from harness.simulation.servo import FeedForward
 from harness.simulation.set_points import SetPoints, sample_trajectory
 
 CHECK_EVERY = 100
-"""Samples between looks at the path tolerance; the record tells the sample that broke it."""
+"""Samples between checks of the path tolerance; the record shows which sample exceeded it."""
 
 SETTLE_EVERY = 10
-"""Samples between looks at whether a goal is reached or everything is at rest."""
+"""Samples between checks whether a goal is reached or everything is at rest."""
 
 SETTLE_FOR = 0.06
-"""What is slower than a limit for so long is at rest: a turning point of a swing is shorter [s]."""
+"""Time below the velocity limit that counts as rest; a swing's turning point is shorter [s]."""
 
 ABORT_HOLD = 0.2
-"""Time for which an aborted arm is held where it was [s]."""
+"""Time for which an aborted arm is held at its position [s]."""
 
 
 class MujocoSimulator:
-    """Physics of one run; equal calls give equal bits, in whatever pieces time is advanced.
+    """The physics of one run; it is bitwise deterministic, however the time is divided into calls.
 
     Attributes:
-        overlaps_at_start: Objects that are inside something at the start, the deepest pair first.
+        overlaps_at_start: Pairs of bodies that overlap at the start, deepest first.
     """
 
     def __init__(
@@ -62,11 +61,11 @@ class MujocoSimulator:
 
         Args:
             description: The robot, at its start state.
-            world_objects: Everything that will be in the world at any time.
-            present: Names of the objects that are there at the start.
-            gravity: [m/s^2].
-            timestep: [s].
-            frames: Links whose poses are recorded besides the TCP's.
+            world_objects: All objects that are ever in the world.
+            present: The names of the objects that are present at the start.
+            gravity: The gravitational acceleration [m/s^2].
+            timestep: The physics step [s].
+            frames: Links whose poses are recorded in addition to the TCP's.
 
         Raises:
             ModelRefused: MuJoCo cannot simulate one of the bodies.
@@ -85,7 +84,7 @@ class MujocoSimulator:
         self._command = description.start_positions()[self.physics.actuated]
         self._control = self._controls(self._still(self._command))[0]
         self._data.ctrl[:] = self._control
-        self._grip: tuple[int, float] | None = None  # actuator, effort it may press with
+        self._grip: tuple[int, float] | None = None  # actuator, effort limit
         self.faults = Faults(self, self.physics, self._data)
         self._recording = Recording(self.physics, self._data)
         refresh(self._model, self._data)
@@ -96,7 +95,7 @@ class MujocoSimulator:
         self._gripper = None if description.gripper is None else GripperDrive(self, self._recording)
 
     def _refuse_unusable_start(self) -> None:
-        """See that MuJoCo can step from the start state."""
+        """Check that MuJoCo can step from the start state."""
         for name, place in self.physics.objects.items():
             pose = self._data.xpos[place.body]
             if not (np.abs(pose) <= mujoco.mjMAXVAL).all():
@@ -119,19 +118,19 @@ class MujocoSimulator:
 
     @property
     def sample_count(self) -> int:
-        """Samples recorded so far; the last one is the present state."""
+        """Number of recorded samples; the last one is the current state."""
         return self._recording.count
 
     def joint_positions(self) -> FloatArray:
-        """Measured, description order."""
+        """The measured joint positions, in description order."""
         return self._data.qpos[self.physics.qpos].copy()
 
     def commanded_positions(self) -> FloatArray:
-        """Last set point, description order, mimic joints consistent."""
+        """The last set point in description order, mimic joints included."""
         return self._coupling @ self._command + self._offsets
 
     def object_pose(self, name: str) -> SE3:
-        """T_world_object of a simulated object, as it is now."""
+        """The current T_world_object of a simulated object."""
         return self._objects.pose(name)
 
     def track(self, trajectory: JointTrajectory) -> None:
@@ -163,26 +162,26 @@ class MujocoSimulator:
     def command_gripper(
         self, position: float, max_effort: float, *, timeout: float
     ) -> GripperResult:
-        """Drive the gripper's joint under an effort limit until it arrives or stalls."""
+        """Drive the gripper's joint under an effort limit until it reaches its goal or stalls."""
         if self._gripper is None:
             raise StepFailed("INVALID_GROUP_NAME", f"{self.description.name} has no gripper")
         return self._gripper.drive(position, max_effort, timeout)
 
     def start_gripper(self, position: float, max_effort: float) -> None:
-        """Let the gripper set out; its set points go along with those of the arm from now on."""
+        """Start moving the gripper; its set points join those of the arm's next motion."""
         if self._gripper is None:
             raise StepFailed("INVALID_GROUP_NAME", f"{self.description.name} has no gripper")
         self._gripper.start(position, max_effort)
 
     def hold(self, duration: float) -> None:
-        """Keep the last commands for some simulated time [s]."""
+        """Keep the last commands for a duration in simulation time [s]."""
         self.hold_samples(round(duration / self._timestep))
 
     def settle(self, max_velocity: float, timeout: float) -> bool:
         """Hold until joints and objects have been slower than a limit for `SETTLE_FOR`.
 
         Raises:
-            StepFailed: TIMED_OUT; says what still moves, and how fast.
+            StepFailed: TIMED_OUT; the error names what still moves, and its speed.
         """
         name, speed, calm = "", 0.0, 0.0
         tick = SETTLE_EVERY * self._timestep
@@ -201,27 +200,27 @@ class MujocoSimulator:
         )
 
     def add_object(self, name: str, pose: SE3) -> None:
-        """Let a prepared object appear at T_world_object."""
+        """Make a prepared object appear at T_world_object."""
         self._objects.add(name, pose)
 
     def remove_object(self, name: str) -> None:
-        """Park an object without contacts."""
+        """Park an object, without contacts."""
         self._objects.remove(name)
 
     def move_object(self, name: str, pose: SE3) -> None:
-        """Set T_world_object, at rest."""
+        """Set T_world_object; the object is at rest."""
         self._objects.move(name, pose)
 
     def weld(self, name: str, link: str) -> None:
-        """Fix an object to a link where it stands."""
+        """Fix an object to a link at its current pose."""
         self._objects.weld(name, link)
 
     def unweld(self, name: str) -> None:
-        """Undo `weld`."""
+        """Release a welded object."""
         self._objects.unweld(name)
 
     def finish(self) -> Signals:
-        """Everything recorded, without clearances."""
+        """All recorded signals, without clearances."""
         return self._recording.signals(self._objects.recorded_poses())
 
     def command(self, positions: FloatArray) -> None:
@@ -230,7 +229,7 @@ class MujocoSimulator:
         self._control = self._controls(self._still(self._command))[0]
 
     def hold_samples(self, count: int) -> None:
-        """Hold the last commands for some samples."""
+        """Hold the last commands for a number of samples."""
         self._recording.refuse_beyond(count)
         shape = (count, len(self._command))
         self._advance(
@@ -240,7 +239,7 @@ class MujocoSimulator:
         )
 
     def limit_grip(self, actuator: int, effort: float) -> None:
-        """Let a gripper press with some effort, beside what now holds its own weight."""
+        """Limit a gripper's effort, in addition to the effort that carries its own weight."""
         self._grip = actuator, effort
         effort *= self.faults.grip_share
         largest = self.physics.servos.effort[actuator]
@@ -249,8 +248,8 @@ class MujocoSimulator:
         limits = np.clip([weight - effort, weight + effort], -largest, largest)
         self._model.actuator_forcerange[actuator] = limits
 
-    def press_again(self) -> None:
-        """Renew the gripper's effort limit."""
+    def renew_grip_limit(self) -> None:
+        """Apply the gripper's effort limit again, for its current weight and faults."""
         if self._grip is not None:
             self.limit_grip(*self._grip)
 
@@ -273,7 +272,7 @@ class MujocoSimulator:
     def _advance(
         self, controls: FloatArray, commands: FloatArray, command_velocities: FloatArray
     ) -> None:
-        """Step with what reaches the motors of the controls; the record has what was commanded."""
+        """Step with the controls that arrive at the motors; record the commands."""
         self._recording.advance(self.faults.distorted(controls), commands, command_velocities)
 
     def _actuated_columns(self, joint_names: Sequence[str]) -> IntArray:
@@ -295,11 +294,11 @@ class MujocoSimulator:
         lead = servos.damping / servos.stiffness
         return points.positions + lead * points.velocities + efforts / servos.stiffness
 
-    def _refuse_lag(self, first: int, wanted: FloatArray, columns: IntArray) -> None:
+    def _refuse_lag(self, first: int, commanded: FloatArray, columns: IntArray) -> None:
         tolerance = self.description.tracking.trajectory
         joints = self.physics.actuated[columns]
-        noise = self.faults.measured_noise(len(wanted))[:, columns]
-        errors = np.abs(self._recording.joint_positions(first)[:, joints] + noise - wanted)
+        noise = self.faults.measured_noise(len(commanded))[:, columns]
+        errors = np.abs(self._recording.joint_positions(first)[:, joints] + noise - commanded)
         beyond = np.flatnonzero((errors > tolerance).any(axis=1))
         if len(beyond):
             row = int(beyond[0])
@@ -321,9 +320,9 @@ class MujocoSimulator:
         self._abort(row, errors, joints, tracking.goal, "is still {} from its goal")
 
     def _abort(
-        self, row: int, errors: FloatArray, joints: IntArray, tolerance: float, words: str
+        self, row: int, errors: FloatArray, joints: IntArray, tolerance: float, message: str
     ) -> None:
-        """Hold the arm where it is and say what happened.
+        """Hold the arm at its position and raise the failure.
 
         Raises:
             StepFailed: CONTROL_FAILED, always.
@@ -331,7 +330,7 @@ class MujocoSimulator:
         worst = int(np.argmax(errors))
         joint = self.description.movable_joints[int(joints[worst])]
         unit = "m" if joint.kind == "prismatic" else "rad"
-        contacts = strongest_contacts(self._recording, row, self.description)
+        contacts = self._recording.strongest_robot_contacts(row)
         time = row * self._timestep
         command = self._command.copy()
         columns = np.searchsorted(self.physics.actuated, joints)
@@ -341,8 +340,8 @@ class MujocoSimulator:
         error = f"{errors[worst]:.3g} {unit}"
         raise StepFailed(
             "CONTROL_FAILED",
-            f"{joint.name} {words.format(error)} at t={time:.3f} s "
-            f"(tolerance {tolerance:g} {unit}); {contact_words(contacts)}",
+            f"{joint.name} {message.format(error)} at t={time:.3f} s "
+            f"(tolerance {tolerance:g} {unit}); {_contact_clause(contacts)}",
             {
                 "joint": joint.name,
                 "error": float(errors[worst]),
@@ -356,8 +355,16 @@ class MujocoSimulator:
         )
 
 
+def _contact_clause(contacts: Mapping[BodyPair, float]) -> str:
+    """The strongest contacts as a clause of a failure's message."""
+    if not contacts:
+        return "it touches nothing"
+    parts = [f"{a} presses on {b} with {force:.3g} N" for (a, b), force in contacts.items()]
+    return ", ".join(parts[:3])
+
+
 def _silence(_message: str) -> None:
-    """MuJoCo's warnings are read from its data; its log file in the working folder is unwanted."""
+    """Suppress MuJoCo's log file in the working folder; warnings are read from its data."""
 
 
 mujoco.set_mju_user_warning(_silence)

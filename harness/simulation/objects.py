@@ -1,4 +1,4 @@
-"""Lets prepared objects appear, move, disappear and be welded in a running physics."""
+"""Makes prepared objects appear, move, disappear and be welded in a running simulation."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -9,13 +9,17 @@ import numpy as np
 
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.ports import Touch
 from harness.simulation.model import ObjectPlace, PhysicsModel, set_presence
 from harness.simulation.recording import Recording, refresh
 from harness.simulation.world_mjcf import weld_name
 
+SMALLEST_OVERLAP = 1e-4
+"""Depth above which two bodies overlap; resting objects penetrate less [m]."""
+
 
 class Objects:
-    """Which objects are there, and where; keeps what is needed to tell it of every sample."""
+    """The presence and poses of objects, with the history that reconstructs every sample."""
 
     def __init__(
         self,
@@ -33,11 +37,11 @@ class Objects:
         }
 
     def pose(self, name: str) -> SE3:
-        """T_world_object, as it is now."""
+        """The current T_world_object."""
         return SE3.from_vector(self._pose(self._physics.objects[name]))
 
     def add(self, name: str, pose: SE3) -> None:
-        """Let a parked object appear, at rest."""
+        """Make a parked object appear, at rest."""
         set_presence(self._physics.model, self._physics.objects[name], present=True)
         self.move(name, pose)
 
@@ -49,13 +53,13 @@ class Objects:
         self._log[name].append((self._recording.count, None))
 
     def move(self, name: str, pose: SE3) -> None:
-        """Put an object somewhere, at rest."""
+        """Place an object at T_world_object, at rest."""
         self.unweld(name)
         self._place(name, pose.as_vector())
         self._log[name].append((self._recording.count, pose.as_vector()))
 
     def weld(self, name: str, link: str) -> None:
-        """Fix a free object to a link where both stand."""
+        """Fix a free object to a link at their current poses."""
         model, data = self._physics.model, self._data
         refresh(model, data)
         link_body, object_body = model.body(link).id, self._physics.objects[name].body
@@ -68,7 +72,7 @@ class Objects:
         data.eq_active[weld] = 1
 
     def unweld(self, name: str) -> None:
-        """Let go of a welded object; nothing happens to others."""
+        """Release a welded object; an object that is not welded does not change."""
         if not self._physics.objects[name].obj.is_static:
             self._data.eq_active[self._physics.model.equality(weld_name(name)).id] = 0
 
@@ -103,3 +107,23 @@ class Objects:
         else:
             self._physics.model.body_pos[place.body] = pose[:3]
             self._physics.model.body_quat[place.body] = pose[3:]
+
+
+def overlaps(physics: PhysicsModel, data: mujoco.MjData) -> tuple[Touch, ...]:
+    """Find pairs of an object and another body that overlap, deepest first.
+
+    Args:
+        physics: The model.
+        data: The current state, with updated contacts.
+    """
+    names, robot = physics.body_names, physics.robot_bodies
+    deepest: dict[tuple[str, str], float] = {}
+    bodies = physics.model.geom_bodyid[data.contact.geom].tolist()
+    for (first, second), distance in zip(bodies, data.contact.dist.tolist(), strict=True):
+        if distance > -SMALLEST_OVERLAP or (first in robot and second in robot):
+            continue
+        pair = sorted((first, second), key=lambda body: (body not in robot, names[body]))
+        key = names[pair[0]], names[pair[1]]
+        deepest[key] = min(distance, deepest.get(key, 0.0))
+    found = [Touch(*pair, distance) for pair, distance in deepest.items()]
+    return tuple(sorted(found, key=lambda touch: (touch.distance, touch.first, touch.second)))

@@ -1,4 +1,4 @@
-"""Steps the physics and keeps every sample of it."""
+"""Steps the physics and records every sample."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -19,6 +19,9 @@ from harness.simulation.model import PhysicsModel
 MOST_BYTES = 2**30
 """Largest record of states, sensors and contacts; judging it takes about four times as much."""
 
+LOOK_BACK = 25
+"""Number of samples before a failure in which contacts are searched."""
+
 _DIVERGED = (
     mujoco.mjtWarning.mjWARN_BADQPOS,
     mujoco.mjtWarning.mjWARN_BADQVEL,
@@ -30,9 +33,9 @@ _DIVERGED = (
 class Recording:
     """The samples of a run: row i is the state at `i * timestep` and the forces in it.
 
-    The last row is always the state the physics is in now. A plain loop over `mj_step` with copies
-    into prepared arrays costs 8 % over the bare loop; `mujoco.rollout` cannot tell which bodies
-    touch without a contact sensor for each pair of them.
+    The last row is always the current state of the physics. A plain loop over `mj_step` with copies
+    into prepared arrays costs 8 % over the bare loop; `mujoco.rollout` reports which bodies
+    touch only with a contact sensor for each pair.
     """
 
     def __init__(self, physics: PhysicsModel, data: mujoco.MjData) -> None:
@@ -57,14 +60,14 @@ class Recording:
     def advance(
         self, controls: FloatArray, commands: FloatArray, command_velocities: FloatArray
     ) -> None:
-        """Step once for each row of `controls` but the last; the last sample is the state reached.
+        """Step once for each row of `controls` except the last; the last sample is the new state.
 
         Args:
-            controls: Applied from one sample to the next, then what is applied in the state
-                reached, so that the forces recorded there are those of a servo on its set point,
+            controls: The controls from one sample to the next, and one more row for the state
+                reached: its recorded forces are those of a servo at its set point,
                 shape (N + 1, m).
-            commands: Set points at the samples after each step, shape (N, m).
-            command_velocities: The same of velocities.
+            commands: The set points at the samples after each step, shape (N, m).
+            command_velocities: The set points of velocity, shape (N, m).
 
         Raises:
             SimulationDiverged: The state left the finite numbers.
@@ -94,10 +97,10 @@ class Recording:
         self._record_forces_of_last_row()
 
     def refuse_beyond(self, steps: int) -> None:
-        """See that some more samples may be recorded.
+        """Check that a number of further samples can be recorded.
 
         Raises:
-            StepFailed: TIMED_OUT; the run would be longer than `LONGEST_RUN`, or fill the memory.
+            StepFailed: TIMED_OUT; the run would exceed `LONGEST_RUN` or the memory limit.
         """
         end = (self.count - 1 + steps) * self.timestep
         if end > LONGEST_RUN * (1 + 1e-9):
@@ -120,7 +123,7 @@ class Recording:
             )
 
     def _record_forces_of_last_row(self) -> None:
-        """Find the forces in the present state, leaving the physics as if nobody had looked."""
+        """Record the forces of the current state without changing the physics state."""
         refresh(self._physics.model, self._data)
         self._sensors[self.count - 1] = self._data.sensordata
         self._contacts.keep(self._data, self.count - 1)
@@ -158,7 +161,7 @@ class Recording:
         return self._qvel[first : self.count, self._physics.dof]
 
     def fastest(self, first: int) -> tuple[str, float]:
-        """The joint or free object with the largest velocity component from a sample on.
+        """Find the joint or free object with the largest velocity component from a sample on.
 
         Returns:
             Its name, empty when nothing can move, and the component's size [m/s or rad/s].
@@ -184,11 +187,21 @@ class Recording:
         """Normal force [N] of pairs that touch in samples first to last - 1, (samples,) each."""
         return self._contacts.forces(first, last)
 
+    def strongest_robot_contacts(self, row: int) -> dict[BodyPair, float]:
+        """Largest force [N] of each pair with a robot link just before a sample, largest first."""
+        links = set(self._physics.description.link_names)
+        peaks = {
+            pair: float(force.max())
+            for pair, force in self.contacts(max(0, row - LOOK_BACK), row + 1).items()
+            if pair[0] in links
+        }
+        return dict(sorted(peaks.items(), key=lambda item: -item[1]))
+
     def signals(self, object_poses: Mapping[str, FloatArray]) -> Signals:
-        """Everything recorded.
+        """All recorded signals.
 
         Args:
-            object_poses: Of objects that are no free bodies, and where free ones are absent.
+            object_poses: T_world_object of each object, NaN while absent, shape (N, 7) each.
         """
         physics, count = self._physics, self.count
         joints = len(physics.qpos)
@@ -221,7 +234,7 @@ class Recording:
 
 
 def refresh(model: mujoco.MjModel, data: mujoco.MjData) -> None:
-    """Bring poses, contacts and forces up to date; what the next step starts from stays."""
+    """Update poses, contacts and forces without changing the start of the next step."""
     warmstart = data.qacc_warmstart.copy()
     mujoco.mj_forward(model, data)
     data.qacc_warmstart[:] = warmstart

@@ -10,22 +10,23 @@ import numpy as np
 from harness.core.geometry import Friction
 from harness.core.types import FloatArray
 from harness.robot.description import Inertial, Joint, RobotDescription
+from harness.robot.tree import carriers
 from harness.simulation.geoms import Surfaces, add_collision_geom
 
 LINK_FRICTION = Friction()
 """Surface of robot links other than the finger pads."""
 
 TRIANGLE_MARGIN = 1e-9
-"""Part of the largest principal moment of inertia that the sum of the two others exceeds it by.
+"""Share of the largest principal moment by which the sum of the two others exceeds it.
 
-MuJoCo refuses a body whose moments break the triangle inequality by a rounding error, and finds the
-moments with rounding errors of its own. A flat or a thin body lies on the edge of the inequality.
+MuJoCo rejects a body whose moments violate the triangle inequality by a rounding error, and adds
+rounding errors when it computes them. A flat or thin body lies on the edge of the inequality.
 """
 
 MIMIC_SOLREF = (0.01, 1.0)
 """Time constant [s] and damping ratio of a mimic coupling.
 
-Slower than a contact: at two steps fingers that pressed on an object chattered from step to step.
+Slower than a contact: at two steps, fingers that press on an object chatter from step to step.
 """
 
 MIMIC_SOLIMP = (0.9999, 0.99999, 0.001, 0.5, 2.0)
@@ -33,7 +34,7 @@ MIMIC_SOLIMP = (0.9999, 0.99999, 0.001, 0.5, 2.0)
 
 
 def link_friction(description: RobotDescription, link: str) -> Friction:
-    """Surface of a link: the gripper's pads have their own."""
+    """Surface of a link; the gripper's pads have a friction of their own."""
     gripper = description.gripper
     if gripper is not None and link in gripper.pads.values():
         return Friction(sliding=gripper.friction)
@@ -41,7 +42,7 @@ def link_friction(description: RobotDescription, link: str) -> Friction:
 
 
 def add_robot(spec: mujoco.MjSpec, description: RobotDescription, surfaces: Surfaces) -> None:
-    """Add one body a link, under the same names, in doubles.
+    """Add one body for each link, under the same name and in double precision.
 
     Args:
         spec: A specification in radians; `world` is its world body.
@@ -79,7 +80,7 @@ def set_inertia(body: mujoco.MjsBody, inertial: Inertial) -> None:
 
 
 def _inside_the_triangle(inertia: FloatArray) -> FloatArray:
-    """The tensor, its smaller principal moments raised where they lack `TRIANGLE_MARGIN`."""
+    """The tensor, its smaller principal moments raised to satisfy `TRIANGLE_MARGIN`."""
     moments, axes = np.linalg.eigh(inertia)
     lack = (1 + TRIANGLE_MARGIN) * moments[2] - moments[0] - moments[1]
     if lack <= 0:
@@ -88,7 +89,7 @@ def _inside_the_triangle(inertia: FloatArray) -> FloatArray:
 
 
 def joint_range(description: RobotDescription, joint: Joint) -> tuple[float, float]:
-    """Limits of a joint, cut by what the joints that mimic it can follow."""
+    """Limits of a joint, narrowed to what the joints that mimic it can follow."""
     lower, upper = joint.lower, joint.upper
     for other in description.movable_joints:
         mimic = other.mimic
@@ -137,13 +138,13 @@ def _couple(spec: mujoco.MjSpec, joint: Joint) -> None:
 
 
 def _exclude_allowed_pairs(spec: mujoco.MjSpec, description: RobotDescription) -> None:
-    """No contacts between pairs that the SRDF allows, nor across a joint.
+    """Exclude contacts between pairs that the SRDF allows, and between links that a joint connects.
 
-    MuJoCo skips parent and child by itself, but not where the parent stands still.
+    MuJoCo excludes parent and child itself, except where the parent is static.
     """
     static = description.static_links
     shaped = [link.name for link in description.links if link.collisions]
-    carrier = _carriers(description)
+    carrier = carriers(description.joints, "world")
     across = {
         frozenset((carrier[joint.parent], carrier[joint.child]))
         for joint in description.movable_joints
@@ -155,11 +156,3 @@ def _exclude_allowed_pairs(spec: mujoco.MjSpec, description: RobotDescription) -
             allowed = tuple(sorted((first, second))) in description.allowed_collisions
             if allowed or frozenset((carrier[first], carrier[second])) in across:
                 spec.add_exclude(bodyname1=first, bodyname2=second)
-
-
-def _carriers(description: RobotDescription) -> dict[str, str]:
-    """For each link the first link of the rigid piece it belongs to."""
-    carrier = {"world": "world"}
-    for joint in description.joints:
-        carrier[joint.child] = joint.child if joint.is_movable else carrier[joint.parent]
-    return carrier

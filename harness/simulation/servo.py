@@ -19,7 +19,7 @@ BANDWIDTH_PER_STEP = 0.3
 """Natural frequency of an arm servo times the physics step; 300 rad/s at 1 ms.
 
 Explicit stiffness is stable below 2; a folded arm has several times less inertia than the
-stretched one that the servo is made for.
+stretched arm for which the servo is designed.
 """
 
 ROTOR_INERTIA_PER_EFFORT = 1e-3
@@ -30,23 +30,23 @@ accelerate its own rotor faster than 1000 rad/s^2.
 """
 
 GRIPPER_SATURATION = 0.0025
-"""Part of its range by which a gripper's joint lags when it presses with its usual grip effort."""
+"""Lag of a gripper's joint at its default grip effort, as a share of its range."""
 
 GRIPPER_BANDWIDTH_PER_STEP = 0.5
-"""As BANDWIDTH_PER_STEP; a gripper's stiffness is given by its saturation, so its rotor follows."""
+"""BANDWIDTH_PER_STEP of a gripper; its saturation gives the stiffness, and so its rotor inertia."""
 
 
 @dataclass(frozen=True, eq=False)
 class Servos:
     """Parameters of each actuated joint, in description order without mimic joints.
 
-    A servo's force is `stiffness * (control - position) - damping * velocity`, cut at its limit.
+    A servo's force is `stiffness * (control - position) - damping * velocity`, within its limit.
 
     Attributes:
         stiffness: [N m/rad or N/m], shape (m,).
         damping: [N m s/rad or N s/m], shape (m,).
         rotor_inertia: MuJoCo's armature, shape (m,).
-        effort: Limits; inf where there is none, shape (m,).
+        effort: Effort limits, inf where there is none, shape (m,).
     """
 
     stiffness: FloatArray
@@ -65,7 +65,7 @@ def bare_robot(description: RobotDescription) -> mujoco.MjSpec:
 
 
 def design_servos(description: RobotDescription, timestep: float) -> Servos:
-    """Choose critically damped servos from what each joint must accelerate.
+    """Design critically damped servos from the inertia that each joint accelerates.
 
     The inertia is the larger of that at all joints zero (UR and OpenMANIPULATOR-X arms are
     stretched there) and that at the start state, other joints at rest, plus the rotor's.
@@ -108,7 +108,7 @@ def _reflected_inertia(
 
 
 class FeedForward:
-    """Efforts that a motion of the robot alone takes: gravity, inertia, Coriolis, friction."""
+    """Efforts of a motion of the robot without payload: gravity, inertia, Coriolis, friction."""
 
     def __init__(
         self, description: RobotDescription, servos: Servos, gravity: tuple[float, float, float]
@@ -134,9 +134,9 @@ class FeedForward:
         """Efforts of the actuated joints, shape (N, m).
 
         Args:
-            positions: Every movable joint, mimic joints consistent, shape (N, n).
-            velocities: Shape (N, n).
-            accelerations: Shape (N, n).
+            positions: Positions of every movable joint, mimic joints included, shape (N, n).
+            velocities: Joint velocities, shape (N, n).
+            accelerations: Joint accelerations, shape (N, n).
         """
         model, data = self._model, self._data
         efforts = np.empty((len(positions), model.nv))
@@ -168,7 +168,7 @@ def set_rotor_inertia(spec: mujoco.MjSpec, description: RobotDescription, servos
 
 
 def add_servos(spec: mujoco.MjSpec, description: RobotDescription, servos: Servos) -> None:
-    """Add one force-limited actuator a joint, named as the joint."""
+    """Add one force-limited actuator for each joint, under the joint's name."""
     set_rotor_inertia(spec, description, servos)
     actuated = (joint for joint in description.movable_joints if joint.mimic is None)
     for index, joint in enumerate(actuated):

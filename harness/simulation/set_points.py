@@ -15,9 +15,9 @@ class SetPoints:
     """Commanded motion at every physics step, from the start to the goal, both included.
 
     Attributes:
-        positions: Shape (N, dof).
-        velocities: Shape (N, dof); the last row is at rest when the motion ends at rest.
-        accelerations: Shape (N, dof).
+        positions: Joint positions, shape (N, dof).
+        velocities: Joint velocities, shape (N, dof); zero in the last row if it ends at rest.
+        accelerations: Joint accelerations, shape (N, dof).
     """
 
     positions: FloatArray

@@ -1,4 +1,4 @@
-"""Objects of the world as MuJoCo bodies; those that appear later are parked from the start."""
+"""Adds the world's objects as MuJoCo bodies; objects that appear later are parked at the start."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -17,21 +17,21 @@ WELD_SOLIMP = (0.999, 0.9999, 0.001, 0.5, 2.0)
 
 
 def parking_pose(index: int) -> SE3:
-    """Where the object of that index waits: far below, apart from the others."""
+    """The parking pose of the object with an index: far below, apart from the others."""
     return SE3.from_xyz_rpy((10.0 * index, 0.0, -100.0))
 
 
 def weld_name(name: str) -> str:
-    """Name of the inactive weld that is kept for a dynamic object."""
+    """Name of the weld constraint that is reserved for a dynamic object."""
     return f"weld {name}"
 
 
 def add_object(spec: mujoco.MjSpec, obj: WorldObject, pose: SE3, surfaces: Surfaces) -> None:
     """Add an object as a body of its name, fixed if static, else free.
 
-    Free bodies carry a gravity compensation that counts while they are parked, and a weld that
-    counts while they are held by one. All geoms collide when compiled, as MuJoCo prepares contacts
-    for those alone; the caller switches them off.
+    Free bodies have a gravity compensation that acts while they are parked, and a weld constraint
+    that acts while they are welded to a link. All geoms collide when compiled, because MuJoCo
+    prepares contacts only for those; the caller disables them.
     """
     body = spec.worldbody.add_body(name=obj.name)
     body.pos = pose.translation

@@ -201,3 +201,67 @@ def test_joints_are_told_in_their_own_units():
     assert "at -3.500 rad (-200.5°), 0.159 rad (9.1°) beyond its limit -3.341 rad" in line
     nearest = error.facts["nearest"]["joint_positions"]
     assert nearest["shoulder_pan_joint"] == pytest.approx(-3.3406585, abs=1e-6)
+
+
+FAR = grasp_goal(1.1, 0.2, 0.4)
+CALLS = {
+    "by position": lambda planner, start: planner.plan(ARM, start, FAR, OPTIONS),
+    "keywords in order": lambda planner, start: planner.plan(
+        group=ARM, start=start, goal=FAR, options=OPTIONS
+    ),
+    "goal first": lambda planner, start: planner.plan(
+        goal=FAR, options=OPTIONS, group=ARM, start=start
+    ),
+    "options first": lambda planner, start: planner.plan(
+        options=OPTIONS, start=start, group=ARM, goal=FAR
+    ),
+    "half by position": lambda planner, start: planner.plan(
+        ARM, start, options=OPTIONS, goal=FAR, constraints=None
+    ),
+    "another method": lambda planner, start: planner.check_goal(
+        constraints=None, options=OPTIONS, goal=FAR, start=start, group=ARM
+    ),
+    "a line": lambda planner, start: planner.plan_linear(
+        options=OPTIONS, goal=FAR, start=start, group=ARM
+    ),
+}
+
+
+@pytest.mark.parametrize("call", CALLS.values(), ids=CALLS)
+def test_every_legal_order_of_arguments_gives_the_same_explanation(call):
+    cell = Cell(ur("ur3e"))
+    error = explained(call, cell.planner, cell.state)
+    assert error.code == "NO_IK_SOLUTION"
+    reach = stage(error, "reach")
+    assert reach.status == "failed"
+    assert reach == stage(explained(CALLS["by position"], cell.planner, cell.state), "reach")
+
+
+@pytest.mark.parametrize("kind", [np.array, list, tuple])
+def test_joint_positions_are_explained_in_whatever_form_they_are_given(kind):
+    cell = Cell(ur("ur3e"))
+    positions = kind([0.0, -1.5, 4.0, -1.7, -1.57, 0.0])
+    error = explained(
+        lambda: cell.planner.plan_joint_motion(
+            positions=positions, options=OPTIONS, start=cell.state, group=ARM
+        )
+    )
+    assert error.code == "GOAL_STATE_INVALID"
+    assert "elbow_joint would be at 4.000 rad" in stage(error, "reach").details[0]
+    assert error.facts["advice"].startswith("give elbow_joint at most")
+
+
+def test_a_motion_without_a_goal_of_its_own_is_explained_by_keywords():
+    cell = Cell(ur("ur3e"))
+    error = explained(
+        lambda: cell.planner.plan_relative(
+            options=OPTIONS,
+            distances=(3.0, 3.0),
+            twist=np.array([1.0, 0, 0, 0, 0, 0]),
+            link=TCP,
+            start=cell.state,
+            group=ARM,
+        )
+    )
+    assert stages_of(error.facts)[0].name == "start state"
+    assert stage(error, "path").status == "failed"

@@ -140,7 +140,7 @@ def test_of_several_goals_the_nearest_that_can_be_taken_is(cell):
     assert [each["error_code"] for each in told] == ["NO_IK_SOLUTION", "", ""]
     error = failure(cell.planner.plan, ARM, cell.state, AnyGoal((out, out)), OPTIONS)
     assert error.code == "NO_IK_SOLUTION"
-    assert error.message.startswith("none of 2 goals can be taken: 1: ")
+    assert error.message.startswith("none of 2 goals is feasible: 1: ")
 
 
 def test_a_goal_region_is_reached_where_its_middle_cannot_be(cell):

@@ -174,7 +174,7 @@ def test_a_cartesian_path_goes_as_far_as_it_can_and_says_how_far(cell):
     goals = [near(cell, 0.05, 0, 0), near(cell, 0.55, 0, 0)]
     refused = failure(cell.planner.plan_cartesian_path, ARM, cell.state, goals, PATH, HALF)
     assert refused.code == "PLANNING_FAILED"
-    assert "at least 100 % are asked for" in refused.message
+    assert "at least 100 % is required" in refused.message
     part = CartesianPathOptions(0.005, 0.001, 0.2, PATH.jump)
     plan = cell.planner.plan_cartesian_path(ARM, cell.state, goals, part, HALF)
     assert plan.result["fraction"] == pytest.approx(refused.facts["fraction"])

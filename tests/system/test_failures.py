@@ -21,15 +21,15 @@ TOLD = {
     "too_far": [
         r"cannot reach .* the nearest point it reaches, .*, is \d+\.\d mm away",
         r"reach: NO_IK_SOLUTION: nearest reachable pose: \(.*\), \d+\.\d mm and \d+\.\d° away",
-        r"    turned as asked: \(.*\), \d+\.\d mm away",
-        r"    turned as it may: \(.*\), \d+\.\d mm away",
+        r"    with the requested orientation: \(.*\), \d+\.\d mm away",
+        r"    with any orientation: \(.*\), \d+\.\d mm away",
         r"inverse kinematics: not reached, no branch",
         r"what to do: `pose: \{frame: world, xyz: \[.*\], quat_xyzw: \[.*\]\}` is reached",
         r"picture: images/01-too-far-why.jpg \(nearest pose\)",
     ],
     "turned_too_far": [
-        r"reaches .*, but not with the orientation asked for",
-        r"    at the place asked: \d+\.\d° turned away",
+        r"reaches .*, but not with the requested orientation",
+        r"    at the requested position: \d+\.\d° away",
     ],
     "line_meets_a_limit": [
         r"can follow the straight line for \d+ % .*: shoulder_pan_joint meets its limit",
@@ -57,13 +57,13 @@ TOLD = {
     ],
     "turned_sideways": [
         r"with 4 joints \w+ reaches the position and pitch of the pose, but is then turned 30\.0°",
-        r"what to do: ask for `position` and `pitch` instead of `pose`, or allow `tolerance: ",
+        r"what to do: give `position` and `pitch` instead of `pose`, or allow `tolerance: ",
     ],
     "past_the_plates": [
         r"no free path to the goal was found in at most 300 state checks",
         r"path: PLANNING_FAILED",
-        r"    what blocks: after \d+ % of the straight way, \w+ and plate \(\d+\.\d mm deep\)",
-        r"    how far the trees came: \d+\.\d\d rad",
+        r"    what blocks: after \d+ % of the straight path, \w+ and plate \(\d+\.\d mm deep\)",
+        r"    gap between the search trees: \d+\.\d\d rad",
         r"    budget: \d+ state checks used in 1 search of 300",
         r"what to do: raise `max_state_checks`",
     ],
