@@ -1,4 +1,4 @@
-"""What cameras see of a recorded run: the robot and what was really there, seen from a carrier."""
+"""The scene of a recorded run for its cameras: the robot and the simulated objects."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from harness.robot.description import RobotDescription
 
 
 class CameraScene:
-    """The scene of a run, posed as a sample recorded it, without what only the planner knows.
+    """The robot and the simulated objects of a run, posed as in a recorded sample.
 
     Attributes:
-        picture: What renderers draw.
-        object_names: Of what may be in it.
-        labels: Number of every link and object in segmentations.
-        geom_labels: The same for each geom of `picture`.
+        picture: The model that renderers draw.
+        object_names: Names of the objects.
+        labels: Label of every link and object in segmentations.
+        geom_labels: Label of each geom of `picture`.
     """
 
     def __init__(
@@ -41,7 +41,7 @@ class CameraScene:
             height=max(camera.height for camera in run.cameras),
         )
         quality = self.picture.model.vis.quality
-        quality.shadowsize, quality.offsamples = 1024, 0  # a third of the time on a processor
+        quality.shadowsize, quality.offsamples = 1024, 0  # takes a third of the time on a CPU
         names = (*description.link_names, *self.object_names)
         self.labels = {name: number for number, name in enumerate(names, start=1)}
         self.geom_labels = np.zeros(self.picture.model.ngeom, dtype=np.uint16)
@@ -53,17 +53,17 @@ class CameraScene:
             self.geom_labels[geoms] = self.labels[name]
 
     def pose(self, sample: int) -> dict[str, SE3]:
-        """Put everything where a sample has it; T_world_body of what was there, and of `world`."""
+        """Pose all bodies as in a sample; returns T_world_body of those present, and of `world`."""
         poses = poses_at(self._description, self._objects, self._run, sample)
         self.picture.pose(poses)
         return poses
 
     def view(self, camera: Camera, poses: Mapping[str, SE3]) -> View | None:
-        """From where a camera looks; None while what carries it is not there.
+        """The view of a camera; None while its carrier is not in the scene.
 
         Args:
-            camera: Which.
-            poses: As `pose` returned them.
+            camera: The camera.
+            poses: The result of `pose`.
         """
         carrier = poses.get(camera.frame)
         return None if carrier is None else view_of(camera, carrier)

@@ -1,4 +1,4 @@
-"""A picture file with a line of text below."""
+"""Picture files with a line of text below the picture."""
 
 from __future__ import annotations
 
@@ -10,17 +10,39 @@ import numpy as np
 from harness.core.printable import printable
 
 MOST_CHARACTERS = 130
-INK = (50, 40, 200)  # BGR
+RED, DARK = (50, 40, 200), (50, 45, 40)  # BGR
+FONT, SIZE, MARGIN = cv2.FONT_HERSHEY_SIMPLEX, 0.45, 10
 
 
-def write_captioned(file: Path, pixels: np.ndarray, caption: str) -> None:
-    """Write RGB pixels as a JPEG, a caption over its lowest rows."""
+def write_captioned(
+    file: Path,
+    pixels: np.ndarray,
+    caption: str,
+    *,
+    ink: tuple[int, int, int] = RED,
+    status: str = "",
+    status_ink: tuple[int, int, int] = DARK,
+) -> None:
+    """Write RGB pixels as a JPEG with a caption over its lowest rows.
+
+    Args:
+        file: The file to write.
+        pixels: The picture, RGB, shape (height, width, 3), uint8.
+        caption: Text at the left, scaled down to fit.
+        ink: Colour of the caption, BGR.
+        status: Text at the right.
+        status_ink: Colour of the status, BGR.
+    """
     picture = np.ascontiguousarray(pixels[:, :, ::-1])
     picture[-26:] = (0.25 * picture[-26:] + 0.75 * 255).astype(np.uint8)
-    font, line = cv2.FONT_HERSHEY_SIMPLEX, cv2.LINE_AA
+    height, right = picture.shape[0] - 9, picture.shape[1] - MARGIN
+    if status:
+        right -= cv2.getTextSize(status, FONT, SIZE, 1)[0][0]
+        cv2.putText(picture, status, (right, height), FONT, SIZE, status_ink, 1, cv2.LINE_AA)
+        right -= MARGIN
     text = printable(caption)[:MOST_CHARACTERS]
-    (wide, _), _ = cv2.getTextSize(text, font, 0.45, 1)
-    scale = 0.45 * min(1.0, (picture.shape[1] - 20) / max(wide, 1))
-    cv2.putText(picture, text, (10, picture.shape[0] - 9), font, scale, INK, 1, line)
+    wide = cv2.getTextSize(text, FONT, SIZE, 1)[0][0]
+    scale = SIZE * min(1.0, (right - MARGIN) / max(wide, 1))
+    cv2.putText(picture, text, (MARGIN, height), FONT, scale, ink, 1, cv2.LINE_AA)
     _, content = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, 92])
-    file.write_bytes(content.tobytes())  # OpenCV crashes on names of files that are no UTF-8
+    file.write_bytes(content.tobytes())  # OpenCV crashes on file names that are not UTF-8

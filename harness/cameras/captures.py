@@ -1,19 +1,20 @@
-"""Pictures that cameras took, drawn after the run from what was recorded.
+"""Pictures of the scenario's cameras, rendered after the run from the recorded states.
 
-Always by rays, whatever the machine has: the same pixels everywhere, so that a verdict that reads
-them is the same with a graphics card, without one, and in a container.
+The ray renderer draws them on every machine, with or without a graphics card, so that all machines
+get the same pixels and the same verdicts on them.
 """
 
 from __future__ import annotations
 
+import io
 import re
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 
+import cv2
 import numpy as np
 
 from harness.cameras.camera_scene import CameraScene
-from harness.cameras.encoding import depth_colours, jpeg, label_colours, npz, png
 from harness.cameras.outlines import outline_pixels
 from harness.cameras.ray_renderer import RayRenderer
 from harness.cameras.sensor import as_delivered
@@ -22,6 +23,7 @@ from harness.core.activity import Activity, unobserved
 from harness.core.camera import Camera
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
+from harness.recording.arrays import write_npz
 from harness.recording.looks import Look
 from harness.recording.run import CaptureRecord, Run
 from harness.robot.description import RobotDescription
@@ -43,17 +45,16 @@ def take_pictures(
     looks: Sequence[Look],
     activity: Activity = unobserved,
 ) -> tuple[tuple[CaptureRecord, ...], dict[str, bytes]]:
-    """The wanted pictures, and their files by path in the run's folder.
+    """The requested pictures, and their files by path in the run's folder.
 
-    What a `capture` step took is lossless; what an expectation looks at is a JPEG of the camera's
-    quality, as its compressed stream would bring it. A camera whose carrier is not in the scene
-    takes no picture.
+    Pictures of a `capture` step are lossless; those of an expectation are JPEGs of the camera's
+    quality, as in its compressed stream. A camera whose carrier is not in the scene takes none.
 
     Args:
         description: The robot.
-        objects: Everything that takes part.
-        run: What happened, its cameras included.
-        looks: What is wanted, in order of time.
+        objects: All objects of the scenario.
+        run: The run, its cameras included.
+        looks: The requested pictures, in order of time.
         activity: Called for each picture.
     """
     if not looks:
@@ -117,28 +118,28 @@ class _Shot:
         return self._renderer.measure(self._view)
 
     def encoded(self) -> dict[str, bytes]:
-        """The content of each file by kind; previews are for what people took."""
+        """The content of each file by kind; pictures of a step have previews."""
         content: dict[str, bytes] = {}
         kinds, camera = self._look.kinds, self._camera
         if "color" in kinds:
             ideal = self._renderer.render(self._view)
             picture = as_delivered(ideal, camera, self._seed, self._look.sample)
-            content["color"] = png(picture) if self._look.step else jpeg(picture, camera)
+            content["color"] = _png(picture) if self._look.step else _jpeg(picture, camera)
         if "depth" in kinds:
             depth, _ = self._measured
-            content["depth"] = npz(depth)
+            content["depth"] = _npz(depth)
             if self._look.step:
-                content["depth_preview"] = png(depth_colours(depth))
+                content["depth_preview"] = _png(_depth_colours(depth))
         if "segmentation" in kinds:
             _, geoms = self._measured
             labels = np.where(geoms >= 0, self._scene.geom_labels[geoms], 0).astype(np.uint16)
-            content["segmentation"] = png(labels)
+            content["segmentation"] = _png(labels)
             if self._look.step:
-                content["segmentation_preview"] = png(label_colours(labels))
+                content["segmentation_preview"] = _png(_label_colours(labels))
         return content
 
     def outlines(self, poses: Mapping[str, SE3]) -> dict[str, int]:
-        """Pixels of each object that is in front of the camera, were it alone."""
+        """Number of unoccluded pixels of each object in front of the camera."""
         counts = {
             name: outline_pixels(
                 self._scene.picture, name, self._view, self._camera.width, self._camera.height
@@ -150,7 +151,7 @@ class _Shot:
 
 
 def camera_folders(cameras: Sequence[Camera]) -> dict[str, str]:
-    """A folder of its own for each camera, by its name."""
+    """A separate folder for each camera, by its name."""
     folders: dict[str, str] = {}
     for camera in cameras:
         folder = f"{FOLDER}/{slug(camera.name)}"
@@ -163,3 +164,48 @@ def camera_folders(cameras: Sequence[Camera]) -> dict[str, str]:
 def slug(name: str) -> str:
     """A name as part of a file's name."""
     return re.sub(r"[^A-Za-z0-9_-]+", "-", name).strip("-")[:48] or "camera"
+
+
+def _png(picture: np.ndarray) -> bytes:
+    """A picture of one or three (RGB) channels as a PNG file."""
+    return _encoded(".png", picture, [cv2.IMWRITE_PNG_COMPRESSION, 3])
+
+
+def _jpeg(picture: np.ndarray, camera: Camera) -> bytes:
+    """A picture of one or three (RGB) channels as a JPEG file of the camera's quality."""
+    return _encoded(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, camera.jpeg_quality])
+
+
+def _encoded(suffix: str, picture: np.ndarray, options: list[int]) -> bytes:
+    channels_of_opencv = picture[:, :, ::-1] if picture.ndim == 3 else picture
+    done, content = cv2.imencode(suffix, np.ascontiguousarray(channels_of_opencv), options)
+    if not done:
+        raise RuntimeError(f"OpenCV cannot write {suffix} files here")
+    return content.tobytes()
+
+
+def _npz(depth: np.ndarray) -> bytes:
+    """An .npz file of the array `depth`, float32, with equal bytes for equal depths."""
+    stream = io.BytesIO()
+    write_npz(stream, {"depth": depth.astype(np.float32)})
+    return stream.getvalue()
+
+
+def _depth_colours(depth: np.ndarray) -> np.ndarray:
+    """RGB of a logarithmic scale, from bright (near) to dark (far); black without a hit."""
+    seen = np.isfinite(depth)
+    ratio = np.log(np.where(seen, np.maximum(depth, 1e-3), 1.0))
+    low, high = (ratio[seen].min(), ratio[seen].max()) if seen.any() else (0.0, 1.0)
+    share = np.clip((high - ratio) / max(high - low, 1e-9), 0, 1)
+    grey = np.where(seen, 30 + 225 * share, 0).astype(np.uint8)
+    colours = cv2.applyColorMap(grey, cv2.COLORMAP_VIRIDIS)[:, :, ::-1]
+    return np.where(seen[:, :, None], colours, 0).astype(np.uint8)
+
+
+def _label_colours(labels: np.ndarray) -> np.ndarray:
+    """RGB with a distinct colour for each label; label 0 is black."""
+    hues = (np.arange(int(labels.max()) + 1) * 0.618034) % 1.0
+    hsv = np.stack([hues * 179, np.full_like(hues, 170), np.full_like(hues, 235)], axis=1)
+    palette = cv2.cvtColor(hsv.astype(np.uint8)[None], cv2.COLOR_HSV2RGB)[0]
+    palette[0] = 0
+    return palette[labels]

@@ -16,14 +16,14 @@ from harness.robot.mesh_file import unit_of
 
 
 def load_collada(geometry: Mesh) -> tuple[MeshPart, ...]:
-    """The triangles that a file's scene shows, one part a colour.
+    """The triangles of a file's scene, one part per colour.
 
-    As where the same file touches things, its `up_axis` is not applied, and its `unit` is.
+    As in the collision geometry of the same file, its `unit` is applied and its `up_axis` is not.
 
     Raises:
-        RobotError: The file is too large or damaged, or shows nothing.
+        RobotError: The file is too large or damaged, or its scene has no triangles.
     """
-    import collada  # here: few robots look like COLLADA files
+    import collada  # here: few robots have COLLADA files
     import collada.common
 
     scale = unit_of(geometry) * np.array(geometry.scale)
@@ -36,14 +36,14 @@ def load_collada(geometry: Mesh) -> tuple[MeshPart, ...]:
     except (collada.common.DaeError, AttributeError, ValueError, IndexError) as error:
         raise RobotError(f"{geometry.path.name} cannot be read: it is damaged") from error
     if not pieces:
-        raise RobotError(f"{geometry.path.name} shows no triangles")
+        raise RobotError(f"{geometry.path.name} has a scene without triangles")
     return tuple(MeshPart(*coarsen(*_joined(found)), rgba) for rgba, found in pieces.items())
 
 
 def _pieces(
     scene: Any, scale: np.ndarray
 ) -> dict[Rgba | None, list[tuple[np.ndarray, np.ndarray]]]:
-    """Vertices [m] and faces of every primitive that has some, by colour."""
+    """Vertices [m] and faces of every primitive that has triangles, by colour."""
     pieces: dict[Rgba | None, list[tuple[np.ndarray, np.ndarray]]] = {}
     for shown in scene.objects("geometry"):
         for primitive in shown.primitives():
@@ -64,7 +64,7 @@ def _joined(pieces: list[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np
 
 
 def _diffuse(material: Any) -> Rgba | None:
-    """The material's colour; None for a texture, or where there is none."""
+    """The material's colour; None for a texture or no colour."""
     colour = getattr(getattr(material, "effect", None), "diffuse", None)
     if not isinstance(colour, tuple) or len(colour) < 3:
         return None

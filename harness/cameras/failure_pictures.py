@@ -1,4 +1,4 @@
-"""A picture of the state that a failed step's explanation speaks of, its goal marked."""
+"""A picture of the state in a failed step's explanation, with its goal."""
 
 from __future__ import annotations
 
@@ -9,20 +9,19 @@ from typing import Any
 import numpy as np
 
 from harness.cameras.caption import write_captioned
-from harness.cameras.marks import GOAL, ORANGE, RED, frame_mark, mark, way_mark
+from harness.cameras.marks import GOAL, ORANGE, RED, frame_mark, line_mark, mark
 from harness.cameras.picture_model import PictureModel, build_picture_model
 from harness.cameras.recorded_scene import floor_height, poses_at
-from harness.cameras.renderer import make_renderer
+from harness.cameras.renderer import render_overview
 from harness.cameras.robot_poses import link_poses
 from harness.cameras.stills import HEIGHT, WIDTH
-from harness.cameras.viewpoint import fit_viewpoint
 from harness.core.geometry import Shape, Sphere, bounding_radius
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.recording.run import Run, StepRecord
 from harness.robot.description import RobotDescription
 
-ARM_SIZE = 0.12  # [m] a link's share of the view
+ARM_SIZE = 0.12  # radius around a link's origin that the view contains [m]
 
 
 def draw_failure(
@@ -34,17 +33,17 @@ def draw_failure(
     *,
     backend: str = "auto",
 ) -> None:
-    """Write a JPEG of the state in a step's `explanation["nearest"]`, the goal marked in it.
+    """Write a JPEG of the state in a step's `explanation["nearest"]`, with the goal.
 
-    The goal's frame is red, green, blue (x, y, z), an orange line leads to it from where the link
-    comes; objects stand as they did when the step failed, held ones where they would be.
+    The axes x, y, z of the goal's frame are red, green, blue; an orange line connects the link with
+    it. Objects are where they were when the step failed, attached ones move with their link.
 
     Args:
         description: The robot.
-        world_objects: Everything that took part.
-        run: What happened.
-        step: A failed one, explained.
-        file: To write; its folder exists.
+        world_objects: All objects of the scenario.
+        run: The run.
+        step: A failed step that has an explanation.
+        file: The file to write; its folder exists.
         backend: `auto`, `egl`, `osmesa` or `rays`.
     """
     nearest: Mapping[str, Any] = step.explanation["nearest"]
@@ -66,17 +65,13 @@ def draw_failure(
     )
     _tint(picture, nearest)
     picture.pose(poses | {mark.name: mark.pose for mark in marks})
-    renderer = make_renderer(picture, WIDTH, HEIGHT, backend)
-    try:
-        points, radii = _in_view(description, poses, marks)
-        pixels = renderer.render(fit_viewpoint(points, radii, WIDTH, HEIGHT).view)
-    finally:
-        renderer.close()
+    points, radii = _in_view(description, poses, marks)
+    pixels = render_overview(picture, points, radii, WIDTH, HEIGHT, backend)
     write_captioned(file, pixels, f"{step.error_code}: {nearest['shows']}{_missed_by(nearest)}")
 
 
 def _tint(picture: PictureModel, nearest: Mapping[str, Any]) -> None:
-    """Redden the two bodies that are deepest in each other."""
+    """Tint the two bodies of the deepest contact red."""
     for touch in nearest.get("touches", ())[:1]:
         for name in touch["pair"]:
             if name in picture.geoms:
@@ -85,7 +80,7 @@ def _tint(picture: PictureModel, nearest: Mapping[str, Any]) -> None:
 
 
 def _marks(nearest: Mapping[str, Any]) -> list[WorldObject]:
-    """The goal, and the way to it from where the link comes."""
+    """The goal, and a line to it from the link's nearest pose."""
     target = nearest.get("target")
     if target is None:
         return []
@@ -94,14 +89,14 @@ def _marks(nearest: Mapping[str, Any]) -> list[WorldObject]:
         marks = [frame_mark(SE3.from_vector(target))]
     else:
         marks = [mark(GOAL, SE3.from_xyz_rpy(point), Shape(Sphere(0.02), rgba=ORANGE))]
-    way = way_mark(np.array(nearest["pose"][:3], dtype=float), point)
-    return marks if way is None else [*marks, way]
+    line = line_mark(np.array(nearest["pose"][:3], dtype=float), point)
+    return marks if line is None else [*marks, line]
 
 
 def _in_view(
     description: RobotDescription, poses: Mapping[str, SE3], marks: Sequence[WorldObject]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Centres and radii of what must be seen: the arm and the marks."""
+    """Centres and radii of the bodies that the view contains: the arm and the marks."""
     points = [poses[link.name].translation for link in description.links if link.name != "world"]
     radii = [ARM_SIZE] * len(points)
     for each in marks:

@@ -1,4 +1,4 @@
-"""MuJoCo's classic renderer on a graphics context that is made late and without a window."""
+"""MuJoCo's classic renderer on an off-screen graphics context, created on first use."""
 
 # pyright: reportAttributeAccessIssue=false, reportMissingImports=false
 
@@ -19,7 +19,7 @@ MAX_GEOMS = 4000
 
 
 def gl_contexts() -> tuple[tuple[str, Callable[[int, int], Any]], ...]:
-    """Names of the graphics libraries to try, best first, each with what makes its context."""
+    """Graphics libraries in order of preference, each with its context factory."""
     return ("egl", _egl_context), ("osmesa", _osmesa_context)
 
 
@@ -38,10 +38,10 @@ def _osmesa_context(width: int, height: int) -> Any:
 
 
 class _PyOpenGL:
-    """Lets PyOpenGL load one platform; when that fails, nothing of it is left behind.
+    """Lets PyOpenGL load one platform, and unloads PyOpenGL when that fails.
 
-    PyOpenGL chooses its library by an environment variable when it is first imported. MUJOCO_GL is
-    never touched: with it set, importing mujoco itself fails where the library is missing.
+    PyOpenGL chooses its library by an environment variable when it is first imported. MUJOCO_GL
+    is never set: with it, importing mujoco itself fails on machines without the library.
     """
 
     VARIABLE = "PYOPENGL_PLATFORM"
@@ -80,7 +80,7 @@ class GLRenderer:
         self._viewport = mujoco.MjrRect(0, 0, width, height)
 
     def render(self, view: View) -> np.ndarray:
-        """What is seen from a view, RGB."""
+        """The picture of a view, RGB."""
         model, data = self._picture.model, self._picture.data
         camera = mujoco.MjvCamera()
         camera.type = mujoco.mjtCamera.mjCAMERA_FIXED

@@ -1,4 +1,4 @@
-"""What is drawn beside things: a goal's frame, and the way to it."""
+"""Marks in pictures: a goal's frame, and a line to it."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from harness.core.spatial import SE3, rotation_from_rpy
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 
-GOAL, WAY = "goal of the failed step", "from the nearest pose to the goal"
-"""Bodies that stand for what is missed; a person's object will hardly have these names."""
+GOAL, LINE = "goal of the failed step", "from the nearest pose to the goal"
+"""Names of the marks' bodies, which objects of a scenario are unlikely to have."""
 
-AXIS_LENGTH, AXIS_RADIUS = 0.12, 0.006  # [m] of the goal's frame
+AXIS_LENGTH, AXIS_RADIUS = 0.12, 0.006  # of the goal's frame [m]
 RED, GREEN, BLUE = (0.85, 0.1, 0.1, 1.0), (0.1, 0.6, 0.1, 1.0), (0.1, 0.2, 0.85, 1.0)
 ORANGE: Rgba = (0.95, 0.45, 0.05, 1.0)
 
-LEAST_WAY = 0.005  # [m] shorter ones cannot be seen
+SHORTEST_LINE = 0.005  # shorter lines are not visible [m]
 
 
 def frame_mark(pose: SE3, length: float = AXIS_LENGTH) -> WorldObject:
-    """The axes x, y, z of a goal in red, green, blue, so long [m]."""
+    """The axes x, y, z of a goal in red, green, blue, of a length [m]."""
     half, radius = 0.5 * length, AXIS_RADIUS * length / AXIS_LENGTH
     turns = ((0, np.pi / 2, 0), (-np.pi / 2, 0, 0), (0, 0, 0))
     axes = [
@@ -34,17 +34,17 @@ def frame_mark(pose: SE3, length: float = AXIS_LENGTH) -> WorldObject:
     return mark(GOAL, pose, *axes)
 
 
-def way_mark(here: FloatArray, there: FloatArray) -> WorldObject | None:
-    """An orange line between two points of the world; None where they are too near."""
+def line_mark(here: FloatArray, there: FloatArray) -> WorldObject | None:
+    """An orange line between two points of the world; None for a line that is too short."""
     away = float(np.linalg.norm(there - here))
-    if away <= LEAST_WAY:
+    if away <= SHORTEST_LINE:
         return None
     along = Shape(Capsule(0.003, away), rgba=ORANGE)
-    return mark(WAY, SE3(_along(there - here), 0.5 * (there + here)), along)
+    return mark(LINE, SE3(_along(there - here), 0.5 * (there + here)), along)
 
 
 def mark(name: str, pose: SE3, *shapes: Shape) -> WorldObject:
-    """Shapes that nothing touches."""
+    """A body of shapes for pictures."""
     return WorldObject(name, shapes, pose, True, 0.0, np.zeros(3), np.zeros((3, 3)))
 
 

@@ -10,7 +10,7 @@ from harness.core.geometry import Rgba
 from harness.core.types import FloatArray, IntArray
 
 GRID = 0.002
-"""Vertices within a cell of this size become one [m]: about a pixel in a picture of an arm."""
+"""Size of the cells in which vertices merge [m]: about a pixel in a picture of an arm."""
 
 
 @dataclass(frozen=True, eq=False)

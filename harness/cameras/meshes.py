@@ -1,4 +1,4 @@
-"""Mesh files (OBJ, STL, DAE) as coloured triangles, as pictures and pages show them."""
+"""Mesh files (OBJ, STL, DAE) as coloured triangles for pictures and pages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from harness.robot.mesh_file import read_triangles
 
 @lru_cache(maxsize=256)
 def mesh_parts(geometry: Mesh) -> tuple[MeshPart, ...]:
-    """What a mesh file looks like, one part a colour; nothing where it cannot be read."""
+    """The triangles of a mesh file, one part per colour; empty when it cannot be read."""
     try:
         match geometry.path.suffix.lower():
             case ".obj":

@@ -14,10 +14,10 @@ from harness.core.types import IntArray
 
 
 def load_obj(geometry: Mesh) -> tuple[MeshPart, ...]:
-    """Read a Wavefront OBJ file of triangles, one part a material.
+    """Read a Wavefront OBJ file of triangles, one part per material.
 
-    Polygons are read as fans. Diffuse colours of the MTL file are linear light, as Blender writes
-    them, and come out as sRGB.
+    Polygons are split into fans. Diffuse colours of the MTL file are linear, as Blender writes
+    them, and are converted to sRGB.
     """
     text = geometry.path.read_text(encoding="utf-8", errors="replace")
     vertices = np.array(
@@ -33,7 +33,7 @@ def load_obj(geometry: Mesh) -> tuple[MeshPart, ...]:
 
 
 def _sections(text: str) -> list[tuple[str, str]]:
-    """Faces by material: the text after each `usemtl`, or all of it."""
+    """Faces by material: the text after each `usemtl`, or the whole text."""
     pieces = re.split(r"^usemtl (.*)$", text, flags=re.MULTILINE)
     if len(pieces) == 1:
         return [("", text)]

@@ -1,4 +1,4 @@
-"""How many pixels an object would have if nothing hid it and the picture had no edge."""
+"""Number of pixels that an object has without occlusion and beyond the picture's edges."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -11,24 +11,24 @@ from harness.cameras.picture_model import SOLID_GROUP, TRANSLUCENT_GROUP, Pictur
 from harness.cameras.viewpoint import View
 
 REACH = 1.0
-"""How far beyond each edge of the picture an outline is followed, in pictures."""
+"""Distance beyond each edge up to which pixels are counted, in picture sizes."""
 
 MOST_RAYS = 60_000
-"""For one object; a larger outline is counted on every second, third ... pixel of both axes."""
+"""Most rays for one object; a larger outline is sampled at every second, third ... pixel."""
 
 
 _BODIES = np.isin(np.arange(6), (SOLID_GROUP, TRANSLUCENT_GROUP)).astype(np.uint8)
 
 
 def outline_pixels(picture: PictureModel, name: str, view: View, width: int, height: int) -> int:
-    """Pixels of an object alone, seen from a view; 0 where it is not in front of the camera.
+    """Pixels of an unoccluded object in a view; 0 when it is not in front of the camera.
 
     Args:
-        picture: Posed; the object's geoms are cast against, all others are left out.
-        name: Of the object.
-        view: The camera's.
-        width: Of the picture.
-        height: Of the picture.
+        picture: The posed scene; rays meet the object's geoms alone.
+        name: Name of the object.
+        view: The camera's view.
+        width: Width of the picture [pixels].
+        height: Height of the picture [pixels].
     """
     model = picture.model
     geoms = np.arange(model.ngeom)[picture.geoms[name]]
@@ -54,7 +54,7 @@ def outline_pixels(picture: PictureModel, name: str, view: View, width: int, hei
         True,
         -1,
         hits,
-        depths,  # in lengths of rays that reach a depth of 1
+        depths,  # in lengths of rays of depth 1
         None,
         len(local),
         view.far,
@@ -71,7 +71,7 @@ def _bounds(
     width: int,
     height: int,
 ) -> tuple[int, int, int, int] | None:
-    """Pixels [left, right) x [top, bottom) that hold the geoms' bounding spheres."""
+    """Pixels [left, right) x [top, bottom) that contain the geoms' bounding spheres."""
     local = view.pose.inverse().apply(picture.data.geom_xpos[geoms])
     radii = picture.model.geom_rbound[geoms]
     depths = -local[:, 2]
@@ -79,7 +79,7 @@ def _bounds(
     if not in_front.any():
         return None
     local, radii, depths = local[in_front], radii[in_front], depths[in_front]
-    if (depths - radii <= view.near).any():  # the camera is in the midst of it
+    if (depths - radii <= view.near).any():  # the camera is inside it
         low, high = np.array([-np.inf, -np.inf]), np.array([np.inf, np.inf])
     else:
         across = local[:, :2] * [1, -1]

@@ -1,4 +1,4 @@
-"""A MuJoCo model for pictures: one posable body for each link and object."""
+"""A MuJoCo model for pictures, with one mocap body for each link and object."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -22,7 +22,7 @@ FLOOR_GROUP = 2
 FLOOR, EYE = "floor", "eye"
 
 GHOST_ALPHA = 0.3
-"""Opacity of objects that are in the planner's belief alone."""
+"""Opacity of objects that only the planning scene has."""
 
 SKY_TOP, HORIZON = (0.80, 0.85, 0.91), (0.95, 0.96, 0.97)
 FLOOR_COLOUR, FLOOR_LINES = (0.90, 0.905, 0.91), (0.82, 0.83, 0.84)
@@ -31,15 +31,15 @@ LIGHT_DIRECTION = (0.30, 0.45, -0.84)
 
 @dataclass(frozen=True, eq=False)
 class PictureModel:
-    """What the renderers draw.
+    """A compiled model for renderers.
 
     Attributes:
-        model: Bodies are posed through `mocap_pos` and `mocap_quat`.
-        data: Their poses; hidden ones have geoms without opacity.
-        mocap: Mocap index of each link and object that has something to draw.
-        geoms: Geom ids of each.
-        rgba: Colours of the geoms when shown, shape (G, 4).
-        eye: Id of the camera that renderers put where they look from.
+        model: The model; `mocap_pos` and `mocap_quat` pose its bodies.
+        data: The poses of the bodies; geoms of hidden bodies have no opacity.
+        mocap: Mocap index of each link and object that has visuals.
+        geoms: Geom ids of each link and object.
+        rgba: Colours of the visible geoms, shape (G, 4).
+        eye: Id of the camera that renderers move to their viewpoint.
     """
 
     model: mujoco.MjModel
@@ -50,7 +50,7 @@ class PictureModel:
     eye: int = 0
 
     def pose(self, poses: Mapping[str, SE3]) -> None:
-        """Place what is named, hide the rest."""
+        """Pose the named bodies and hide all others."""
         for name, index in self.mocap.items():
             geoms = self.geoms[name]
             pose = poses.get(name)
@@ -74,10 +74,10 @@ def build_picture_model(
 
     Args:
         description: The robot.
-        objects: Everything that takes part; a plane among them becomes the floor.
+        objects: All objects; a plane among them becomes the floor.
         floor_height: z of the floor [m].
-        width: Of the pictures, in pixels.
-        height: Of the pictures, in pixels.
+        width: Largest width of a picture [pixels].
+        height: Largest height of a picture [pixels].
     """
     spec = mujoco.MjSpec()
     spec.compiler.degree = False
@@ -125,7 +125,7 @@ def _add_body(spec: mujoco.MjSpec, name: str, shapes: Sequence[Shape], *, ghost:
 
 
 def _pieces(spec: mujoco.MjSpec, shape: Shape) -> list[tuple[Geometry | str, Rgba | None]]:
-    """A shape as what MuJoCo draws: primitives, or names of mesh assets with their colours."""
+    """A shape as MuJoCo's primitive, or as names of mesh assets with their colours."""
     geometry = shape.geometry
     if not isinstance(geometry, Mesh):
         return [(geometry, None)]

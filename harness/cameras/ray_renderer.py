@@ -1,4 +1,4 @@
-"""A camera that needs no graphics library: one ray a pixel, cast by MuJoCo on the processor."""
+"""A renderer without a graphics library: MuJoCo casts one ray per pixel on the CPU."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -23,16 +23,16 @@ from harness.cameras.picture_model import (
 from harness.cameras.viewpoint import View
 
 LIGHT_DISTANCE = 30.0
-"""How far the sun stands [m]; its shadows are cast from a point."""
+"""Distance of the sun [m], which is a point light."""
 
 FLOOR_SPACING, LINE_WIDTH = 0.5, 0.006
-"""Of the floor's lines [m]."""
+"""Spacing of the floor's grid lines [m]."""
 
 FADE = 9.0
 """Distance over which the floor fades into the horizon [m]."""
 
 AMBIENT, HEAD, SUN = 0.48, 0.25, 0.42
-"""Light from everywhere, from the camera, and from the sun."""
+"""Ambient light, headlight and sunlight."""
 
 
 _SOLID = np.isin(np.arange(6), (SOLID_GROUP, FLOOR_GROUP)).astype(np.uint8)
@@ -40,7 +40,7 @@ _SOLID = np.isin(np.arange(6), (SOLID_GROUP, FLOOR_GROUP)).astype(np.uint8)
 
 @dataclass(frozen=True, eq=False)
 class _Rays:
-    """Unit directions from one origin; `cosines` to the camera's axis turn lengths into depths."""
+    """Unit directions from one origin; a length times its cosine to the axis is a depth."""
 
     origin: np.ndarray
     directions: np.ndarray
@@ -49,12 +49,12 @@ class _Rays:
     far: float
 
     def chosen(self, which: np.ndarray) -> _Rays:
-        """Some of them."""
+        """A subset of the rays."""
         return replace(self, directions=self.directions[which], cosines=self.cosines[which])
 
 
 class RayRenderer:
-    """Draws with hard shadows; with oversampling, edges are averaged over smaller pixels."""
+    """Draws with hard shadows; oversampling averages edges over smaller pixels."""
 
     backend = "rays"
 
@@ -67,16 +67,16 @@ class RayRenderer:
         self._local: dict[float, np.ndarray] = {}
 
     def render(self, view: View) -> np.ndarray:
-        """What is seen from a view, RGB."""
+        """The picture of a view, RGB."""
         model = self._picture.model
         rays = self._rays(view)
         colour, geoms = self._colour(rays, None)
-        behind = geoms >= 0
-        behind[behind] = model.geom_group[geoms[behind]] == TRANSLUCENT_GROUP
-        if behind.any():
-            alpha = model.geom_rgba[geoms[behind], 3, None]
-            through, _ = self._colour(rays.chosen(behind), _SOLID)
-            colour[behind] = alpha * colour[behind] + (1 - alpha) * through
+        clear = geoms >= 0
+        clear[clear] = model.geom_group[geoms[clear]] == TRANSLUCENT_GROUP
+        if clear.any():
+            alpha = model.geom_rgba[geoms[clear], 3, None]
+            through, _ = self._colour(rays.chosen(clear), _SOLID)
+            colour[clear] = alpha * colour[clear] + (1 - alpha) * through
         height, width = self._size
         step = self._oversampling
         blocks = colour.reshape(height // step, step, width // step, step, 3)
@@ -85,7 +85,7 @@ class RayRenderer:
     def measure(self, view: View) -> tuple[np.ndarray, np.ndarray]:
         """Depth along the axis [m] and geom of every pixel, shape (height, width) each.
 
-        Where nothing is within near and far: inf, and -1.
+        A pixel without a hit between near and far has depth inf and geom -1.
         """
         rays = self._rays(view)
         geoms, distances, _ = self._see(rays, None)
@@ -93,7 +93,7 @@ class RayRenderer:
         return depth.reshape(self._size), geoms.reshape(self._size)
 
     def close(self) -> None:
-        """Nothing is held."""
+        """Do nothing: the renderer holds no resources."""
 
     def _rays(self, view: View) -> _Rays:
         height, width = self._size
@@ -113,15 +113,17 @@ class RayRenderer:
     def _see(
         self, rays: _Rays, groups: np.ndarray | None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """As `_cast`, of what is neither too near nor too far.
+        """As `_cast`, between the near and the far plane.
 
-        A geom that a ray enters before the near plane is looked through by that ray, as graphics
-        cards do that draw no inner sides. The floor, geom 0, has none.
+        A ray passes through a geom that it enters before the near plane, as on graphics cards that
+        cull back faces. The floor, geom 0, has none.
         """
         model = self._picture.model
         longest = rays.far / float(rays.cosines.min(initial=1.0))
         opacity = model.geom_rgba[:, 3].copy()
-        model.geom_rgba[self._within(rays.origin, rays.near), 3] = 0.0  # most often: its own box
+        model.geom_rgba[self._within(rays.origin, rays.near), 3] = (
+            0.0  # usually the camera's own housing
+        )
         geoms, distances, normals = self._cast(rays.origin, rays.directions, groups, longest)
         pending = np.flatnonzero((geoms > 0) & (distances * rays.cosines < rays.near))
         while len(pending):
@@ -137,7 +139,7 @@ class RayRenderer:
         return geoms, distances, normals
 
     def _within(self, origin: np.ndarray, distance: float) -> np.ndarray:
-        """Whether all of a geom is nearer than a distance, for every geom."""
+        """Whether the whole geom is nearer than a distance, for every geom."""
         centres = np.linalg.norm(self._picture.data.geom_xpos - origin, axis=1)
         radii = self._picture.model.geom_rbound
         return (radii > 0) & (centres + radii <= distance)  # planes have a radius of 0

@@ -1,4 +1,4 @@
-"""Where everything stood at a recorded sample."""
+"""Poses of all bodies at a recorded sample."""
 
 from __future__ import annotations
 
@@ -21,27 +21,26 @@ def poses_at(
     sample: int,
     step: StepRecord | None = None,
 ) -> dict[str, SE3]:
-    """T_world_body of every link and of every object that was there.
+    """T_world_body of every link and of every object in the scene.
 
-    Simulated objects stand where the physics had them, others where the planner believed
-    them.
+    Simulated objects have their pose in the physics, others their pose in the planning scene.
 
     Args:
         description: The robot.
-        world_objects: Everything that took part.
-        run: What happened.
+        world_objects: All objects of the scenario.
+        run: The run.
         sample: Index into the signals.
-        step: Which of several steps that share the sample is meant; what steps without duration
-            change in the moment a motion ends has not happened at its end.
+        step: Selects one of several steps that share the sample. Changes by steps without duration
+            at the moment a motion ends are not part of the motion's end.
     """
     poses = link_poses(description, run.signals.joint_positions[sample])
-    there = _present_after(run, step)
+    present = _present_after(run, step)
     seen = sample if step is None or step.end_time > step.start_time else sample + 1
     for obj in world_objects:
         recorded = run.signals.object_poses.get(obj.name)
-        if recorded is None or (there is not None and obj.name not in there):
+        if recorded is None or (present is not None and obj.name not in present):
             continue
-        # what a step without duration changed shows in the next sample, if there is one
+        # changes by a step without duration are in the next sample, if there is one
         rows = recorded[[min(seen, len(recorded) - 1), sample]]
         finite = np.flatnonzero(np.isfinite(rows).all(axis=1))
         if len(finite):
@@ -50,7 +49,7 @@ def poses_at(
 
 
 def floor_height(description: RobotDescription, world_objects: Sequence[WorldObject]) -> float:
-    """Z of the floor that pictures show [m]: the first plane's, else the base's, at most 0."""
+    """Height of the floor in pictures [m]: the first plane's, else the base's, at most 0."""
     for obj in world_objects:
         for shape in obj.shapes:
             if isinstance(shape.geometry, Plane):
@@ -60,9 +59,9 @@ def floor_height(description: RobotDescription, world_objects: Sequence[WorldObj
 
 
 def _present_after(run: Run, step: StepRecord | None) -> set[str] | None:
-    """Objects in the scene once a step is over; None when no step is meant.
+    """Objects in the scene after a step; None without a step.
 
-    Several steps may share a moment, so this follows what each did rather than when it did.
+    Steps may end at the same time, so this follows the order of the steps and not their times.
     """
     if step is None:
         return None
@@ -75,8 +74,8 @@ def _present_after(run: Run, step: StepRecord | None) -> set[str] | None:
         for name in each.result.get(kind, ())
     ]
     first = {name: kind for _, kind, name in reversed(changes)}
-    there = {name for name in run.signals.object_poses if first.get(name) != "added"}
+    present = {name for name in run.signals.object_poses if first.get(name) != "added"}
     for place, kind, name in changes:
         if place <= last:
-            (there.add if kind == "added" else there.discard)(name)
-    return there
+            (present.add if kind == "added" else present.discard)(name)
+    return present

@@ -9,16 +9,15 @@ import numpy as np
 
 from harness.cameras.picture_model import build_picture_model, undrawn
 from harness.cameras.recorded_scene import floor_height
-from harness.cameras.renderer import make_renderer
+from harness.cameras.renderer import render_overview
 from harness.cameras.robot_poses import link_poses
-from harness.cameras.viewpoint import fit_viewpoint
 from harness.core.geometry import bounding_radius
 from harness.core.types import FloatArray
 from harness.robot.description import Link, RobotDescription
 
 WIDTH, HEIGHT = 800, 800
 SMALLEST, LARGEST = 0.03, 0.15
-"""How far around a link's origin the picture reaches [m]."""
+"""Bounds of the radius around a link's origin that the view contains [m]."""
 
 
 def save_robot_picture(
@@ -27,13 +26,13 @@ def save_robot_picture(
     """Draw a robot at joint positions, in description order.
 
     Args:
-        description: With its visuals.
-        joint_positions: Shape (n,).
-        file: PNG or JPEG.
+        description: The robot, with its visuals.
+        joint_positions: Joint positions, shape (n,).
+        file: A PNG or JPEG file.
         backend: `auto`, `egl`, `osmesa` or `rays`.
 
     Returns:
-        One line on what is not drawn; empty when all is.
+        A line that names the meshes that are not drawn; empty when all are.
 
     Raises:
         OSError: The file cannot be written.
@@ -45,12 +44,8 @@ def save_robot_picture(
     links = links or description.links[1:]
     centres = np.array([poses[link.name].translation for link in links])
     radii = np.array([_radius(link) for link in links])
-    renderer = make_renderer(picture, WIDTH, HEIGHT, backend)
-    try:
-        picture.pose(poses)
-        image = renderer.render(fit_viewpoint(centres, radii, WIDTH, HEIGHT).view)
-    finally:
-        renderer.close()
+    picture.pose(poses)
+    image = render_overview(picture, centres, radii, WIDTH, HEIGHT, backend)
     done, encoded = cv2.imencode(file.suffix, np.ascontiguousarray(image[:, :, ::-1]))
     if not done:
         raise OSError(0, "cannot be encoded", str(file))

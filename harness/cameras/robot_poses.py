@@ -1,4 +1,4 @@
-"""Where every link of the robot stands, from recorded joint positions."""
+"""Link poses from recorded joint positions."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def link_poses(description: RobotDescription, joint_positions: FloatArray) -> di
 
     Args:
         description: The robot.
-        joint_positions: Description order, shape (n,).
+        joint_positions: Joint positions in description order, shape (n,).
     """
     poses = {"world": SE3.identity()}
     for joint in description.joints:

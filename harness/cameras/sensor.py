@@ -1,4 +1,4 @@
-"""What a camera makes of the light: grey or colour, with its noise."""
+"""The camera sensor: grey or colour channels, with noise."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ def as_delivered(picture: np.ndarray, camera: Camera, seed: int, sample: int) ->
     camera's name and the recorded sample: the same picture whichever others were taken.
 
     Args:
-        picture: As rendered, RGB, shape (height, width, 3), uint8.
-        camera: Which.
-        seed: Of the run.
+        picture: The rendered picture, RGB, shape (height, width, 3), uint8.
+        camera: The camera.
+        seed: The run's seed.
         sample: Index into the signals.
 
     Returns:

@@ -7,40 +7,39 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import cv2
 import numpy as np
 
+from harness.cameras.caption import DARK, RED, write_captioned
 from harness.cameras.picture_model import build_picture_model, undrawn
 from harness.cameras.recorded_scene import floor_height, poses_at
-from harness.cameras.renderer import Renderer, make_renderer
+from harness.cameras.renderer import make_renderer
 from harness.cameras.robot_poses import link_poses
-from harness.cameras.viewpoint import View, Viewpoint, fit_viewpoint
+from harness.cameras.viewpoint import Viewpoint, fit_viewpoint
 from harness.core.activity import Activity, unobserved
 from harness.core.geometry import bounding_radius
-from harness.core.printable import printable
 from harness.core.world import WorldObject
-from harness.recording.run import Run, StepRecord
+from harness.recording.run import Run
 from harness.robot.description import RobotDescription
 
 WIDTH, HEIGHT = 640, 480
 STATES = 40
 """Recorded states that the viewpoint is fitted to."""
 
-ON_THE_FLOOR_TOO = 1.3
-"""Objects farther from the base than this [m] do not widen the view."""
+FARTHEST_IN_VIEW = 1.3
+"""Objects farther from the base than this [m] may be outside the view."""
 
-INK = {"passed": (60, 130, 40), "expected_error": (60, 130, 40), "failed": (50, 40, 200)}
+INK = {"passed": (60, 130, 40), "expected_error": (60, 130, 40), "failed": RED}
 """Colour of a caption's status, BGR."""
 
 
 @dataclass(frozen=True)
 class StillsReport:
-    """What was drawn.
+    """The pictures of a run's steps.
 
     Attributes:
         backend: `egl`, `osmesa` or `rays`; empty when no step was executed.
-        files: In order of the steps.
-        note: One line for a person on what is not drawn as well as it could be; else empty.
+        files: The files, in order of the steps.
+        note: A line on limitations of the pictures; empty without limitations.
     """
 
     backend: str
@@ -57,16 +56,15 @@ def save_stills(
     backend: str = "auto",
     activity: Activity = unobserved,
 ) -> StillsReport:
-    """Write a JPEG of every executed step, 640 x 480, as things stood at its end.
+    """Write a JPEG of every executed step, 640 x 480, in the state at its end.
 
-    Objects of the planning scene alone are translucent, attached ones where the planner believes
-    them.
+    Objects that only the planning scene has are translucent.
 
     Args:
         description: The robot, with its visuals.
-        world_objects: Everything that took part.
-        run: What happened.
-        folder: Made if needed; files are numbered in order of the steps.
+        world_objects: All objects of the scenario.
+        run: The run.
+        folder: Folder of the files, which is created if needed; files are numbered by step.
         backend: `auto`, `egl`, `osmesa` or `rays`.
         activity: Called for each picture.
     """
@@ -90,7 +88,14 @@ def save_stills(
             sample = min(max(step.end_index - 1, 0), len(run.signals.times) - 1)
             picture.pose(poses_at(description, world_objects, run, sample, step))
             files.append(folder / f"{number:02d}-{slug(step.id)}.jpg")
-            _write(files[-1], renderer, view, step, f"{number}/{len(steps)}")
+            write_captioned(
+                files[-1],
+                renderer.render(view),
+                f"{number}/{len(steps)}  {step.summary or step.verb}",
+                ink=DARK,
+                status=f"{step.end_time:.2f} s  {step.status.replace('_', ' ')}",
+                status_ink=INK.get(step.status, (60, 60, 60)),
+            )
     finally:
         renderer.close()
     notes: list[str] = []
@@ -105,7 +110,7 @@ def save_stills(
 def overview(
     description: RobotDescription, world_objects: Sequence[WorldObject], run: Run
 ) -> Viewpoint:
-    """A view that holds the robot in all its poses and the objects around it."""
+    """A view that contains the robot in all its recorded states and the objects around it."""
     last = len(run.signals.times) - 1
     points: list[np.ndarray] = []
     radii: list[float] = []
@@ -128,7 +133,7 @@ def overview(
             pose = scene.get(obj.name)
             if pose is None or not size < 0.6:
                 continue
-            if np.linalg.norm(pose.translation - base.translation) < ON_THE_FLOOR_TOO:
+            if np.linalg.norm(pose.translation - base.translation) < FARTHEST_IN_VIEW:
                 points.append(pose.translation)
                 radii.append(size)
     return fit_viewpoint(np.array(points), np.array(radii), WIDTH, HEIGHT)
@@ -137,17 +142,3 @@ def overview(
 def slug(text: str) -> str:
     """A step's id as part of a file name."""
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:48] or "step"
-
-
-def _write(file: Path, renderer: Renderer, view: View, step: StepRecord, number: str) -> None:
-    picture = np.ascontiguousarray(renderer.render(view)[:, :, ::-1])
-    font, line = cv2.FONT_HERSHEY_SIMPLEX, cv2.LINE_AA
-    picture[-26:] = (0.25 * picture[-26:] + 0.75 * 255).astype(np.uint8)
-    text = printable(f"{number}  {step.summary or step.verb}")[:62]
-    ink = INK.get(step.status, (60, 60, 60))
-    cv2.putText(picture, text, (10, HEIGHT - 9), font, 0.45, (50, 45, 40), 1, line)
-    right = f"{step.end_time:.2f} s  {step.status.replace('_', ' ')}"
-    (wide, _), _ = cv2.getTextSize(right, font, 0.45, 1)
-    cv2.putText(picture, right, (WIDTH - 10 - wide, HEIGHT - 9), font, 0.45, ink, 1, line)
-    _, content = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, 92])
-    file.write_bytes(content.tobytes())  # OpenCV crashes on names of files that are no UTF-8

@@ -1,4 +1,4 @@
-"""What cameras saw all through a run, as videos; nothing of them is judged."""
+"""Videos of the cameras over a whole run; verdicts do not depend on them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from harness.recording.run import Finding, Run, VideoRecord
 from harness.robot.description import RobotDescription
 
 MOST_FRAMES = 1500
-"""Of one video: a minute at 25 Hz; a longer run is recorded at a lower rate, and says so."""
+"""Most frames of one video: a minute at 25 Hz. Longer runs get a lower rate and a finding."""
 
 
 def record_videos(
@@ -30,13 +30,13 @@ def record_videos(
     backend: str = "auto",
     activity: Activity = unobserved,
 ) -> tuple[tuple[VideoRecord, ...], dict[str, bytes], tuple[Finding, ...]]:
-    """A video of each camera, its files by path, and what a person should know of them.
+    """A video of each camera, the files by path, and findings on the videos.
 
     Args:
         description: The robot.
-        objects: Everything that takes part.
-        run: What happened, its cameras included.
-        rates: Frames a second of simulated time by camera.
+        objects: All objects of the scenario.
+        run: The run, its cameras included.
+        rates: Frames per second of simulated time, by camera.
         backend: `auto`, `egl`, `osmesa` or `rays`.
         activity: Called for each frame.
     """
@@ -48,13 +48,14 @@ def record_videos(
     videos: list[VideoRecord] = []
     files: dict[str, bytes] = {}
     notes: list[Finding] = []
-    for name, asked in rates.items():
+    for name, requested in rates.items():
         camera = cameras[name]
         duration = float(run.signals.times[-1])
-        rate = min(asked, MOST_FRAMES / duration) if duration > 0 else asked
-        if rate < asked:
+        rate = min(requested, MOST_FRAMES / duration) if duration > 0 else requested
+        if rate < requested:
             message = (
-                f"{name} is recorded at {rate:.3g} Hz instead of {asked:g} Hz: the run is long"
+                f"{name} is recorded at {rate:.3g} Hz instead of {requested:g} Hz: "
+                f"a video has at most {MOST_FRAMES} frames"
             )
             notes.append(Finding("video_rate", message))
         renderer = make_renderer(scene.picture, camera.width, camera.height, backend)
@@ -109,7 +110,7 @@ def _frames(
     renderer: Renderer,
     activity: Activity,
 ) -> Iterator[tuple[float, np.ndarray]]:
-    """Simulated time and picture of every frame; the last one stands while there is none."""
+    """Simulated time and picture of every frame; the last picture repeats while there is none."""
     times = run.signals.times
     previous: np.ndarray | None = None
     count = int(np.floor(float(times[-1]) * rate + 1e-6)) + 1

@@ -1,4 +1,4 @@
-"""From where pictures are taken: overviews that hold everything that matters, and cameras."""
+"""Views of pictures: overviews that contain given spheres, and views of cameras."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 
 AZIMUTH, ELEVATION = 146.0, -24.0
-"""Where an overview looks to [deg]: from the front right of a robot that faces +x, from above."""
+"""Direction of an overview [deg]: from the front right of a robot that faces +x, from above."""
 
 FIELD_OF_VIEW = 38.0
-"""Vertical [deg]."""
+"""Vertical field of view [deg]."""
 
 FILLED = 0.86
-"""Part of the picture that the fitted points may fill."""
+"""Share of the picture that the fitted spheres may fill."""
 
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """What a renderer draws from: a pinhole with square pixels.
+    """The camera of a renderer: a pinhole with square pixels.
 
     Attributes:
         pose: T_world_camera in OpenGL's convention: x right, y up, looks along -z.
-        field_of_view: Vertical [deg].
-        near: Nothing nearer along the axis is seen [m].
-        far: Nothing farther along the axis is seen [m].
+        field_of_view: Vertical field of view [deg].
+        near: Distance of the near clipping plane [m].
+        far: Distance of the far clipping plane [m].
     """
 
     pose: SE3
@@ -38,15 +38,15 @@ class View:
 
 
 FLIP = SE3(np.diag([1.0, -1.0, -1.0]), np.zeros(3))
-"""T_optical_opengl: the picture's y and the axis turned round."""
+"""T_optical_opengl: y and z are reversed."""
 
 
 def view_of(camera: Camera, carrier: SE3) -> View:
-    """From where a camera looks.
+    """The view of a camera.
 
     Args:
-        camera: Which.
-        carrier: T_world_frame of what carries it.
+        camera: The camera.
+        carrier: T_world_frame of the camera's frame.
     """
     pose = carrier @ camera.optical_pose @ FLIP
     return View(pose, np.degrees(camera.vertical_fov), camera.clip_near, camera.clip_far)
@@ -54,14 +54,14 @@ def view_of(camera: Camera, carrier: SE3) -> View:
 
 @dataclass(frozen=True, eq=False)
 class Viewpoint:
-    """A perspective camera in MuJoCo's free-camera words.
+    """A perspective camera in the parameters of MuJoCo's free camera.
 
     Attributes:
         lookat: Point in the middle of the picture [m], shape (3,).
-        distance: From the camera to it [m].
+        distance: Distance from the camera to `lookat` [m].
         azimuth: Heading of the view about world z [deg].
-        elevation: Of the view above the horizontal [deg].
-        field_of_view: Vertical [deg].
+        elevation: Elevation of the view above the horizontal [deg].
+        field_of_view: Vertical field of view [deg].
     """
 
     lookat: FloatArray
@@ -72,20 +72,20 @@ class Viewpoint:
 
     @property
     def view(self) -> View:
-        """What renderers take."""
+        """The same camera for renderers."""
         rotation = _camera_rotation(self.azimuth, self.elevation)
         pose = SE3(rotation, self.lookat + self.distance * rotation[:, 2])
         return View(pose, self.field_of_view)
 
 
 def fit_viewpoint(points: FloatArray, radii: FloatArray, width: int, height: int) -> Viewpoint:
-    """The overview that holds every given sphere.
+    """The overview that contains all given spheres.
 
     Args:
-        points: Centres, shape (N, 3) [m].
-        radii: Shape (N,) [m].
-        width: Of the picture.
-        height: Of the picture.
+        points: Centres of the spheres, shape (N, 3) [m].
+        radii: Radii of the spheres, shape (N,) [m].
+        width: Width of the picture [pixels].
+        height: Height of the picture [pixels].
     """
     rotation = _camera_rotation(AZIMUTH, ELEVATION)
     local = points @ rotation

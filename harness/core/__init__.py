@@ -1,1 +1,1 @@
-"""Nouns without dependencies: poses, shapes, trajectories, errors."""
+"""Types that depend on no other package: poses, shapes, trajectories, errors."""

@@ -1,15 +1,15 @@
-"""How far a long piece of work is, for whoever wants to show it."""
+"""Progress reports of long operations."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 Activity = Callable[[str, int, int], None]
-"""Called with what is being done, how many parts of it are done, and how many there are.
+"""A progress callback: the name of the operation, the number of finished parts, their total.
 
-The number of parts is 0 where it is not known.
+The total is 0 when it is unknown.
 """
 
 
 def unobserved(_what: str, _done: int, _total: int) -> None:
-    """Take no notice."""
+    """Ignore the progress report."""

@@ -1,4 +1,4 @@
-"""A camera with every number known: a pinhole with square pixels, as SDF's camera sensor."""
+"""A camera with all parameters resolved: a pinhole with square pixels, as SDF's camera sensor."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ OPTICAL = SE3(np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]), n
 
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """A camera fixed to a frame; looks along +x of its own frame, z up in the picture.
+    """A camera that is fixed to a frame, looks along its +x axis and has +z up in the picture.
 
     Attributes:
-        name: Unique in a run.
-        frame: What carries it: a robot link, an object, or `world`.
+        name: The name, unique in a run.
+        frame: The robot link or object that carries the camera, or `world`.
         pose: T_frame_camera.
         horizontal_fov: Angle between the picture's left and right edge [rad].
-        width: In pixels.
-        height: In pixels.
-        is_grey: One channel (SDF's `L8`) instead of three (`R8G8B8`).
-        clip_near: Nothing nearer along the optical axis is seen [m].
-        clip_far: Nothing farther along the optical axis is seen [m].
-        noise_mean: Of Gaussian noise on every channel, as a share of full white.
-        noise_stddev: Of the same.
-        update_rate: Pictures a second of simulated time; the first is taken at time 0.
-        optical_frame_id: What message headers call the optical frame.
-        jpeg_quality: Of compressed pictures, 1 to 100.
+        width: Width of the picture [pixels].
+        height: Height of the picture [pixels].
+        is_grey: Whether pictures have one channel (SDF's `L8`) instead of three (`R8G8B8`).
+        clip_near: Distance of the near clipping plane along the optical axis [m].
+        clip_far: Distance of the far clipping plane along the optical axis [m].
+        noise_mean: Mean of the Gaussian noise on every channel, as a share of full white.
+        noise_stddev: Standard deviation of that noise, as a share of full white.
+        update_rate: Pictures per second of simulated time; the first is taken at time 0.
+        optical_frame_id: Name of the optical frame in message headers.
+        jpeg_quality: Quality of compressed pictures, 1 to 100.
     """
 
     name: str
@@ -52,7 +52,7 @@ class Camera:
 
     @property
     def focal_length(self) -> float:
-        """In pixels, the same along both axes of the picture."""
+        """Focal length [pixels], the same along both axes of the picture."""
         return 0.5 * self.width / math.tan(0.5 * self.horizontal_fov)
 
     @property
@@ -65,7 +65,7 @@ class Camera:
         """K of sensor_msgs/CameraInfo, shape (3, 3); the principal point is the centre.
 
         A pixel's index is the floor of the projected point: pixel (i, j) covers [i, i+1) x [j, j+1)
-        and its ray goes through its middle.
+        and its ray passes through its centre.
         """
         f = self.focal_length
         return np.array([[f, 0, 0.5 * self.width], [0, f, 0.5 * self.height], [0, 0, 1.0]])
@@ -76,13 +76,13 @@ class Camera:
         return self.pose @ OPTICAL
 
     def project(self, points: FloatArray) -> FloatArray:
-        """Where points of the optical frame are in the picture.
+        """Project points of the optical frame into the picture.
 
         Args:
-            points: In the optical frame [m], shape (N, 3).
+            points: Points in the optical frame [m], shape (N, 3).
 
         Returns:
-            (u, v) in pixels from the upper left corner, shape (N, 2); NaN behind the camera.
+            (u, v) in pixels from the upper left corner, shape (N, 2); NaN where z <= 0.
         """
         projected = points @ self.matrix.T
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,4 +1,4 @@
-"""One handler per spec model, found by the model's type."""
+"""Registry of handlers: one for each model class."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ R = TypeVar("R")
 
 
 class Dispatch(Generic[C, R]):
-    """Dispatches a spec model to the one function that carries it out."""
+    """Dispatches a model to the handler of its class."""
 
     def __init__(self) -> None:
         self._handlers: dict[type, Callable[[Any, C], R]] = {}
 
     def handles(self, model: type[M]) -> Callable[[Callable[[M, C], R]], Callable[[M, C], R]]:
-        """Register the decorated function for a model; a second one is an error of the program."""
+        """Register the decorated function for a class; a second handler is a program error."""
 
         def register(handler: Callable[[M, C], R]) -> Callable[[M, C], R]:
             if model in self._handlers:

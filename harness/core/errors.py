@@ -1,12 +1,12 @@
-"""Everything the program raises on purpose.
+"""Exceptions that the program raises.
 
 HarnessError
-├── SpecError          a file says things that cannot be meant (exit code 2)
+├── SpecError          a file has mistakes (exit code 2)
 ├── RobotError         a robot's or world's files cannot be used (exit code 2)
 ├── ModelRefused       the physics cannot be built from a robot and a world (exit code 2)
 ├── StepFailed         a step cannot be carried out; ends the run, named by a MoveIt error code
 │   └── PlanningFailed with the planner's explanation
-└── SimulationDiverged the physics left the finite numbers (exit code 3)
+└── SimulationDiverged the physics produced numbers that are not finite (exit code 3)
 """
 
 from __future__ import annotations
@@ -55,25 +55,25 @@ ERROR_CODES: tuple[str, ...] = get_args(ErrorCode)
 
 
 EXCERPT_WIDTH = 70  # characters of a source line, and of a hint: with margins, 80 columns
-TAB = "    "  # what is shown of a tab in a source line
+TAB = "    "  # replaces a tab in a source line
 
 
 class HarnessError(Exception):
-    """Base of every error that the program raises on purpose."""
+    """Base class of the program's exceptions."""
 
 
 @dataclass(frozen=True)
 class Problem:
-    """One mistake in a file, with its place.
+    """One located mistake in a file.
 
     Attributes:
         path: The file, as the user named it.
-        line: From 1; 0 when the problem is of the whole file.
-        column: From 1, at the value, or at the key when the key is what is wrong.
-        message: What is wrong, in a roboticist's words, the offending value quoted.
-        hint: What to do: the nearest valid value, then the rest. May be empty.
-        source_line: The line's text, for the excerpt; empty when there is none.
-        length: How many characters the caret underlines.
+        line: Line number from 1; 0 when the problem concerns the whole file.
+        column: Column from 1 of the value, or of the key when the key itself is wrong.
+        message: The mistake in a roboticist's words, with the offending value.
+        hint: Advice: the nearest valid value, then all others. May be empty.
+        source_line: Text of the line, for the excerpt; empty when there is none.
+        length: Number of characters that the caret underlines.
     """
 
     path: str
@@ -100,10 +100,10 @@ class Problem:
         before, rest = line[: self.column - 1 - start], line[self.column - 1 - start :]
         under, hint = rest[: self.length], printable(self.hint)
         caret = f"{' ' * _width(before)}{'^' * max(1, _width(under))}"
-        beside = f"{caret} {hint}".rstrip()
+        annotation = f"{caret} {hint}".rstrip()
         margin = f"{'':>5} | "
-        if len(beside) <= EXCERPT_WIDTH:
-            below = [beside]
+        if len(annotation) <= EXCERPT_WIDTH:
+            below = [annotation]
         else:
             lines = textwrap.wrap(
                 hint, EXCERPT_WIDTH, break_long_words=False, break_on_hyphens=False
@@ -122,7 +122,7 @@ def _width(source: str) -> int:
 
 
 class SpecError(HarnessError):
-    """A file says things that cannot be meant; carries all of them, in file order."""
+    """A file has mistakes; `problems` holds all of them, in file order."""
 
     def __init__(self, problems: Iterable[Problem]) -> None:
         self.problems = sorted(
@@ -139,8 +139,8 @@ class ModelRefused(HarnessError):
     """The physics cannot be built.
 
     Attributes:
-        body: Name of the link or the object that prevents it; empty where none is known.
-        reason: What is wrong with it.
+        body: Name of the link or object that causes the failure; empty when it is unknown.
+        reason: Why the model is refused.
     """
 
     def __init__(self, body: str, reason: str) -> None:
@@ -153,7 +153,7 @@ class StepFailed(HarnessError):
 
     Attributes:
         code: Name of the failure in moveit_msgs/MoveItErrorCodes.
-        facts: The numbers behind it, plain data, kept in the step's record.
+        facts: Numbers that explain the failure, as plain data for the step's record.
     """
 
     def __init__(
@@ -166,7 +166,7 @@ class StepFailed(HarnessError):
 
 
 class PlanningFailed(StepFailed):
-    """No motion that could be trusted was found; `facts` say why."""
+    """The planner found no verified motion; `facts` explain why."""
 
 
 class SimulationDiverged(HarnessError):

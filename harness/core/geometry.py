@@ -1,4 +1,4 @@
-"""Shapes of links and objects, as the planner, the physics and the report see them."""
+"""Shapes of links and objects, for the planner, the physics and the report."""
 
 from __future__ import annotations
 
@@ -51,8 +51,8 @@ class Plane:
 class Mesh:
     """A triangle mesh file (STL, OBJ, DAE); `scale` multiplies its coordinates to metres.
 
-    What touches is its convex hull, for planner and physics alike; when `exact`, the planner takes
-    its triangles as they are: a surface.
+    Planner and physics both collide with its convex hull; with `exact`, the planner collides with
+    its triangles, which are a surface.
     """
 
     path: Path
@@ -65,12 +65,12 @@ Geometry = Box | Cylinder | Sphere | Capsule | Plane | Mesh
 
 @dataclass(frozen=True)
 class Friction:
-    """Coulomb coefficients of a surface; a contact takes the smaller of its two, as Gazebo's ODE.
+    """Coulomb coefficients of a surface. A contact uses the smaller of its two, as Gazebo's ODE.
 
     Attributes:
-        sliding: Dimensionless.
-        torsional: About the contact normal [m].
-        rolling: Against rolling [m].
+        sliding: Sliding friction, dimensionless.
+        torsional: Friction about the contact normal [m].
+        rolling: Rolling friction [m].
     """
 
     sliding: float = 1.0
@@ -83,11 +83,11 @@ class Shape:
     """A geometry placed on a body.
 
     Attributes:
-        geometry: What it is.
+        geometry: The geometry.
         pose: T_body_shape.
-        rgba: Colour, each 0..1.
-        name: Unique on its body where a file names it; else empty.
-        friction: Of this shape's surface; None for that of its body.
+        rgba: Colour, each channel 0 to 1.
+        name: Name from the file, unique on the body; else empty.
+        friction: Friction of this shape's surface; None for the body's friction.
     """
 
     geometry: Geometry
@@ -98,7 +98,7 @@ class Shape:
 
 
 def bounding_radius(shape: Shape) -> float:
-    """Radius of a sphere about the body's origin that holds the shape [m]; inf for planes."""
+    """Radius of the bounding sphere about the body's origin [m]; inf for planes and meshes."""
     offset = float(np.linalg.norm(shape.pose.translation))
     match shape.geometry:
         case Box(size=size):

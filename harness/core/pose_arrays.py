@@ -1,4 +1,4 @@
-"""Algebra of recorded poses: rows xyz, quaternion wxyz; a single pose broadcasts over samples."""
+"""Algebra of pose arrays: rows of xyz and quaternion wxyz; single poses broadcast over samples."""
 
 from __future__ import annotations
 

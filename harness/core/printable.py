@@ -1,4 +1,4 @@
-"""Text that is safe to show: nothing in it acts on a terminal, a log viewer or a CI service."""
+"""Text that is safe to show: no part of it controls a terminal, a log viewer or a CI service."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ _UNSAFE = (
     r"\x00-\x1f\x7f-\x9f"  # C0 and C1 controls: ESC, OSC, CSI, BEL, line ends
     r"\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"  # direction of text
     r"\u2028\u2029\ufeff\ufff9-\uffff"  # line separators, marks without a glyph
-    r"\ud800-\udfff"  # halves of characters: bytes of file names that are no UTF-8
+    r"\ud800-\udfff"  # surrogates: bytes of file names that are not UTF-8
     r"\U000e0000-\U000e007f"  # tags, which are invisible
 )
 _COMMAND = r"#(?=#\[|#vso\[|#teamcity\[)"
-"""Where GitHub, Azure and TeamCity read a command within a line of a log."""
+"""Positions in a log line at which GitHub, Azure and TeamCity read a command."""
 
 _IN_A_LINE = re.compile(f"{ESC}|[{_UNSAFE}]|{_COMMAND}")
 _IN_JSON = re.compile(f"(?!\n)[{_UNSAFE}]|{_COMMAND}")
 _COMMAND_LINE = re.compile(r"^( *):(?=:)")
-"""How a line begins that GitHub reads as a command."""
+"""Beginning of a line that GitHub reads as a command."""
 
 _STYLING = re.compile(rf"{ESC}(?:\[\d+m|\]8;;[^\x1b]*{ESC}\\)")
-"""Colours and links, which take no room."""
+"""Control sequences of colours and links, which have no width."""
 
 
 def printable(text: str) -> str:
@@ -74,12 +74,12 @@ def fitted(line: str, columns: int, end: str = "") -> list[str]:
     """The printable line in parts that fit a terminal, the later ones indented.
 
     Args:
-        line: With colours and links, if there are any.
-        columns: Of the terminal.
-        end: What ends each part but the last, such as a shell's sign that a command goes on.
+        line: The line, which may have colours and links.
+        columns: Width of the terminal.
+        end: Suffix of each part except the last, such as a shell's continuation character.
 
     Returns:
-        Parts broken at spaces; a word that is longer than the terminal is wide stays whole.
+        Parts broken at spaces; a word that is wider than the terminal stays whole.
     """
     if columns_of(line) <= columns:
         return [line]
@@ -95,7 +95,7 @@ def fitted(line: str, columns: int, end: str = "") -> list[str]:
 
 
 def cropped(line: str, columns: int) -> str:
-    """The printable line without colours and links, with its middle left out where it must be."""
+    """The printable line without colours and links, its middle left out where it is too long."""
     text = _STYLING.sub("", line)
     if columns_of(text) <= columns:
         return text

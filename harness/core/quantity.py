@@ -21,7 +21,7 @@ OPERATORS: dict[type[ast.AST], Callable[[float, float], float]] = {
 
 
 def split_quantity(value: object) -> tuple[float, str]:
-    """The number and the text of its unit, empty where there is none.
+    """The number and the text of its unit, which is empty without a unit.
 
     Raises:
         ValueError: It is neither a number nor one with a unit.
@@ -42,12 +42,12 @@ MOST_DIGITS = 17
 
 
 def distinct(first: float, second: float, text: Callable[[float, int], str]) -> tuple[str, str]:
-    """The texts of two numbers, with as many more digits as it takes to tell them apart.
+    """The texts of two numbers, with as many more digits as needed to distinguish them.
 
     Args:
         first: A number.
         second: Another; equal numbers have equal texts.
-        text: Writes a number with so many more digits than usual.
+        text: Formats a number with the given number of additional digits.
     """
     pairs = ((text(first, more), text(second, more)) for more in range(MOST_DIGITS + 1))
     usual = next(pairs)
@@ -57,10 +57,10 @@ def distinct(first: float, second: float, text: Callable[[float, int], str]) -> 
 
 
 def share_of(value: object) -> float:
-    """A share as a file writes it: `0.9`, `90 %`.
+    """A share from its text, such as `0.9` or `90 %`.
 
     Raises:
-        ValueError: It is neither.
+        ValueError: The value is not a share.
     """
     number, unit = split_quantity(value)
     if unit not in ("", "%"):
@@ -69,10 +69,10 @@ def share_of(value: object) -> float:
 
 
 def constant_of(text: str) -> float | None:
-    """The number of an expression of constants, as `-pi/2` or `3*(pi - 1)`; None of other text.
+    """The value of a constant expression such as `-pi/2` or `3*(pi - 1)`; None for other text.
 
-    Only numbers, pi, tau, the four operations and parentheses have a meaning, and one of the
-    constants or operations must be there: a number in quotes is text.
+    An expression consists of numbers, pi, tau, the four operations and parentheses. It has at least
+    one constant or operation: a number in quotes is text.
     """
     if len(text) > LONGEST_EXPRESSION or EXPRESSION.fullmatch(text) is None:
         return None

@@ -10,15 +10,15 @@ from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Sphere
 from harness.core.types import FloatArray
 
 TRIANGLE_SLACK = 1e-3
-"""Part of the largest principal moment by which rounding may break the triangle inequality: a file
-of four digits does."""
+"""Share of the largest principal moment by which a tensor may violate the triangle inequality:
+rounding to four digits causes that much."""
 
 
 def is_inertia_of_a_body(tensor: FloatArray) -> bool:
     """Whether the principal moments are positive and none exceeds the sum of the others.
 
-    A tensor that breaks the inequality by `TRIANGLE_SLACK` at most is accepted; the physics raises
-    its two smaller moments.
+    A tensor that violates the inequality by at most `TRIANGLE_SLACK` is accepted; the physics
+    raises its two smaller moments.
     """
     least, middle, most = np.linalg.eigvalsh(tensor)
     return bool(least > 0 and most - least - middle <= TRIANGLE_SLACK * most)

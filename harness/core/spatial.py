@@ -87,7 +87,7 @@ def xyzw_from_wxyz(quat_wxyz: Vector) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class SE3:
-    """A pose T_a_b: where frame b stands in frame a. ``T_a_c = T_a_b @ T_b_c``.
+    """A pose T_a_b of frame b in frame a. ``T_a_c = T_a_b @ T_b_c``.
 
     Attributes:
         rotation: Axes of b in a, shape (3, 3).
@@ -99,7 +99,7 @@ class SE3:
 
     @classmethod
     def identity(cls) -> SE3:
-        """The pose that changes nothing."""
+        """The identity transform."""
         return cls(np.eye(3), np.zeros(3))
 
     @classmethod

@@ -1,4 +1,4 @@
-"""How an object may be turned about the vertical and look the same."""
+"""Rotational symmetry of objects about the vertical."""
 
 from __future__ import annotations
 
@@ -8,24 +8,24 @@ from collections.abc import Sequence
 from harness.core.geometry import Box, Capsule, Cylinder, Shape, Sphere
 from harness.core.types import FloatArray
 
-LEAN = 1e-6
-"""A unit vector that stands so much less high than 1 is still vertical."""
-ASIDE = 1e-4
-"""A shape whose middle is so far from the vertical through the origin is still on it [m]."""
+TILT_TOLERANCE = 1e-6
+"""A unit vector is vertical when its z component differs from 1 by at most this."""
+AXIS_TOLERANCE = 1e-4
+"""Largest distance of a symmetric shape's centre from the vertical through the origin [m]."""
 
 ANY = 0
-"""What `equal_turns` answers for what is round."""
+"""Result of `equal_turns` for an object that is round about the vertical."""
 
 
 def equal_turns(shapes: Sequence[Shape], rotation: FloatArray) -> int:
-    """How many turns about the vertical through its origin leave an object as it stands.
+    """Order of an object's rotational symmetry about the vertical through its origin.
 
-    Two for a box that stands on a side, four where that side is square, `ANY` for what is round
-    about the vertical, one (the whole turn) for everything else.
+    It is two for a box that rests on a side, four where that side is square, `ANY` for an object
+    that is round about the vertical, and one (the full turn) for everything else.
 
     Args:
-        shapes: Of the object.
-        rotation: R_world_object as it stands, shape (3, 3).
+        shapes: The object's shapes.
+        rotation: R_world_object, shape (3, 3).
     """
     if not shapes:
         return 1
@@ -33,13 +33,13 @@ def equal_turns(shapes: Sequence[Shape], rotation: FloatArray) -> int:
 
 
 def _turns_of(shape: Shape, rotation: FloatArray) -> int:
-    if math.hypot(*(rotation @ shape.pose.translation)[:2]) > ASIDE:
+    if math.hypot(*(rotation @ shape.pose.translation)[:2]) > AXIS_TOLERANCE:
         return 1
     if isinstance(shape.geometry, Sphere):
         return ANY
     heights = abs((rotation @ shape.pose.rotation)[2])
     vertical = int(heights.argmax())
-    if heights[vertical] < 1 - LEAN:
+    if heights[vertical] < 1 - TILT_TOLERANCE:
         return 1
     match shape.geometry:
         case Box(size=size):

@@ -1,4 +1,4 @@
-"""Joint-space paths without time, and trajectories with it."""
+"""Joint paths without time, and joint trajectories with time."""
 
 from __future__ import annotations
 

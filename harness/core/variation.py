@@ -1,4 +1,4 @@
-"""How many cases a scenario file may have."""
+"""Limits on the number of cases of a scenario file."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 MOST_CASES = 10_000
-"""Of a grid, or of named ones."""
+"""Largest number of cases, whether of a grid or named."""
 
 MOST_SAMPLES = 100_000
-"""Of all cases together."""
+"""Largest number of samples of all cases together."""
 
 Cases = Mapping[str, Sequence[Any]] | Sequence[Mapping[str, Any]]
 """A grid of values by path, or named cases."""
 
 
 def count_of(parametrize: Cases | None) -> int:
-    """How many cases a file has without its samples."""
+    """Number of cases of a file, without its samples."""
     if parametrize is None:
         return 1
     if isinstance(parametrize, Mapping):

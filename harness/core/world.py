@@ -1,4 +1,4 @@
-"""The resolved world: objects with every number known, as planner and physics take them."""
+"""The resolved world: objects with all parameters known, for planner and physics."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ class WorldObject:
     """A body that is not the robot.
 
     Attributes:
-        name: Unique in the scenario, and not a robot link.
+        name: The name, unique among the scenario's objects and the robot's links.
         shapes: Geometry on the body, used for contact, planning and pictures.
-        pose: T_world_object at the start, or where it appears.
-        is_static: Never moves by itself.
-        mass: [kg]; 0 for static objects.
-        center_of_mass: In the body frame [m], shape (3,).
-        inertia: About the centre of mass, body axes [kg m^2], shape (3, 3).
-        friction: Of its surface, where a shape has none of its own.
-        in_planning: The planning scene knows it.
-        in_simulation: The physics knows it.
-        visuals: What pictures show instead of `shapes`, where it differs.
+        pose: T_world_object at the start, or when a step adds the object.
+        is_static: Whether the object never moves by itself.
+        mass: Mass [kg]; 0 for static objects.
+        center_of_mass: Centre of mass in the body frame [m], shape (3,).
+        inertia: Inertia about the centre of mass, in body axes [kg m^2], shape (3, 3).
+        friction: Friction of every shape that has none of its own.
+        in_planning: Whether the planning scene has the object.
+        in_simulation: Whether the physics has the object.
+        visuals: Shapes that pictures show, where they differ from `shapes`.
     """
 
     name: str
@@ -40,7 +40,7 @@ class WorldObject:
     visuals: tuple[Shape, ...] = ()
 
     def friction_of(self, shape: Shape) -> Friction:
-        """What counts on one of its shapes."""
+        """Friction of one of the object's shapes."""
         return self.friction if shape.friction is None else shape.friction
 
 
@@ -49,9 +49,9 @@ class Light:
     """A directional light.
 
     Attributes:
-        direction: Where it shines to, world axes.
-        diffuse: Colour, each 0..1.
-        casts_shadow: Whether it casts shadows.
+        direction: Direction of the light rays, in world axes.
+        diffuse: Colour, each channel 0 to 1.
+        casts_shadow: Whether the light casts shadows.
     """
 
     direction: tuple[float, float, float]
@@ -64,11 +64,11 @@ class World:
     """Objects and the physics around them.
 
     Attributes:
-        name: As the scenario calls it.
-        objects: In file order.
-        gravity: [m/s^2], world axes.
-        timestep: Of the physics [s].
-        lights: For pictures.
+        name: Name of the world in the scenario.
+        objects: Objects in file order.
+        gravity: Gravity in world axes [m/s^2].
+        timestep: Time step of the physics [s].
+        lights: Lights of pictures.
     """
 
     name: str

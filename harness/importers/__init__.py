@@ -1,1 +1,1 @@
-"""Files of other programs as ours: SDF worlds, MoveIt scenes."""
+"""Importers of other programs' files: SDF worlds, MoveIt scenes, recordings."""

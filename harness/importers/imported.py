@@ -1,4 +1,4 @@
-"""What an importer gives."""
+"""Results of importers."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from harness.spec.world import WorldSpec
 
 @dataclass(frozen=True, eq=False)
 class ImportedWorld:
-    """A world with where it is from.
+    """An imported world.
 
     Attributes:
-        world: As a file of ours would say it; mesh files with whole paths.
-        path: The file.
-        notes: What of it is left out, or taken otherwise.
+        world: The world as a world file describes it; mesh files have absolute paths.
+        path: The imported file.
+        notes: Notes on elements that are left out or changed.
     """
 
     world: WorldSpec

@@ -1,4 +1,4 @@
-"""Where SDF finds models and meshes: folders that the user named, and none besides."""
+"""Search path for SDF models and meshes: the folders that the user named, and no others."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ VARIABLES = (
     "SDF_PATH",
     "GAZEBO_MODEL_PATH",
 )
-"""Of the environment, as Gazebo reads them: folders of model folders, separated by colons."""
+"""Gazebo's environment variables: lists of folders of model folders, separated by colons."""
 
 FUEL = re.compile(r"https?://(?P<host>[^/]+)/(?:[\d.]+/)?(?P<owner>[^/]+)/models/(?P<name>[^/]+)")
 FUEL_CACHE = "GZ_FUEL_CACHE_PATH"
@@ -35,12 +35,12 @@ class ModelPath:
     def __init__(
         self, world_folder: Path, named: Sequence[Path], environment: Mapping[str, str] = os.environ
     ) -> None:
-        """The folders of a world file.
+        """Collect the folders of a world file.
 
         Args:
-            world_folder: The file's own; it and everything below may be read.
-            named: By the scenario or the command line; searched first.
-            environment: For `VARIABLES`, and Gazebo's cache of Fuel models.
+            world_folder: The file's folder; everything below it may be read.
+            named: Folders of the scenario or the command line; searched first.
+            environment: Source of `VARIABLES` and of Gazebo's cache of Fuel models.
         """
         self.folders = [
             *named,
@@ -58,43 +58,45 @@ class ModelPath:
         self._cache = Path(environment.get(FUEL_CACHE) or home / ".gz" / "fuel")
         self._roots = [folder.resolve() for folder in (*self.folders, self._cache)]
 
-    def find(self, uri: str, element: XmlElement, beside: Path) -> Path:
+    def find(self, uri: str, element: XmlElement, base_folder: Path) -> Path:
         """The file or folder of a URI.
 
         Args:
             uri: `model://name/...`, `file://...`, a path, or a Fuel address.
-            element: Where it is written, for messages.
-            beside: Folder of the file that has it; relative paths begin there.
+            element: The element with the URI, for messages.
+            base_folder: Folder of the element's file; relative paths start there.
 
         Raises:
-            SpecError: Nothing is there, or it is in none of the folders.
+            SpecError: It does not exist, or is in none of the folders.
         """
         scheme, separator, rest = uri.partition("://")
         if not uri.isprintable() or not uri:
-            element.refuse(f"{uri!r} is no path")
+            element.refuse(f"{uri!r} is not a path")
         if not separator:
-            candidates = [beside / uri, *(folder / uri for folder in self.folders)]
+            candidates = [base_folder / uri, *(folder / uri for folder in self.folders)]
         elif scheme in ("model", "package"):
             candidates = [folder / rest for folder in self.folders]
         elif scheme == "file":
-            candidates = [beside / rest]
+            candidates = [base_folder / rest]
         elif scheme in ("http", "https"):
             candidates = self._cached(uri)
         else:
-            element.refuse(f"`{scheme}://` is not known", "known: model://, file://, a path")
+            element.refuse(
+                f"`{scheme}://` is not supported", "supported: model://, file://, a path"
+            )
         there = [path for path in candidates if _exists(path)]
         for path in there:
             if any(path.resolve().is_relative_to(root) for root in self._roots):
                 return path
         if there:
-            element.refuse(f"`{uri}` is outside of the folders that may be read", HINT)
+            element.refuse(f"`{uri}` is outside the folders that may be read", HINT)
         if scheme in ("http", "https"):
             hint = "nothing is downloaded: get the model with `gz fuel download -u ADDRESS`"
             element.refuse(f"`{uri}` is not in Gazebo's cache", hint)
         raise SpecError([element.problem(f"`{uri}` is not found", HINT)])
 
     def _cached(self, uri: str) -> list[Path]:
-        """Where Gazebo keeps a Fuel model: its newest version."""
+        """Candidates for a Fuel model in Gazebo's cache: the newest version."""
         found = FUEL.match(uri)
         if found is None:
             return []
@@ -110,7 +112,7 @@ def model_file(folder: Path, element: XmlElement) -> Path:
     """The SDF file of a model's folder: the newest one of its model.config.
 
     Raises:
-        SpecError: There is none.
+        SpecError: The folder has no such file.
     """
     config = folder / "model.config"
     if not config.is_file():
@@ -119,11 +121,11 @@ def model_file(folder: Path, element: XmlElement) -> Path:
         element.refuse(f"the folder '{folder}' has neither model.config nor model.sdf")
     listed = [(_version(item.get("version")), item) for item in read_xml(config).findall("sdf")]
     if not listed:
-        raise SpecError([Problem(str(config), 1, 1, "no <sdf> names the model's file")])
+        raise SpecError([Problem(str(config), 1, 1, "it lacks an <sdf> with the model's file")])
     name = max(listed, key=lambda pair: pair[0])[1]
     path = folder / name.text.strip()
     if not path.resolve().is_relative_to(folder.resolve()):
-        name.refuse("the file is outside of the model's folder")
+        name.refuse("the file is outside the model's folder")
     if not path.is_file():
         name.refuse(f"there is no file '{path}'")
     return path

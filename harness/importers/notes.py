@@ -1,4 +1,4 @@
-"""What of a file has no meaning here, told once for each kind of thing."""
+"""Notes on parts of a file that are not imported, one for each kind."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from harness.spec.source import Place
 
 @dataclass(frozen=True)
 class Note:
-    """Something in a file that is not taken over, or not as it stands there.
+    """A note on a part of a file that is left out or changed.
 
     Attributes:
         path: The file, as the user named it.
-        line: Of the first such thing, from 1.
-        message: What it is, and what became of it.
-        count: How many there are of the kind.
+        line: Line of its first occurrence, from 1.
+        message: The part, and how it is treated.
+        count: Number of occurrences.
     """
 
     path: str
@@ -29,13 +29,13 @@ class Note:
 
 
 class Notes:
-    """Collects notes; equal messages of a file become one with their number."""
+    """Collects notes; equal messages of a file become one note with a count."""
 
     def __init__(self) -> None:
         self._found: dict[tuple[str, str], Note] = {}
 
     def add(self, place: Place, message: str) -> None:
-        """Note something at a place."""
+        """Add a note at a place."""
         key = (place.source.path, message)
         known = self._found.get(key)
         line, count = (known.line, known.count + 1) if known else (place.line, 1)

@@ -1,4 +1,4 @@
-"""Poses and numbers as a file of ours writes them: without the dust of arithmetic."""
+"""Poses and numbers for world files, without rounding errors."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from harness.core.types import FloatArray
 from harness.spec.poses import Pose
 
 DECIMALS = 12
-"""Of a metre, and of a quaternion's part: far below what any file means."""
+"""Decimals of metres and quaternion components; finer differences are rounding errors."""
 
 
 def rounded(value: float) -> float:
-    """A number without its last digits, and without the sign of zero."""
+    """A number rounded to `DECIMALS`, without negative zero."""
     return round(float(value), DECIMALS) + 0.0
 
 
 def significant(value: float) -> float:
-    """A mass or moment with its first twelve digits."""
+    """A mass or moment rounded to twelve significant digits."""
     return float(f"{value:.12g}") + 0.0
 
 
 def pose_spec(pose: SE3) -> Pose:
-    """A pose of a file; without a rotation where there is none."""
+    """A pose for a file; an identity rotation is omitted."""
     x, y, z = (rounded(value) for value in pose.translation)
     if np.allclose(pose.rotation, np.eye(3), rtol=0, atol=1e-12):
         return Pose(xyz=(x, y, z))
@@ -34,7 +34,7 @@ def pose_spec(pose: SE3) -> Pose:
 
 
 def facing(normal: FloatArray) -> FloatArray:
-    """The shortest turn from z to a unit vector, shape (3, 3)."""
+    """The shortest rotation from z to a unit vector, shape (3, 3)."""
     x, y, z = normal
     if z < -1 + 1e-12:
         return rotation_from_rpy((math.pi, 0.0, 0.0))

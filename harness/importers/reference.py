@@ -1,4 +1,4 @@
-"""The page on worlds of other programs: what of their files is read, ignored, refused."""
+"""The page on worlds of other programs: elements that are read, ignored and refused."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from harness.importers.sdf_words import WORDS
 
 HEAD = """# Worlds of other programs
 
-A scenario names an SDF file as it does a world of its own:
+A scenario names an SDF file like a world file:
 
 ```yaml
 world: cell.sdf
@@ -19,58 +19,58 @@ or, with folders to look models up in,
 world: {name: cell.sdf, model_path: [models, ../shared]}
 ```
 
-Nothing is converted on the way: the file is read each time, and what of it has no meaning here
-is told by `harness check` and stands among the findings of every run."""
+The file is not converted but read each time. `harness check` and the findings of every run list
+the parts of it that have no effect."""
 
 MODELS = """## Where models and meshes are found
 
 `model://name/...` and `package://name/...` are looked up in the folders of `model_path`, the
-world file's folder, `models` beside it, and the folders of {variables}, in this order; a path
-is relative to the file that has it. Nothing outside of these folders is read, and nothing is
+world file's folder, its subfolder `models`, and the folders of {variables}, in this order; a path
+is relative to the file that contains it. No file outside these folders is read, and nothing is
 downloaded: an address of Fuel is looked up in Gazebo's cache (`~/.gz/fuel`). `model://sun` and
-`model://ground_plane` are there without Gazebo."""
+`model://ground_plane` work without Gazebo."""
 
-BECOMES = """## What a model becomes
+BECOMES = """## Models
 
-A model is one object, called as the model. Its links are rigid: what joints hold together is
-one object, and a joint that could move is held where it stands, with a note. Links that no
-joint holds are objects of their own, called `model::link`. Collisions are its shapes, each with
-its friction; visuals that are the same shapes colour them, others are drawn in their place. A
-link without an inertial has 1 kg and 1 kg m^2, as SDF has it, with a note. An inertia that no
-body can have, and a mass of 0, are refused. A camera sensor is a camera of the world on that
-object, called as the sensor, or `model::sensor` where several are called alike; `capture` and
-`sees` name it."""
+A model becomes one object with the model's name. An object is rigid: links that joints connect
+become one object, and a movable joint is held in its initial position, with a note. Links without
+a joint become separate objects named `model::link`. Collisions become the object's shapes, each
+with its friction. Visuals of the same shapes colour them; other visuals are drawn in their place.
+A link without an inertial has 1 kg and 1 kg m^2, as SDF specifies, with a note. An inertia that no
+rigid body can have and a mass of 0 are refused. A camera sensor becomes a camera of the world on
+that object with the sensor's name, or `model::sensor` when several sensors have the same name;
+`capture` and `sees` refer to it."""
 
-WORDS_HEAD = """## Words of SDF
+WORDS_HEAD = """## Elements of SDF
 
-SDF 1.4 to 1.11. *Read* words count; *ignored* ones are told of, unless they say what is so
-anyway (`static` false, gravity on); *refused* ones are errors. Any other element is told of as
-not known."""
+SDF 1.4 to 1.11. *Read* elements have an effect. *Ignored* elements lead to a note, unless they
+state the default (`static` false, gravity on). *Refused* elements are errors. Any other element
+leads to a note that it is not known."""
 
 
-COMMAND = """## As files of ours
+COMMAND = """## Conversion to world files
 
-`harness import sdf FILE` and `harness import scene FILE` write what they read as a
-[world file](../scenarios/SCENARIO.md#world-file) with the same meaning, to be changed by hand:
-`-o` says where, `--model-path` where models are looked up, and nothing is overwritten without
-`--force`. What is not taken over stands at the top as a comment."""
+`harness import sdf FILE` and `harness import scene FILE` write an equivalent
+[world file](../scenarios/SCENARIO.md#world-file) that can be edited: `-o` names the output file,
+`--model-path` adds folders to search for models, and no file is overwritten without `--force`. A
+comment at the top lists the parts that are left out."""
 
 SCENES = """## MoveIt scenes
 
-`.scene` files have no masses and nothing that moves, so they are imported and not run as they
-are. Both forms are read: since MoveIt 1.1 objects have poses, before only their shapes had.
+`.scene` files have no masses and no moving objects, so they are imported and not run directly.
+Both formats are read: objects have poses since MoveIt 1.1; before, only their shapes had poses.
 
 | in | here | |
 | --- | --- | --- |
 | name of the scene | read | the world's title |
-| `*` and a name | read | a static object, known to planner and physics |
+| `*` and a name | read | a static object for planner and physics |
 | pose: position, quaternion xyzw | read | in MoveIt's planning frame, taken as the world |
 | `box`, `sphere`, `cylinder` | read | full size; radius; radius and length |
-| `mesh` | read | its triangles, written as an STL file beside the world |
-| `plane` | read | solid behind its normal, where MoveIt's is thin; told |
-| colour | read | four zeros say none |
-| subframes | ignored | told |
-| object without shapes | ignored | told |
+| `mesh` | read | its triangles, written as an STL file next to the world file |
+| `plane` | read | solid below its surface, while MoveIt's is thin; with a note |
+| colour | read | four zeros are no colour |
+| subframes | ignored | with a note |
+| object without shapes | ignored | with a note |
 | `cone`, octrees | refused | |"""
 
 
@@ -90,7 +90,7 @@ def formats_page() -> str:
 
 
 def sdf_table() -> str:
-    """The words of SDF as a Markdown table."""
+    """The elements of SDF as a Markdown table."""
     rows = ["| in | element | here | |", "| --- | --- | --- | --- |"]
     for kind, words in WORDS.items():
         rows += [

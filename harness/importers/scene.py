@@ -1,4 +1,4 @@
-"""MoveIt's `.scene` files, of the form before MoveIt 1.1 and of the one since, as our worlds."""
+"""Imports MoveIt's `.scene` files, in the format of MoveIt 1.1 and in the one before it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ LARGEST_FILE = 8_000_000  # [bytes]
 MOST_OBJECTS = 1000
 MOST_SHAPES = 10_000
 MOST_CORNERS = 200_000
-"""Of one mesh, vertices and triangles alike; as many as the physics reads."""
+"""Most vertices of one mesh, and most triangles: the limit of the physics."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class Scene:
     """A MoveIt scene.
 
     Attributes:
-        imported: The world; its mesh files are those of `meshes`, still to be written.
+        imported: The world; its mesh files are those of `meshes`, which are not written yet.
         meshes: Triangles by file name.
     """
 
@@ -43,10 +43,10 @@ class Scene:
 
 
 def load_scene(path: Path) -> Scene:
-    """The scene of a file: static objects, which planner and physics both know.
+    """The scene of a file: static objects for planner and physics.
 
     Raises:
-        SpecError: Something in it is not of the form; at its place.
+        SpecError: The file violates the format; located.
     """
     return _Reader(path).scene()
 
@@ -70,13 +70,13 @@ class _Reader:
             if word != "*":
                 found = f"`{word[:40]}`" if word else "the end of the file"
                 hint = "an object begins with `*`, and `.` ends the scene"
-                raise SpecError([place.problem(f"an object is meant, not {found}", hint)])
+                raise SpecError([place.problem(f"expected an object, found {found}", hint)])
             name = self._words.rest_of_line()
             if not name or len(name) > 100 or not name.isprintable():
                 message = "an object has a name of 1 to 100 printable characters"
                 raise SpecError([place.problem(message)])
             if name in objects:
-                raise SpecError([place.problem(f"another object is called '{name}'")])
+                raise SpecError([place.problem(f"another object has the name '{name}'")])
             if len(objects) >= MOST_OBJECTS:
                 raise SpecError([place.problem(f"more than {MOST_OBJECTS} objects")])
             found_object = self._object(name, place, has_poses)
@@ -86,7 +86,7 @@ class _Reader:
         return Scene(ImportedWorld(world, self._path, self._notes.all()), self._meshes)
 
     def _is_of_the_new_form(self) -> bool:
-        """Whether objects have poses: then three numbers, and not one, follow the first name."""
+        """Whether objects have poses: then three numbers follow the first name, otherwise one."""
         lines = self._words.lines_ahead()
         first = next((n for n, line in enumerate(lines) if line.startswith("*")), None)
         after = "" if first is None or first + 1 >= len(lines) else lines[first + 1]
@@ -99,7 +99,7 @@ class _Reader:
             for _ in range(self._count("subframes", MOST_SHAPES)):
                 _, at = self._words.next()
                 self._pose()
-                self._notes.add(at, "a subframe of an object is left out: frames are its own")
+                self._notes.add(at, "a subframe of an object is left out")
         if not shapes:
             self._notes.add(place, "an object without shapes is left out")
             return None
@@ -135,7 +135,7 @@ class _Reader:
                 words["mesh"] = self._mesh(name)
             case _:
                 hint = f"shapes: {', '.join(SHAPES)}"
-                raise SpecError([place.problem(f"a shape cannot be a `{kind[:40]}` here", hint)])
+                raise SpecError([place.problem(f"a shape cannot be a `{kind[:40]}`", hint)])
         pose = self._pose() @ turn
         return ShapeSpec(pose=pose_spec(pose), color=self._color(), **words)
 
@@ -144,8 +144,8 @@ class _Reader:
         *normal, offset = self._numbers(4)
         length = math.hypot(*normal)
         if length < 1e-9:
-            raise SpecError([place.problem("a plane's normal has some length; this one is 0 0 0")])
-        self._notes.add(place, "a plane is solid behind its normal; MoveIt's is thin")
+            raise SpecError([place.problem("a plane's normal must not be 0 0 0")])
+        self._notes.add(place, "a plane is solid below its surface; MoveIt's is thin")
         unit = np.array(normal) / length
         return SE3(facing(unit), -offset / length * unit)
 
@@ -162,14 +162,16 @@ class _Reader:
         return MeshSpec(file=file)
 
     def _color(self) -> Rgba | None:
-        """A colour; four zeros say none."""
+        """A colour; None for four zeros."""
         red, green, blue, alpha = (min(1.0, max(0.0, value)) for value in self._numbers(4))
         return None if not any((red, green, blue, alpha)) else (red, green, blue, alpha)
 
     def _pose(self) -> SE3:
         xyz, quat_xyzw = self._numbers(3), self._numbers(4)
         if math.hypot(*quat_xyzw) < 1e-6:
-            raise SpecError([self._words.last.problem("a quaternion has norm 1, this one 0")])
+            raise SpecError(
+                [self._words.last.problem("a quaternion has norm 1, this one has norm 0")]
+            )
         return SE3.from_xyz_quat(xyz, wxyz_from_xyzw(quat_xyzw))
 
     def _sizes(self, count: int, place: Place) -> list[float]:

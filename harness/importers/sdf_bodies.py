@@ -1,4 +1,4 @@
-"""Which links of SDF models make up one rigid object."""
+"""Groups links of SDF models into rigid objects."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class Link:
     """A link in the world.
 
     Attributes:
-        name: With the models around it: `table::top`.
-        element: Where it is written.
-        scope: The model it is in.
+        name: Name with the enclosing models: `table::top`.
+        element: The link's element.
+        scope: The enclosing model.
         pose: T_world_link.
     """
 
@@ -34,13 +34,13 @@ class Link:
 
 @dataclass(eq=False)
 class Body:
-    """Links that hold together.
+    """Links that form one rigid object.
 
     Attributes:
-        name: Of the object.
+        name: Name of the object.
         pose: T_world_object.
-        links: In file order.
-        is_static: Fixed in the world.
+        links: The links in file order.
+        is_static: Whether the object is fixed in the world.
     """
 
     name: str
@@ -50,7 +50,7 @@ class Body:
 
 
 class _Groups:
-    """Union of names."""
+    """Disjoint sets of names (union-find)."""
 
     def __init__(self) -> None:
         self._above: dict[str, str] = {}
@@ -72,11 +72,11 @@ class _Groups:
 def bodies_of(world: Scope, notes: Notes) -> list[Body]:
     """The rigid objects of a world, in file order.
 
-    Links of a static model, and links that a joint connects, are one object; a joint that could
-    move is held where it stands, with a note.
+    The links of a static model, and links that a joint connects, are one object; a movable joint is
+    held in its initial position, with a note.
 
     Raises:
-        SpecError: A joint, frame or pose names what is not there.
+        SpecError: A joint, frame or pose refers to an unknown name.
     """
     links = _links(world)
     groups, fixed = _Groups(), set[str]()
@@ -112,7 +112,7 @@ def _scopes(scope: Scope) -> list[Scope]:
 
 
 def _outermost_static(scope: Scope) -> Scope | None:
-    """The largest static model that a scope is part of."""
+    """The outermost static model that contains a scope; None without one."""
     found: Scope | None = None
     current: Scope | None = scope
     while current is not None:
@@ -122,7 +122,7 @@ def _outermost_static(scope: Scope) -> Scope | None:
 
 
 def _top(scope: Scope) -> Scope:
-    """The model of the world that a scope is part of."""
+    """The top-level model that contains a scope."""
     while scope.parent is not None and scope.parent.parent is not None:
         scope = scope.parent
     return scope
@@ -131,10 +131,10 @@ def _top(scope: Scope) -> Scope:
 def _join(
     scope: Scope, name: str, item: Named, groups: _Groups, fixed: set[str], notes: Notes
 ) -> None:
-    """Hold the two sides of a joint together; a side that is the world holds the other still."""
+    """Join the two sides of a joint; a side that is the world makes the other static."""
     kind = item.element.need("type").strip()
     if kind != "fixed":
-        notes.add(item.element.place, f"the {kind} joint '{name}' is held where it stands")
+        notes.add(item.element.place, f"the {kind} joint '{name}' is held in its initial position")
     sides = [
         link_name(scope, text_of(item.element, tag), item.element) for tag in ("parent", "child")
     ]
@@ -146,20 +146,20 @@ def _join(
 
 
 def link_name(scope: Scope, name: str, element: XmlElement, depth: int = 0) -> str:
-    """The whole name of the link that a name of a joint or frame stands for.
+    """The full name of the link that a name refers to.
 
     Args:
-        scope: Whose element has the name.
-        name: Of a link; of a frame or joint, for what it is attached to; of a model, for its
-            canonical link; `world`.
-        element: That has it, for messages.
-        depth: Of frames that are attached to frames.
+        scope: The scope of the element with the name.
+        name: A link; a frame or joint, for the link that it is attached to; a model, for its
+            canonical link; or `world`.
+        element: The element with the name, for messages.
+        depth: Number of frames between this one and the first.
 
     Raises:
-        SpecError: Nothing is called so, or frames are attached to each other in a circle.
+        SpecError: The name is unknown, or frames are attached to each other in a cycle.
     """
     if depth > 100:
-        element.refuse(f"'{name}' is attached to itself in a circle")
+        element.refuse(f"'{name}' is attached to itself in a cycle")
     if name == WORLD or (scope.parent is None and name in OWN):
         return WORLD
     if name in OWN:
@@ -183,7 +183,7 @@ def link_name(scope: Scope, name: str, element: XmlElement, depth: int = 0) -> s
 
 
 def _canonical(scope: Scope, element: XmlElement, depth: int) -> str:
-    """The link that a model is moved by: the one it names, else its first."""
+    """A model's canonical link: the one that it names, else its first."""
     if scope.canonical_link:
         return link_name(scope, scope.canonical_link, element, depth + 1)
     for inner, name, _ in scope.links():
@@ -192,12 +192,12 @@ def _canonical(scope: Scope, element: XmlElement, depth: int) -> str:
 
 
 def _body(members: list[Link], sizes: Mapping[int, int], is_static: bool) -> Body:
-    """An object called as its model where it is all of it, else as its first link.
+    """An object, named after its model when it has all of its links, else after its first link.
 
     Args:
-        members: Its links.
-        sizes: How many links each model of the world has, by the identity of its scope.
-        is_static: Fixed in the world.
+        members: Links of the object.
+        sizes: Number of links of each top-level model, by the identity of its scope.
+        is_static: Whether the object is fixed in the world.
     """
     first = members[0]
     top = _top(first.scope)

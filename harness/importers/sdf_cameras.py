@@ -1,4 +1,4 @@
-"""Camera sensors of SDF as cameras of ours: the words are the same."""
+"""Imports SDF's camera sensors."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from harness.spec.cameras import CameraSpec
 from harness.spec.xml_file import XmlElement
 
 KINDS = ("camera", "rgbd_camera", "depth", "depth_camera", "segmentation", "segmentation_camera")
-"""Sensors that take pictures here; `capture` says which kinds of picture."""
+"""Types of sensors that are imported as cameras; `capture` selects the kinds of picture."""
 
 FORMATS = {"R8G8B8": "R8G8B8", "RGB_INT8": "R8G8B8", "L8": "L8", "L_INT8": "L8"}
 WIDEST, NARROWEST = 2.9, 0.01  # [rad]
@@ -23,12 +23,12 @@ FASTEST = 120.0  # [Hz]
 
 
 def cameras_of(body: Body, notes: Notes, *, is_there: bool) -> list[CameraSpec]:
-    """Cameras on a body; other sensors are told of.
+    """Cameras on a body; other sensors lead to a note.
 
     Args:
-        body: Carries them.
-        notes: Gets what is left out.
-        is_there: Whether it is an object; if not, its cameras stand in the world.
+        body: The body with the sensors.
+        notes: Collects notes on elements that are left out.
+        is_there: Whether the body is an object; otherwise its cameras are fixed in the world.
     """
     found: list[CameraSpec] = []
     for link in body.links:
@@ -37,7 +37,10 @@ def cameras_of(body: Body, notes: Notes, *, is_there: bool) -> list[CameraSpec]:
             if kind in KINDS:
                 found.append(_camera(body, link, sensor, notes, is_there=is_there))
             else:
-                notes.add(sensor.place, f"a sensor of the type '{kind}' is left out: cameras see")
+                notes.add(
+                    sensor.place,
+                    f"a sensor of the type '{kind}' is left out: only cameras are supported",
+                )
     return found
 
 
@@ -52,7 +55,7 @@ def _camera(
         pose_of(sensor), link.element.need("name").strip()
     )
     rate = number(sensor, "update_rate", 0.0)
-    if rate > 0:  # 0 is as fast as can be
+    if rate > 0:  # 0 is unlimited
         words["update_rate"] = min(rate, FASTEST)
     if camera is not None:
         note_what_is_left(camera, "camera", notes)
@@ -73,7 +76,9 @@ def _optics(camera: XmlElement, notes: Notes) -> dict[str, Any]:
         (value,) = numbers_of(angle, 1)
         if not NARROWEST <= value <= WIDEST:
             limits = f"{math.degrees(NARROWEST):.1f} to {math.degrees(WIDEST):.0f} degrees"
-            angle.refuse(f"no pinhole camera sees {value:g} rad wide", f"here: {limits}")
+            angle.refuse(
+                f"a pinhole camera cannot have a field of view of {value:g} rad", f"here: {limits}"
+            )
         words["horizontal_fov"] = value
     image = camera.find("image")
     if image is not None:
@@ -116,7 +121,7 @@ def _format(image: XmlElement, notes: Notes) -> dict[str, str]:
 def _noise(noise: XmlElement) -> dict[str, Any]:
     kind = text_of(noise, "type", "none")
     if kind not in ("gaussian", "gaussian_quantized", "none"):
-        noise.refuse(f"no noise is called `{kind[:40]}`", "kinds: gaussian, none")
+        noise.refuse(f"the noise type `{kind[:40]}` is not known", "kinds: gaussian, none")
     mean, deviation = number(noise, "mean", 0.0), number(noise, "stddev", 0.0)
     if not (-1 <= mean <= 1 and 0 <= deviation <= 1):
         noise.refuse("noise is a share of full white: mean -1 to 1, stddev 0 to 1")

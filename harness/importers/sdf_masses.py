@@ -1,4 +1,4 @@
-"""Mass and inertia of SDF links, and of the object that several links make up."""
+"""Mass and inertia of SDF links, and of objects of several links."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from harness.spec.world import ShapeSpec
 from harness.spec.xml_file import XmlElement
 
 WATER = 1000.0
-"""Density of an automatic inertial that names none [kg/m^3]: SDF 1.11."""
+"""Default density of an automatic inertial in SDF 1.11 [kg/m^3]."""
 
 
 @dataclass(frozen=True, eq=False)
 class MassProperties:
-    """Of a rigid body.
+    """Mass properties of a rigid body.
 
     Attributes:
-        mass: [kg].
-        center: Of mass, in the object's frame [m], shape (3,).
-        inertia: About the centre of mass, object's axes [kg m^2], shape (3, 3).
+        mass: Mass [kg].
+        center: Centre of mass in the object's frame [m], shape (3,).
+        inertia: Inertia about the centre of mass, in the object's axes [kg m^2], shape (3, 3).
     """
 
     mass: float
@@ -36,13 +36,13 @@ class MassProperties:
     inertia: FloatArray
 
     def placed(self, pose: SE3) -> MassProperties:
-        """The same, given in the frame of a link, in that of the object: T_object_link."""
+        """The properties transformed from a link's frame to the object's: T_object_link."""
         turn = pose.rotation
         return MassProperties(self.mass, pose.apply(self.center), turn @ self.inertia @ turn.T)
 
 
 def together(parts: Sequence[MassProperties]) -> MassProperties:
-    """Of several bodies that hold together; parallel axes."""
+    """Properties of several rigidly connected bodies (parallel axis theorem)."""
     if len(parts) == 1:
         return parts[0]
     mass = sum(part.mass for part in parts)
@@ -59,20 +59,20 @@ def link_masses(
     link: XmlElement, shapes: Sequence[tuple[XmlElement, ShapeSpec]], T_object_link: SE3,
     notes: Notes,
 ) -> MassProperties:  # fmt: skip
-    """Of a link, in the object's frame.
+    """Mass properties of a link, in the object's frame.
 
     Args:
         link: The `<link>`.
-        shapes: Its collisions with what they became, placed on the object; for automatic inertia.
-        T_object_link: Where the link stands on the object.
-        notes: Told of a link without inertial or inertia.
+        shapes: Its collisions with their shapes on the object, for automatic inertia.
+        T_object_link: Pose of the link on the object.
+        notes: Collects notes on a link without inertial or inertia.
 
     Raises:
-        SpecError: No body can have these numbers.
+        SpecError: No rigid body can have these properties.
     """
     inertial = link.find("inertial")
     if inertial is None:
-        notes.add(link.place, "a <link> without <inertial> has 1 kg and 1 kg m^2, as SDF has it")
+        notes.add(link.place, "a <link> without <inertial> has 1 kg and 1 kg m^2, as SDF specifies")
         return MassProperties(1.0, np.zeros(3), np.eye(3)).placed(T_object_link)
     note_what_is_left(inertial, "inertial", notes)
     if is_true(inertial, inertial.get("auto", "false")):
@@ -80,10 +80,10 @@ def link_masses(
     mass = number(inertial, "mass", 1.0)
     if mass <= 0:
         (inertial.find("mass") or inertial).refuse(
-            f"what can move has a mass above 0, not {mass:g} kg", "or say <static>true</static>"
+            f"a movable link has a mass above 0, not {mass:g} kg", "or add <static>true</static>"
         )
     if inertial.find("inertia") is None:
-        message = "an <inertial> without <inertia> has 1 kg m^2 about each axis, as SDF has it"
+        message = "an <inertial> without <inertia> has 1 kg m^2 about each axis, as SDF specifies"
         notes.add(inertial.place, message)
     tensor = _tensor(inertial)
     own = MassProperties(mass, np.zeros(3), tensor).placed(pose_of(inertial).pose)
@@ -100,9 +100,9 @@ def _tensor(inertial: XmlElement) -> FloatArray:
     if not is_inertia_of_a_body(tensor):
         least, middle, most = (float(moment) for moment in np.linalg.eigvalsh(tensor))
         element.refuse(
-            f"no body has this inertia: its principal moments are {least:.6g}, {middle:.6g} and"
-            f" {most:.6g} kg m^2",
-            "each is above 0 and no more than the sum of the others",
+            f"no rigid body has this inertia: its principal moments are {least:.6g}, {middle:.6g}"
+            f" and {most:.6g} kg m^2",
+            "each must be above 0 and at most the sum of the others",
         )
     return tensor
 
@@ -110,14 +110,14 @@ def _tensor(inertial: XmlElement) -> FloatArray:
 def _automatic(
     inertial: XmlElement, shapes: Sequence[tuple[XmlElement, ShapeSpec]]
 ) -> MassProperties:
-    """From the collisions and their densities; a mass that is given as well scales them."""
+    """Mass properties from the collisions and their densities; an explicit mass scales them."""
     density = number(inertial, "density", WATER)
     parts: list[MassProperties] = []
     for collision, spec in shapes:
         solid = None if (kind := _geometry(spec)) is None else solid_of(kind)
         if solid is None:
-            hint = "say <mass> and <inertia>"
-            collision.refuse("automatic inertia is of boxes, cylinders, spheres, capsules", hint)
+            hint = "add <mass> and <inertia>"
+            collision.refuse("automatic inertia needs boxes, cylinders, spheres or capsules", hint)
         volume, tensor = solid
         own = number(collision, "density", density)
         if own <= 0:
@@ -126,7 +126,7 @@ def _automatic(
         turned = pose.rotation @ tensor @ pose.rotation.T
         parts.append(MassProperties(own * volume, pose.translation, own * turned))
     if not parts:
-        inertial.refuse("automatic inertia is of collisions, and the link has none")
+        inertial.refuse("automatic inertia needs collisions, and the link has none")
     whole = together(parts)
     scale = number(inertial, "mass", whole.mass) / whole.mass
     if scale <= 0:

@@ -1,4 +1,4 @@
-"""A rigid body of SDF as an object of ours."""
+"""Converts a rigid body of SDF to an object."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LONGEST_NAME = 100
 
 
 def object_of(body: Body, reader: ShapeReader) -> ObjectSpec | None:
-    """The object; None, with a note, where it has nothing to touch or see."""
+    """The object; None, with a note, for a body without shapes and visuals."""
     first = body.links[0]
     if len(body.name) > LONGEST_NAME:
         first.element.refuse(f"the name '{body.name}' has more than {LONGEST_NAME} characters")
@@ -39,7 +39,7 @@ def object_of(body: Body, reader: ShapeReader) -> ObjectSpec | None:
             on_object = body.pose.inverse() @ link.pose
             masses.append(link_masses(link.element, touched, on_object, reader.notes))
     if not shapes and not visuals:
-        reader.notes.add(first.element.place, "what has neither shapes nor visuals is left out")
+        reader.notes.add(first.element.place, "a body without shapes and visuals is left out")
         return None
     words: dict[str, Any] = {"name": body.name, "pose": pose_spec(body.pose)}
     if body.is_static:
@@ -67,7 +67,7 @@ def _visuals(body: Body, link: Link, reader: ShapeReader) -> list[ShapeSpec]:
 
 
 def _on_object(body: Body, link: Link, element: XmlElement) -> SE3:
-    """T_object_element of a collision or visual, whatever frame its pose names."""
+    """T_object_element of a collision or visual."""
     name = link.element.need("name").strip()
     in_scope = link.scope.pose_in(pose_of(element), name)
     return body.pose.inverse() @ link.scope.in_world() @ in_scope
@@ -91,7 +91,7 @@ def _masses(whole: MassProperties) -> dict[str, Any]:
 
 
 def _looks(shapes: list[ShapeSpec], visuals: list[ShapeSpec]) -> dict[str, Any]:
-    """Shapes, visuals, friction and colour, each said once where that is enough."""
+    """Shapes, visuals, friction and colour, written once where shapes share them."""
     words: dict[str, Any] = {}
     colored = _colored(shapes, visuals)
     if colored is not None:
@@ -124,12 +124,12 @@ def _looks(shapes: list[ShapeSpec], visuals: list[ShapeSpec]) -> dict[str, Any]:
 
 
 def _unnamed(shapes: list[ShapeSpec]) -> list[ShapeSpec]:
-    """The shapes; one alone needs no name."""
+    """The shapes; a single shape has no name."""
     return [shapes[0].model_copy(update={"name": None})] if len(shapes) == 1 else shapes
 
 
 def _colored(shapes: list[ShapeSpec], visuals: list[ShapeSpec]) -> list[ShapeSpec] | None:
-    """The shapes with the colours of visuals that are the same shapes; None where some differ."""
+    """The shapes with the colours of equal visuals; None when the shapes differ."""
     if len(shapes) != len(visuals):
         return None
     rest = list(visuals)
@@ -148,7 +148,7 @@ def _form(shape: ShapeSpec) -> tuple[object, ...]:
 
 
 def _short(friction: FrictionSpec | float | None) -> FrictionSpec | float | None:
-    """Sliding friction alone where the rest is as always; None for all that is."""
+    """Friction without its default values; None when all are defaults."""
     if not isinstance(friction, FrictionSpec):
         return friction
     if friction == FrictionSpec():

@@ -1,4 +1,4 @@
-"""Models as SDF nests them: names, and where each of them stands."""
+"""Nested SDF models: their names and poses."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ class Named:
     """A link, joint, frame or nested model of a scope.
 
     Attributes:
-        kind: Of its element: `link`, `joint`, `frame`, `model`.
-        element: Where it is written.
-        pose: As written.
-        base: The frame that its pose is in where it names none; empty for the scope's own.
+        kind: Kind of the element: `link`, `joint`, `frame`, `model`.
+        element: The element.
+        pose: The element's pose.
+        base: Default frame of the pose; empty for the scope's frame.
     """
 
     kind: str
@@ -39,16 +39,16 @@ class Scope:
     """A model, or the world.
 
     Attributes:
-        name: Of the model; empty for the world.
-        element: Where it is written.
-        folder: Of the file it is written in: relative paths begin there.
-        parent: The scope it is nested in.
-        is_static: As it says itself, or a scope around it.
-        placement_frame: The frame that its pose is of; empty for its own.
-        canonical_link: What stands for the model in joints; empty for the first link.
+        name: Name of the model; empty for the world.
+        element: The element.
+        folder: Folder of its file; relative paths start there.
+        parent: The enclosing scope.
+        is_static: Whether it or an enclosing scope is static.
+        placement_frame: The frame that its pose places; empty for its own frame.
+        canonical_link: The link that represents the model in joints; empty for the first link.
         named: Its links, joints, frames and nested models, in file order.
         nested: Scopes of its nested models.
-        is_merged: Its names count as names of the scope around it.
+        is_merged: Whether its names are also names of the enclosing scope.
     """
 
     name: str
@@ -66,7 +66,7 @@ class Scope:
 
     @property
     def path(self) -> str:
-        """Its name with those around it: `table::leg`."""
+        """Its name with those of the enclosing scopes: `table::leg`."""
         if self.parent is None:
             return ""
         if self.is_merged:
@@ -74,22 +74,24 @@ class Scope:
         return f"{self.parent.path}::{self.name}" if self.parent.path else self.name
 
     def locate(self, name: str, element: XmlElement) -> SE3:
-        """T_scope_frame of a name as the scope's elements write it.
+        """T_scope_frame of a name in the scope.
 
         Args:
             name: `a`, or `a::b` of a nested model; empty or `__model__` for the scope's own frame.
-            element: That names it, for messages.
+            element: The element with the name, for messages.
 
         Raises:
-            SpecError: No such frame, or frames that stand on each other in a circle.
+            SpecError: The frame is unknown, or frames refer to each other in a cycle.
         """
         if name in OWN or (name == WORLD and self.parent is None):
             return SE3.identity()
         if name not in self._located:
             if name in self._open:
-                element.refuse(f"the frame '{name}' stands on itself in a circle")
+                element.refuse(f"the frame '{name}' is relative to itself in a cycle")
             if len(self._open) >= MOST_FRAMES_DEEP:
-                element.refuse(f"frames stand on frames more than {MOST_FRAMES_DEEP} deep")
+                element.refuse(
+                    f"frames are relative to each other more than {MOST_FRAMES_DEEP} deep"
+                )
             self._open.add(name)
             self._located[name] = self._find(name, element)
             self._open.discard(name)
@@ -114,7 +116,7 @@ class Scope:
                 yield from self.nested[name].links()
 
     def has(self, name: str) -> bool:
-        """Whether a name without `::` is the scope's own or of a model merged into it."""
+        """Whether a name without `::` is in the scope or in a model merged into it."""
         merged = [scope for scope in self.nested.values() if scope.is_merged]
         return name in self.named or any(scope.has(name) for scope in merged)
 

@@ -44,21 +44,21 @@ DEFAULT_TORSIONAL = FrictionSpec().torsional
 
 @dataclass(frozen=True, eq=False)
 class ShapeReader:
-    """Reads shapes; knows where mesh files are, and whom to tell what is left out."""
+    """Reads shapes, finds mesh files and collects notes."""
 
     model_path: ModelPath
     notes: Notes
 
     def collision(self, element: XmlElement, folder: Path, pose: SE3) -> ShapeSpec | None:
-        """A shape that is touched; None where it is empty.
+        """A collision shape; None for an empty geometry.
 
         Args:
             element: A `<collision>`.
-            folder: Of its file.
+            folder: Folder of its file.
             pose: T_object_collision.
 
         Raises:
-            SpecError: Its geometry is of a kind that cannot be touched here, or wrong.
+            SpecError: Its geometry is invalid or not supported.
         """
         note_what_is_left(element, "collision", self.notes)
         geometry = self._geometry(element)
@@ -66,14 +66,14 @@ class ShapeReader:
             return None
         if WORDS["geometry"][geometry.tag].treatment == "refused":
             hint = "give the collision a box, cylinder, sphere, capsule, plane or mesh"
-            geometry.refuse(f"a collision cannot be a <{geometry.tag}> here", hint)
+            geometry.refuse(f"a collision cannot be a <{geometry.tag}>", hint)
         shape = self._shape(element, geometry, folder, pose, friction=self._friction(element))
         if shape.mesh is not None:
             _refuse_untouchable(shape.mesh, geometry)
         return shape
 
     def visual(self, element: XmlElement, folder: Path, pose: SE3) -> ShapeSpec | None:
-        """A shape that is seen; None where it is empty or cannot be drawn."""
+        """A visual shape; None when it is empty or cannot be drawn."""
         note_what_is_left(element, "visual", self.notes)
         geometry = self._geometry(element)
         color = self._color(element)
@@ -91,7 +91,7 @@ class ShapeReader:
         shape = geometry.children[0]
         if shape.tag not in WORDS["geometry"]:
             known = ", ".join(WORDS["geometry"])
-            shape.refuse(f"no shape is called <{shape.tag}>", f"shapes: {known}")
+            shape.refuse(f"the shape <{shape.tag}> is not known", f"shapes: {known}")
         return shape
 
     def _shape(
@@ -131,7 +131,7 @@ class ShapeReader:
             element.refuse("a <mesh> has a <uri>")
         path = self.model_path.find(uri.text.strip(), uri, folder)
         if not path.is_file():
-            uri.refuse(f"`{uri.text.strip()}` is no file")
+            uri.refuse(f"`{uri.text.strip()}` is not a file")
         scale = element.find("scale")
         values = (1.0, 1.0, 1.0) if scale is None else numbers_of(scale, 3)
         if 0 in values:
@@ -140,7 +140,7 @@ class ShapeReader:
         return MeshSpec(file=str(path.absolute()), scale=x if x == y == z else (x, y, z))
 
     def _friction(self, collision: XmlElement) -> FrictionSpec | None:
-        """The friction of a collision; None where nothing is said."""
+        """The friction of a collision; None when it is not given."""
         surface = collision.find("surface")
         if surface is None:
             return None
@@ -159,7 +159,7 @@ class ShapeReader:
             radius = _not_negative(about_normal, "patch_radius", 0.0)
             coefficient = _not_negative(about_normal, "coefficient", 1.0)
             if radius > 0:
-                # torque of a round patch under Hertz's pressure: 3 pi / 16 of radius and force
+                # torque of a round patch under Hertzian pressure: 3 pi / 16 of radius and force
                 torsional = rounded(3 * math.pi / 16 * radius * coefficient)
         return FrictionSpec(sliding=sliding, torsional=torsional)
 
@@ -170,7 +170,7 @@ class ShapeReader:
         note_what_is_left(ode, "friction/ode", self.notes)
 
     def _color(self, visual: XmlElement) -> Rgba | None:
-        """The colour of a visual; None where nothing is said, or only a texture."""
+        """The colour of a visual; None without a colour or with a texture alone."""
         opacity = 1.0 - min(1.0, max(0.0, number(visual, "transparency", 0.0)))
         material = visual.find("material")
         color: Rgba | None = None
@@ -195,7 +195,7 @@ class ShapeReader:
         name = text_of(script, "name") or script.text.strip()
         color = PLAIN_COLORS.get(name.removeprefix("Gazebo/"))
         if color is None:
-            self.notes.add(script.place, f"the material script `{name}` is no plain colour")
+            self.notes.add(script.place, f"the material script `{name}` is not a plain colour")
         return color
 
 
@@ -220,5 +220,5 @@ def _facing(plane: XmlElement) -> SE3:
     values = np.array((0.0, 0.0, 1.0) if normal is None else numbers_of(normal, 3))
     length = float(np.linalg.norm(values))
     if normal is not None and length < 1e-9:
-        normal.refuse("a normal has some length; this one is 0 0 0")
+        normal.refuse("a normal must not be 0 0 0")
     return SE3(facing(values / length), np.zeros(3))

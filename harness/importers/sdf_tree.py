@@ -28,20 +28,20 @@ class Light:
 
 
 class SdfTree:
-    """The scopes of a file and of what it includes.
+    """The scopes of a file and of the files that it includes.
 
     Attributes:
         root: The `<world>`, or the `<sdf>` of a file that has models alone.
-        world: Its scope.
-        lights: Of the world, in file order, those of included files last.
-        notes: What is left out.
+        world: The world's scope.
+        lights: Lights in file order, those of included files last.
+        notes: Notes on elements that are left out.
     """
 
     def __init__(self, path: Path, model_path: ModelPath) -> None:
         """Read a file.
 
         Raises:
-            SpecError: It is no SDF of a known version, or something in it is wrong; at its place.
+            SpecError: It is not SDF of a supported version, or has a mistake; located.
         """
         self.notes = Notes()
         self._model_path = model_path
@@ -67,7 +67,7 @@ class SdfTree:
         root = read_xml(path)
         sdf = root.find("sdf") if root.tag in ("gazebo", "sdf-root") else root
         if sdf is None or sdf.tag != "sdf":
-            root.refuse(f"the root element is <{root.tag}>, an SDF file's is <sdf>")
+            root.refuse(f"the root element is <{root.tag}>; that of an SDF file is <sdf>")
         self._check_version(sdf)
         self._files[path.resolve()] = sdf
         return sdf
@@ -76,10 +76,10 @@ class SdfTree:
         text = sdf.need("version")
         parts = text.strip().split(".")
         if len(parts) != 2 or not all(part.isdigit() for part in parts):
-            sdf.refuse(f"`{text}` is no version of SDF", "such as 1.9", at="version")
+            sdf.refuse(f"`{text}` is not a version of SDF", "such as 1.9", at="version")
         version = (int(parts[0]), int(parts[1]))
         if version < OLDEST:
-            hint = "`gz sdf -p FILE` writes it as a newer one"
+            hint = "`gz sdf -p FILE` converts it to a newer version"
             sdf.refuse(f"SDF {text} is older than 1.4", hint, at="version")
         if version > NEWEST:
             self.notes.add(sdf.place, f"SDF {text} is read as 1.11")
@@ -109,12 +109,14 @@ class SdfTree:
     def _claim(self, scope: Scope, name: str, item: Named) -> None:
         element = item.element
         if not name or not name.isprintable() or len(name) > 80:
-            element.refuse(f"`{name[:80]!r}` is no name: 1 to 80 printable characters", at="name")
+            element.refuse(
+                f"`{name[:80]!r}` is not a name of 1 to 80 printable characters", at="name"
+            )
         if name in (WORLD, "__model__", "__root__"):
-            element.refuse(f"'{name}' has a meaning of its own", "choose another name", at="name")
+            element.refuse(f"'{name}' is a reserved name", "choose another name", at="name")
         if name in scope.named:
             first = scope.named[name].element.place.line
-            element.refuse(f"'{name}' is here twice; first in line {first}", at="name")
+            element.refuse(f"'{name}' is defined twice; first in line {first}", at="name")
         scope.named[name] = item
 
     def _joint(self, element: XmlElement, scope: Scope) -> Named:
@@ -151,7 +153,7 @@ class SdfTree:
         scope.locate(scope.placement_frame, scope.element)
 
     def _include(self, parent: Scope, element: XmlElement, files: tuple[Path, ...]) -> None:
-        """A model of another file, with what the include says in place of its own words."""
+        """A model of another file, with the include's elements in place of its own."""
         note_what_is_left(element, "include", self.notes)
         uri = element.find("uri")
         if uri is None:
@@ -161,7 +163,7 @@ class SdfTree:
             path = model_file(path, uri)
         if path.resolve() in files:
             chain = " -> ".join(file.name for file in (*files, path))
-            uri.refuse(f"includes run in a circle: {chain}")
+            uri.refuse(f"includes form a cycle: {chain}")
         if len(files) > MOST_INCLUDES_DEEP:
             uri.refuse(f"includes are nested more than {MOST_INCLUDES_DEEP} deep")
         sdf = self._included(path, uri)
@@ -202,7 +204,7 @@ class SdfTree:
     def _model_of(self, sdf: XmlElement, path: Path, uri: XmlElement) -> XmlElement:
         models = sdf.findall("model")
         if not models:
-            uri.refuse(f"there is no <model> in {path}", "a file that is included has one")
+            uri.refuse(f"there is no <model> in {path}", "an included file needs one")
         for other in models[1:]:
             self.notes.add(other.place, "a second <model> of an included file is left out")
         return models[0]

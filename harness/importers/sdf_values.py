@@ -1,4 +1,4 @@
-"""Numbers, flags and poses of SDF, each wrong one told at its place."""
+"""Numbers, flags and poses of SDF, with located errors."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from harness.spec.base import LARGEST_NUMBER, SMALLEST_SIZE, SpecModel
 from harness.spec.xml_file import XmlElement
 
 UNBOUNDED = ("mu", "mu2")
-"""Elements for which worlds write 1e16 and mean that nothing slips."""
+"""Elements in which worlds write 1e16 to exclude slip."""
 M = TypeVar("M", bound=SpecModel)
 TRUE, FALSE = ("true", "1"), ("false", "0")
 
 
 @dataclass(frozen=True, eq=False)
 class PlacedPose:
-    """A pose as SDF writes it.
+    """A pose in an SDF file.
 
     Attributes:
-        pose: In the frame `relative_to`.
-        relative_to: A frame's name; empty for the element's own default.
-        element: Where it is written, for messages.
+        pose: The pose in the frame `relative_to`.
+        relative_to: Name of a frame; empty for the element's default frame.
+        element: The element with the pose, for messages.
     """
 
     pose: SE3
@@ -38,7 +38,7 @@ def numbers_of(element: XmlElement, count: int) -> tuple[float, ...]:
     """An element's numbers.
 
     Raises:
-        SpecError: Not that many, or one is no finite number.
+        SpecError: Their number is wrong, or one is not a finite number.
     """
     text = " ".join(element.text.split())
     try:
@@ -46,9 +46,9 @@ def numbers_of(element: XmlElement, count: int) -> tuple[float, ...]:
     except ValueError:
         values = ()
     if len(values) != count or not all(map(math.isfinite, values)):
-        meant = "a finite number is" if count == 1 else f"{count} finite numbers are"
+        expected = "a finite number" if count == 1 else f"{count} finite numbers"
         found = f"`{text[:60]}`" if text else "nothing"
-        element.refuse(f"<{element.tag}>: {meant} meant, not {found}")
+        element.refuse(f"<{element.tag}>: expected {expected}, found {found}")
     for value in values:
         if abs(value) > LARGEST_NUMBER and element.tag not in UNBOUNDED:
             element.refuse(f"<{element.tag}>: {value:g} is too large; at most {LARGEST_NUMBER:g}")
@@ -56,16 +56,16 @@ def numbers_of(element: XmlElement, count: int) -> tuple[float, ...]:
 
 
 def number(parent: XmlElement, tag: str, default: float) -> float:
-    """The number of a child, or a default where there is none."""
+    """The number of a child element, or a default without one."""
     child = parent.find(tag)
     return default if child is None else numbers_of(child, 1)[0]
 
 
 def positive(parent: XmlElement, tag: str) -> float:
-    """The number above 0 that a child must give.
+    """The positive number of a required child element.
 
     Raises:
-        SpecError: There is no such child, or it is not above 0.
+        SpecError: The child is missing, or its number is not above 0.
     """
     child = parent.find(tag)
     if child is None:
@@ -79,10 +79,10 @@ def positive(parent: XmlElement, tag: str) -> float:
 
 
 def validated(model: type[M], words: Mapping[str, Any], element: XmlElement) -> M:
-    """A part of a world from its words.
+    """A part of a world, validated.
 
     Raises:
-        SpecError: A word has a value that the model refuses; at the element.
+        SpecError: The model refuses a value; at the element.
     """
     try:
         return model.model_validate(words)
@@ -93,7 +93,7 @@ def validated(model: type[M], words: Mapping[str, Any], element: XmlElement) -> 
 
 
 def is_flag(parent: XmlElement, tag: str, default: bool = False) -> bool:
-    """The truth of a child, or a default where there is none.
+    """The flag of a child element, or a default without one.
 
     Raises:
         SpecError: It is none of true, false, 1, 0.
@@ -103,7 +103,7 @@ def is_flag(parent: XmlElement, tag: str, default: bool = False) -> bool:
 
 
 def is_true(element: XmlElement, text: str) -> bool:
-    """The truth of a word, told at the element where it is none."""
+    """The value of a flag; an invalid flag is an error at the element."""
     word = text.lower()
     if word not in (*TRUE, *FALSE):
         element.refuse(f"`{text[:40]}` is neither true nor false")
@@ -111,21 +111,21 @@ def is_true(element: XmlElement, text: str) -> bool:
 
 
 def text_of(parent: XmlElement, tag: str, default: str = "") -> str:
-    """The text of a child, or a default where there is none."""
+    """The text of a child element, or a default without one."""
     child = parent.find(tag)
     return default if child is None else child.text.strip()
 
 
 def pose_of(parent: XmlElement) -> PlacedPose:
-    """The pose of an element; nothing said is no displacement.
+    """The pose of an element; identity without a `<pose>`.
 
     Raises:
-        SpecError: It has not the numbers of its format.
+        SpecError: The numbers do not match the rotation format.
     """
     element = parent.find("pose")
     if element is None:
         return PlacedPose(SE3.identity(), "", parent)
-    # `frame` was the word of SDF 1.5 and 1.6
+    # the attribute `frame` of SDF 1.5 and 1.6
     relative_to = element.get("relative_to") or element.get("frame")
     return PlacedPose(_se3(element), relative_to.strip(), element)
 
@@ -135,15 +135,15 @@ def _se3(element: XmlElement) -> SE3:
     is_in_degrees = is_true(element, element.get("degrees", "false"))
     if form not in ("euler_rpy", "quat_xyzw"):
         hint = "formats: euler_rpy, quat_xyzw"
-        element.refuse(f"no rotation format is called `{form}`", hint, at="rotation_format")
+        element.refuse(f"the rotation format `{form}` is not known", hint, at="rotation_format")
     if not element.text.strip():
         return SE3.identity()
     if form == "quat_xyzw":
         if is_in_degrees:
-            element.refuse("a quaternion is not in degrees", at="degrees")
+            element.refuse("`degrees` does not apply to a quaternion", at="degrees")
         values = numbers_of(element, 7)
         if math.hypot(*values[3:]) < 1e-6:
-            element.refuse("a quaternion has norm 1, this one 0", "no rotation is 0 0 0 1")
+            element.refuse("a quaternion has norm 1, this one has norm 0", "no rotation is 0 0 0 1")
         return SE3.from_xyz_quat(values[:3], wxyz_from_xyzw(values[3:]))
     values = numbers_of(element, 6)
     rpy = [math.radians(value) for value in values[3:]] if is_in_degrees else values[3:]

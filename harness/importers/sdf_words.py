@@ -1,7 +1,7 @@
-"""Every element of SDF that a world may have, and what becomes of it here.
+"""Every element of an SDF world, and how it is imported.
 
-The reader follows this table where it leaves something out, and the table of the documentation
-is made from it.
+The reader takes the notes on ignored elements from this table, and the documentation's table is
+generated from it.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ class Word:
     """An element or attribute.
 
     Attributes:
-        treatment: What becomes of it.
-        meaning: What it is taken as, or why it is not.
-        silent: Values that change nothing, so that leaving it out needs no telling.
+        treatment: Whether it is read, ignored or refused.
+        meaning: Its effect, or the reason for which it has none.
+        silent: Default values, which are left out without a note.
     """
 
     treatment: Treatment
@@ -44,7 +44,7 @@ def _refused(meaning: str) -> Word:
 
 
 _POSE = _read("with `relative_to`, `degrees`, `rotation_format`; `frame` as before SDF 1.7")
-_NO_PLUGINS = _ignored("nothing of a world is executed")
+_NO_PLUGINS = _ignored("a world cannot execute code")
 _DRAWN_PLAIN = _ignored("pictures have plain colours")
 _FALSE = ("false", "0")
 _TRUE = ("true", "1")
@@ -58,7 +58,7 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
         "actor": _ignored("nothing moves by a script"),
     },
     "world": {
-        "model": _read("an object; several where links are not joined"),
+        "model": _read("an object; several when links are not joined"),
         "include": _read("of a model, from the model path"),
         "light": _read("directional ones"),
         "gravity": _read("m/s^2"),
@@ -73,16 +73,18 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
         "atmosphere": _ignored("there is no air"),
         "magnetic_field": _ignored("there is no magnetism"),
         "spherical_coordinates": _ignored("there is no globe"),
-        "state": _ignored("models stand where they are described"),
-        "population": _ignored("models that it would spawn are not there"),
+        "state": _ignored("models start at their described poses"),
+        "population": _ignored("models that it would spawn are left out"),
         "actor": _ignored("nothing moves by a script"),
         "road": _ignored("there are no roads"),
     },
     "model": {
         "pose": _POSE,
         "static": _read("fixed in the world"),
-        "link": _read("links that joints hold together become one object"),
-        "joint": _read("fixed ones join links; others are held where they stand, with a note"),
+        "link": _read("links that joints connect become one object"),
+        "joint": _read(
+            "fixed ones join links; others are held in their initial position, with a note"
+        ),
         "frame": _read("for `relative_to`"),
         "model": _read("nested models, with `a::b` in `relative_to` and joints"),
         "include": _read("nested, or merged into the model with `merge`"),
@@ -102,16 +104,16 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
     },
     "link": {
         "pose": _POSE,
-        "inertial": _read("without it 1 kg and 1 kg m^2, as SDF has it, with a note"),
-        "collision": _read("a shape to touch"),
-        "visual": _read("a shape in pictures"),
-        "gravity": _ignored("everything that is not static has weight", *_TRUE),
-        "kinematic": _ignored("what is not static moves by forces", *_FALSE),
+        "inertial": _read("without it 1 kg and 1 kg m^2, as SDF specifies, with a note"),
+        "collision": _read("a collision shape"),
+        "visual": _read("a visual shape"),
+        "gravity": _ignored("gravity acts on every object that is not static", *_TRUE),
+        "kinematic": _ignored("objects that are not static move by forces", *_FALSE),
         "self_collide": _ignored("an object is rigid", *_FALSE),
         "enable_wind": _ignored("there is no air", *_FALSE),
         "must_be_base_link": _ignored("an object is rigid", *_FALSE),
-        "velocity_decay": _ignored("nothing slows what is free"),
-        "sensor": _read("a camera of any kind, on the object; other sensors are told of"),
+        "velocity_decay": _ignored("free objects have no damping"),
+        "sensor": _read("a camera of any kind, on the object; other sensors lead to a note"),
         "light": _ignored("lights are the world's"),
         "projector": _ignored("there are no projectors"),
         "particle_emitter": _ignored("there are no particles"),
@@ -122,7 +124,7 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
     "inertial": {
         "mass": _read("kg"),
         "pose": _read("of the centre of mass, and the axes of the tensor"),
-        "inertia": _read("kg m^2; one that no body can have is refused"),
+        "inertia": _read("kg m^2; one that no rigid body can have is refused"),
         "density": _read("with `auto`, kg/m^3"),
         "fluid_added_mass": _ignored("there is no fluid"),
         "auto_inertia_params": _ignored("only solids of a formula have automatic inertia"),
@@ -154,7 +156,7 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
         "cylinder": _read("radius and length"),
         "sphere": _read("radius"),
         "capsule": _read("radius, and length without the round ends"),
-        "plane": _read("solid behind its normal, without an edge"),
+        "plane": _read("solid below its surface, unbounded"),
         "mesh": _read("its convex hull, with `scale`"),
         "empty": _read("no shape"),
         "ellipsoid": _refused("in a collision; not drawn in a visual"),
@@ -164,8 +166,8 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
         "polyline": _refused("in a collision; not drawn in a visual"),
     },
     "mesh": {
-        "uri": _read("as of an include, or relative to the file"),
-        "scale": _read("of the file's numbers"),
+        "uri": _read("as in an include, or relative to the file"),
+        "scale": _read("factor of the file's coordinates"),
         "submesh": _ignored("the whole mesh is used"),
         "convex_decomposition": _ignored("the convex hull collides"),
     },
@@ -178,7 +180,7 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
     "friction": {
         "ode": _read("`mu`; see friction/ode"),
         "torsional": _read("coefficient times patch radius; see friction/torsional"),
-        "bullet": _ignored("the friction of `ode` counts"),
+        "bullet": _ignored("the friction of `ode` is used"),
     },
     "friction/ode": {
         "mu": _read("sliding friction; a contact takes the smaller of its two"),
@@ -196,8 +198,8 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
     },
     "material": {
         "diffuse": _read("the colour"),
-        "ambient": _read("the colour where there is no `diffuse`"),
-        "script": _read("its name, where it is a plain colour of Gazebo's"),
+        "ambient": _read("the colour when there is no `diffuse`"),
+        "script": _read("its name, for a plain colour of Gazebo"),
         "specular": _DRAWN_PLAIN,
         "emissive": _DRAWN_PLAIN,
         "shininess": _DRAWN_PLAIN,
@@ -226,7 +228,7 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
         "direction": _read("of a directional light"),
         "diffuse": _read("its colour"),
         "cast_shadows": _read("whether it casts shadows"),
-        "light_on": _read("one that is off is not there"),
+        "light_on": _read("a light that is off is left out"),
         "intensity": _ignored("lights are equally bright", "1", "1.0"),
         "specular": _DRAWN_PLAIN,
         "attenuation": _ignored("a directional light is as bright everywhere"),
@@ -247,8 +249,8 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
     "sensor": {
         "pose": _POSE,
         "camera": _read("see camera"),
-        "update_rate": _read("Hz, at most 120; 0 as if it said nothing"),
-        "always_on": _ignored("a picture is taken when a step asks, or a video", *_TRUE),
+        "update_rate": _read("Hz, at most 120; 0 is the default"),
+        "always_on": _ignored("pictures are taken by steps and videos", *_TRUE),
         "visualize": _ignored("there is no window", *_FALSE),
         "topic": _ignored("there are no topics while it runs"),
         "enable_metrics": _ignored("there is no wall clock", *_FALSE),
@@ -263,7 +265,7 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
         "optical_frame_id": _read("of message headers"),
         "camera_info_topic": _ignored("there are no topics while it runs"),
         "trigger_topic": _ignored("there are no topics while it runs"),
-        "triggered": _ignored("a picture is taken when a step asks", *_FALSE),
+        "triggered": _ignored("pictures are taken by steps", *_FALSE),
         "save": _ignored("`capture` keeps pictures"),
         "depth_camera": _ignored("`capture` says which kinds of picture"),
         "segmentation_type": _ignored("`capture` says which kinds of picture"),
@@ -275,8 +277,8 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
     "image": {
         "width": _read("8 to 2048 pixels"),
         "height": _read("8 to 2048 pixels"),
-        "format": _read("`R8G8B8` or `L8`; others as `R8G8B8`, told"),
-        "anti_aliasing": _ignored("the renderer does what it can"),
+        "format": _read("`R8G8B8` or `L8`; others as `R8G8B8`, with a note"),
+        "anti_aliasing": _ignored("the renderer selects its antialiasing"),
     },
     "clip": {
         "near": _read("m"),
@@ -291,16 +293,16 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
         "precision": _ignored("pictures have 256 steps"),
     },
 }
-"""By kind of element: its children."""
+"""Children of each kind of element."""
 
 
 def note_what_is_left(element: XmlElement, kind: str, notes: Notes) -> None:
     """Note every child of an element that is not read.
 
     Args:
-        element: Of the file.
+        element: The element.
         kind: Its kind in `WORDS`.
-        notes: Told of each.
+        notes: Collects the notes.
     """
     words = WORDS[kind]
     for child in element.children:

@@ -1,4 +1,4 @@
-"""SDF worlds as ours."""
+"""Imports SDF worlds."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from harness.spec.cameras import CameraSpec
 from harness.spec.world import LightSpec, ObjectSpec, PhysicsSpec, WorldSpec
 from harness.spec.xml_file import XmlElement
 
-SHORTEST_STEP, LONGEST_STEP = 1e-4, 0.02  # [s], as of a world file
+SHORTEST_STEP, LONGEST_STEP = 1e-4, 0.02  # [s], as in a world file
 
 
 def load_sdf(path: Path, folders: Sequence[Path] = ()) -> ImportedWorld:
@@ -31,10 +31,10 @@ def load_sdf(path: Path, folders: Sequence[Path] = ()) -> ImportedWorld:
 
     Args:
         path: The file.
-        folders: Searched for models and meshes before those of the environment.
+        folders: Folders to search for models and meshes before those of the environment.
 
     Raises:
-        SpecError: It is no SDF that can be read; at its place in the file that has it.
+        SpecError: A file is not valid SDF; located in the file with the mistake.
     """
     model_path = ModelPath(path.parent, folders)
     tree = SdfTree(path, model_path)
@@ -60,7 +60,7 @@ def load_sdf(path: Path, folders: Sequence[Path] = ()) -> ImportedWorld:
 
 
 def _named_apart(cameras: Sequence[tuple[str, CameraSpec]]) -> tuple[CameraSpec, ...]:
-    """The cameras; those called alike have their object's name before their own."""
+    """The cameras; equal names get their object's name as a prefix."""
     counts = Counter(camera.name for _, camera in cameras)
     return tuple(
         camera
@@ -86,7 +86,7 @@ def _physics(root: XmlElement, notes: Notes) -> PhysicsSpec:
             (value,) = numbers_of(step, 1)
             if not SHORTEST_STEP <= value <= LONGEST_STEP:
                 limits = f"{SHORTEST_STEP:g} to {LONGEST_STEP:g} s"
-                step.refuse(f"a physics step of {value:g} s is not simulated", f"steps: {limits}")
+                step.refuse(f"a physics step of {value:g} s is not supported", f"steps: {limits}")
             words["timestep"] = value
         gravity = gravity or physics.find("gravity")
     if gravity is not None:
@@ -95,7 +95,7 @@ def _physics(root: XmlElement, notes: Notes) -> PhysicsSpec:
 
 
 def _light(light: Light, tree: SdfTree, notes: Notes) -> LightSpec | None:
-    """A directional light; others, and those that are off, are left out."""
+    """A directional light; None for other lights and for lights that are off."""
     element = light.element
     note_what_is_left(element, "light", notes)
     kind = element.get("type", "point").strip()
@@ -107,7 +107,7 @@ def _light(light: Light, tree: SdfTree, notes: Notes) -> LightSpec | None:
     given = element.find("direction")
     direction = np.array((0.0, 0.0, -1.0) if given is None else numbers_of(given, 3))
     if given is not None and not direction.any():
-        given.refuse("a direction has some length; this one is 0 0 0")
+        given.refuse("a direction must not be 0 0 0")
     x, y, z = (rounded(v) for v in tree.world.pose_in(light.pose).rotation @ direction)
     diffuse = element.find("diffuse")
     color = (1.0, 1.0, 1.0, 1.0)

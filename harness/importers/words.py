@@ -1,4 +1,4 @@
-"""A text as words with places."""
+"""Splits a text into words with places."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class Words:
     """The words of a text, one after the other.
 
     Attributes:
-        last: Where the last one stood.
+        last: Place of the last word.
     """
 
     def __init__(self, text: str, source: Source) -> None:
@@ -25,7 +25,7 @@ class Words:
         self.last = Place(source, 1, 1)
 
     def rest_of_line(self) -> str:
-        """What is left of the line; reading goes on in the next."""
+        """The rest of the line; the next word is from the following line."""
         if self._line >= len(self._lines):
             return ""
         rest = self._lines[self._line][self._column :]
@@ -33,11 +33,11 @@ class Words:
         return rest.strip()
 
     def lines_ahead(self) -> tuple[str, ...]:
-        """The lines that are not begun."""
+        """The lines that are not read yet."""
         return self._lines[self._line :]
 
     def next(self) -> tuple[str, Place]:
-        """The next word; empty at the end."""
+        """The next word and its place; empty at the end."""
         while self._line < len(self._lines):
             found = WORD.search(self._lines[self._line], self._column)
             if found:
@@ -51,7 +51,7 @@ class Words:
         """The next word as a number.
 
         Raises:
-            SpecError: It is no finite number.
+            SpecError: It is not a finite number.
         """
         word, place = self.next()
         try:
@@ -60,23 +60,23 @@ class Words:
             value = math.nan
         if not math.isfinite(value):
             found = f"`{word[:40]}`" if word else "the end of the file"
-            raise SpecError([place.problem(f"a finite number is meant, not {found}")])
+            raise SpecError([place.problem(f"expected a finite number, found {found}")])
         return value
 
     def count(self, what: str, most: int) -> int:
         """The next word as a whole number from 0.
 
         Args:
-            what: That is counted, for messages.
-            most: Largest that is taken.
+            what: The counted things, for messages.
+            most: Largest number.
 
         Raises:
-            SpecError: It is none, or larger.
+            SpecError: It is not a whole number, or larger.
         """
         word, place = self.next()
         if not word.isdecimal():
             found = f"`{word[:40]}`" if word else "the end of the file"
-            raise SpecError([place.problem(f"a number of {what} is meant, not {found}")])
+            raise SpecError([place.problem(f"expected a number of {what}, found {found}")])
         if len(word) > 9 or int(word) > most:
-            raise SpecError([place.problem(f"{word[:40]} {what}; at most {most} are read")])
+            raise SpecError([place.problem(f"{word[:40]} {what}; at most {most} are supported")])
         return int(word)

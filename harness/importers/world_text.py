@@ -1,4 +1,4 @@
-"""A world as the text of a world file of ours."""
+"""Writes a world as the text of a world file."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ def world_text(world: WorldSpec, folder: Path, comment: str = "") -> str:
     """YAML that loads to an equal world.
 
     Args:
-        world: What to write.
-        folder: Where the text will be; mesh files are written as paths from there.
-        comment: Told at the top.
+        world: The world.
+        folder: Folder of the file; paths of mesh files are relative to it.
+        comment: Comment at the top.
     """
     plain = world.model_dump(mode="json", by_alias=True, exclude_defaults=True)
     moved = _from_folder(plain, folder)
@@ -28,7 +28,7 @@ def world_text(world: WorldSpec, folder: Path, comment: str = "") -> str:
 
 
 def _from_folder(value: Any, folder: Path, key: str = "") -> Any:
-    """The data with mesh files as paths from a folder."""
+    """The data with mesh files as paths relative to a folder."""
     if isinstance(value, list):
         return [_from_folder(item, folder) for item in cast("list[Any]", value)]
     if not isinstance(value, Mapping):

@@ -1,4 +1,4 @@
-"""Accelerations that an imported arm's efforts are enough for: no URDF says any."""
+"""Acceleration limits of imported arms from their effort limits; URDF has no such limits."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -14,26 +14,26 @@ from harness.robot.description import Joint, RobotDescription
 from harness.robot.write_urdf import write_urdf
 
 SAMPLES = 60
-"""Random configurations, the same for every run, in which efforts are looked at."""
+"""Number of random configurations, the same in every run, in which efforts are evaluated."""
 
 SHARE = 0.7
-"""Part of what gravity leaves of an effort that may go into acceleration."""
+"""Share of the effort beyond gravity that is available for acceleration."""
 
 LEAST = 0.05
-"""Part of the assumed acceleration that is never gone below."""
+"""Smallest share of the assumed acceleration that remains."""
 
 
 def with_possible_accelerations(
     description: RobotDescription, known: frozenset[str] = frozenset()
 ) -> RobotDescription:
-    """The robot with assumed accelerations lowered to what the joints' efforts can do.
+    """The robot with assumed accelerations lowered to the limits of the joints' efforts.
 
     In each sampled configuration a joint must hold the arm against gravity and accelerate it with
     all joints at their assumed accelerations at once.
 
     Args:
-        description: Whose joints have the accelerations to begin with.
-        known: Joints whose acceleration is given, and not assumed.
+        description: The robot with the assumed accelerations.
+        known: Joints whose acceleration is given and not assumed.
     """
     driven = [joint for joint in description.movable_joints if joint.mimic is None]
     if not any(np.isfinite(joint.effort) for joint in driven):
@@ -72,7 +72,7 @@ def _told(joints: tuple[Joint, ...], shares: Mapping[str, float]) -> list[str]:
 
 def _efforts(description: RobotDescription) -> tuple[FloatArray, FloatArray]:
     """Efforts of the driven joints for their accelerations and against gravity, (SAMPLES, m)."""
-    import pinocchio as pin  # here: bundled robots do without
+    import pinocchio as pin  # here: bundled robots do not need it
 
     names = [joint.name for joint in description.movable_joints if joint.mimic is None]
     model = pin.buildModelFromXML(write_urdf("robot", description.links, description.joints))

@@ -1,4 +1,4 @@
-"""An arm of a folder without its own gripper, so that another one can take its place."""
+"""Removes the gripper of a bundled arm, so that another one can be mounted."""
 
 from __future__ import annotations
 
@@ -15,36 +15,36 @@ FLANGE = "flange"
 
 
 def without_gripper(part: Part) -> Part:
-    """The arm whose fingers and TCP are taken off, with a flange where its robot.yaml puts one.
+    """The arm without its fingers and TCP, with the flange of its robot.yaml.
 
-    The arm's chain ends at the flange then; what spoke of the gripper's links and joints goes.
-    An arm without a gripper of its own, or without such a place, stays as it is.
+    The arm's chain ends at the flange; groups, states and pairs of the gripper are removed. An arm
+    without a gripper, or whose robot.yaml has no `flange`, is returned unchanged.
     """
     hand, place = part.facts.gripper, part.facts.flange
     if hand is None or place is None:
         return part
-    gone = {link for side in hand.sides.values() for link in side.links}
-    gone.add(part.facts.tcp_link or "")
+    removed = {link for side in hand.sides.values() for link in side.links}
+    removed.add(part.facts.tcp_link or "")
     for joint in part.urdf.joints:  # parents before children
-        if joint.parent in gone:
-            gone.add(joint.child)
-    links = tuple(link for link in part.urdf.links if link.name not in gone)
-    joints = tuple(joint for joint in part.urdf.joints if joint.child not in gone)
+        if joint.parent in removed:
+            removed.add(joint.child)
+    links = tuple(link for link in part.urdf.links if link.name not in removed)
+    joints = tuple(joint for joint in part.urdf.joints if joint.child not in removed)
     held = SE3.from_xyz_rpy(place.xyz, place.rpy)
     flange = Joint(f"{FLANGE}_joint", "fixed", place.link, FLANGE, held, np.array([1.0, 0.0, 0.0]))
     urdf = replace(part.urdf, links=(*links, Link(FLANGE, None)), joints=(*joints, flange))
     facts = part.facts.model_copy(
         update={"gripper": None, "tcp_link": FLANGE, "flange_link": FLANGE, "ik_solver": "auto"}
     )
-    srdf = _srdf(part.srdf, hand.group, gone, {joint.name for joint in joints})
+    srdf = _srdf(part.srdf, hand.group, removed, {joint.name for joint in joints})
     return replace(part, urdf=urdf, srdf=srdf, facts=facts)
 
 
-def _srdf(srdf: Srdf, hand: str, gone: set[str], joints: set[str]) -> Srdf:
+def _srdf(srdf: Srdf, hand: str, removed: set[str], joints: set[str]) -> Srdf:
     groups = tuple(
         replace(
             group,
-            chains=tuple((base, FLANGE if tip in gone else tip) for base, tip in group.chains),
+            chains=tuple((base, FLANGE if tip in removed else tip) for base, tip in group.chains),
         )
         for group in srdf.groups
         if group.name != hand
@@ -55,5 +55,5 @@ def _srdf(srdf: Srdf, hand: str, gone: set[str], joints: set[str]) -> Srdf:
         states=tuple(state for state in srdf.states if state.group != hand),
         end_effectors=tuple(tool for tool in srdf.end_effectors if tool.group != hand),
         passive=tuple(name for name in srdf.passive if name in joints),
-        disabled={pair: why for pair, why in srdf.disabled.items() if not gone & set(pair)},
+        disabled={pair: why for pair, why in srdf.disabled.items() if not removed & set(pair)},
     )

@@ -1,4 +1,4 @@
-"""A UR's calibration file: where its joints really are."""
+"""Calibration files of UR arms: the measured poses of their joints."""
 
 from __future__ import annotations
 
@@ -19,28 +19,28 @@ JOINTS = {
     "wrist_2": "wrist_2_joint",
     "wrist_3": "wrist_3_joint",
 }
-"""Section of the file -> joint that it places; as ur_description's kinematics_params."""
+"""Joint of each section of the file, as in ur_description's kinematics_params."""
 
 FARTHEST = 0.05
-"""A calibration that turns a joint by more is another robot's, or in other axes [rad]."""
+"""Largest rotation of the flange by a calibration of the same robot and axes [rad]."""
 
 FARTHEST_REACH = 0.02
-"""A calibration that lets the chain of joints reach farther or less far by more, likewise [m]."""
+"""Largest displacement of the flange by a calibration of the same robot and axes [m]."""
 
 
 def calibrated(joints: Sequence[Joint], path: Path) -> tuple[Joint, ...]:
-    """The joints placed as a calibration file says.
+    """The joints with the poses of a calibration file.
 
-    A single joint may be far from its nominal place, as those of shoulder, elbow and wrist 1,
-    whose axes are nearly parallel, are exchangeable along them; what they come to together, with
-    all joints at zero, may not.
+    A single joint may be far from its nominal pose: shoulder, elbow and wrist 1 have nearly
+    parallel axes, along which their offsets are interchangeable. The flange's pose with all joints
+    at zero may not be far from the nominal one.
 
     Args:
-        joints: Of the robot, parents before children; names may have a prefix.
-        path: A file as ur_calibration writes it, with `kinematics:` at the top.
+        joints: The robot's joints, parents before children; names may have a prefix.
+        path: A file of ur_calibration, with `kinematics:` at the top.
 
     Raises:
-        SpecError: The file is none, or of another robot; at line and column.
+        SpecError: The file is invalid, or of another robot; at line and column.
     """
     root = read_data(path, ("kinematics",), "UR calibration")
     entry = root.mapping().get("kinematics")
@@ -80,7 +80,7 @@ def _pose(section: Located) -> SE3:
 
 
 def _flange(joints: Sequence[Joint], placed: dict[str, SE3]) -> SE3:
-    """Pose of the last of some joints in the first one's parent, all at zero."""
+    """Pose of the last joint's child in the first joint's parent, with all joints at zero."""
     pose = SE3.identity()
     for joint in joints:
         if joint.name in placed:

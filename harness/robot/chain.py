@@ -1,4 +1,4 @@
-"""The joints that carry a link, as arithmetic: where the link is, and how far it can come."""
+"""Kinematics of the chain that carries a link: pose, Jacobian and reach."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from harness.core.types import BoolArray, FloatArray
 from harness.robot.description import Joint, RobotDescription
 
 HOME = "home"
-"""The named state that counterexamples are shrunk towards, where the arm has it."""
+"""Named state that counterexamples shrink towards, if the arm has it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """A planning group's joints from the world to a link; what else moves stands at its start.
+    """A planning group's joints from the world to a link; other joints are at their start position.
 
     Attributes:
         description: The robot.
-        link: The one that is placed.
-        joint_names: Of the group, from base to tip.
-        lower: Position limits, shape (dof,) [rad or m]; -pi for a continuous joint.
-        upper: Shape (dof,); pi for a continuous joint.
+        link: The link at the chain's end.
+        joint_names: Joints of the group, from base to tip.
+        lower: Lower position limits, shape (dof,) [rad or m]; -pi for a continuous joint.
+        upper: Upper position limits, shape (dof,) [rad or m]; pi for a continuous joint.
         is_turning: False for prismatic joints, shape (dof,).
-        home: Named state `home`, or where runs start, shape (dof,).
+        home: Named state `home`, or the start positions of runs, shape (dof,).
         way: All joints between the world and the link, fixed ones included.
-        before: Pose of each joint's frame in the one before it, that joint at zero.
-        axes: Of the joints, in their frames, shape (dof, 3).
+        before: Pose of each joint's frame at zero in the previous joint's frame.
+        axes: Axes of the joints in their frames, shape (dof, 3).
         tip: Pose of the link in the last joint's frame.
     """
 
@@ -50,7 +50,7 @@ class Chain:
         """The chain of a group; by default the arm's, up to its TCP.
 
         Raises:
-            RobotError: There is no such group or link, or the group does not carry the link.
+            RobotError: The group or link is unknown, or the group does not carry the link.
         """
         group, link = group or description.arm_group, link or description.tcp_link
         if not group:
@@ -77,17 +77,15 @@ class Chain:
         if len(before) < len(names) or not names:
             raise RobotError(f"the joints of group '{group}' do not all carry '{link}'")
         joints = [description.joint_by_name[name] for name in names]
-        bounded = [(max(each.lower, -np.pi), min(each.upper, np.pi))
-                   if each.kind == "continuous" else (each.lower, each.upper)
-                   for each in joints]  # fmt: skip
+        widest = [np.pi if each.kind == "continuous" else np.inf for each in joints]
         states = description.states_of(group)
         home = states[HOME].positions if HOME in states else {}
         return cls(
             description,
             link,
             names,
-            np.array([low for low, _ in bounded]),
-            np.array([high for _, high in bounded]),
+            np.array([max(j.lower, -most) for j, most in zip(joints, widest, strict=True)]),
+            np.array([min(j.upper, most) for j, most in zip(joints, widest, strict=True)]),
             np.array([joint.kind != "prismatic" for joint in joints]),
             np.array([home.get(n, start[description.joint_index[n]]) for n in names]),
             way,
@@ -120,7 +118,7 @@ class Chain:
         return np.stack(columns, axis=2), rotations
 
     def whole(self, joint_positions: FloatArray) -> FloatArray:
-        """Positions of the whole robot in description order, the rest as at the start of a run."""
+        """Positions of the whole robot in description order; other joints are at their start."""
         whole = self.description.start_positions()
         for name, position in zip(self.joint_names, joint_positions, strict=True):
             whole[self.description.joint_index[name]] = position
@@ -129,8 +127,8 @@ class Chain:
     def farthest(self) -> tuple[FloatArray, float]:
         """A sphere that the last joint's frame cannot leave: centre (3,) and radius [m].
 
-        The centre is the origin of the last joint whose place no joint before it changes; from
-        there on lengths add up at most (triangle inequality), whatever the limits.
+        The centre is the origin of the last joint that no previous joint moves. From there on the
+        link lengths add up at most (triangle inequality), whatever the limits.
         """
         pivot, pose = 0, self.before[0]
         while pivot + 1 < self.dof and self._stays(pivot):
@@ -144,14 +142,14 @@ class Chain:
         return pose.translation, radius
 
     def _stays(self, index: int) -> bool:
-        """Whether the next joint's origin lies on this joint's axis, so that turning leaves it."""
+        """Whether the next joint's origin lies on this joint's axis, so that rotation keeps it."""
         away = np.cross(self.axes[index], self.before[index + 1].translation)
         return bool(self.is_turning[index]) and float(np.linalg.norm(away)) < 1e-9
 
     def _walk(
         self, samples: FloatArray
     ) -> tuple[FloatArray, FloatArray, list[tuple[FloatArray, FloatArray]]]:
-        """The link's rotations and places, and each joint's origin and axis in the world."""
+        """The link's rotations and positions, and each joint's origin and axis in the world."""
         count = len(samples)
         R, p = np.tile(np.eye(3), (count, 1, 1)), np.zeros((count, 3))
         carried: list[tuple[FloatArray, FloatArray]] = []
@@ -168,7 +166,7 @@ class Chain:
 
 
 def motion(joint: Joint, position: float) -> SE3:
-    """What a joint's position adds behind its pose at zero."""
+    """Transform of a joint's frame by its position."""
     if joint.kind == "prismatic":
         return SE3(np.eye(3), position * joint.axis)
     return SE3(rotations_about(joint.axis, np.array([position]))[0], np.zeros(3))
@@ -183,7 +181,7 @@ def rotations_about(axis: FloatArray, angles: FloatArray) -> FloatArray:
 
 
 def _way_to(description: RobotDescription, link: str) -> tuple[Joint, ...]:
-    """The joints between the world and a link, in this order."""
+    """The joints from the world to a link, in this order."""
     before = {joint.child: joint for joint in description.joints}
     found: list[Joint] = []
     while link in before:

@@ -1,4 +1,4 @@
-"""Arm, gripper and base pose put together into one robot that stands in the world."""
+"""Composes arm, gripper and base pose into one robot that is fixed in the world."""
 
 from __future__ import annotations
 
@@ -34,15 +34,15 @@ WORLD = "world"
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """One robot folder, read: an arm or a gripper.
+    """The content of one robot folder: an arm or a gripper.
 
     Attributes:
-        name: As the scenario calls it (the variant, where there is one).
+        name: Its name in the scenario (the variant, if it has variants).
         facts: Its robot.yaml.
         urdf: Its links and joints, with the limits of robot.yaml.
         srdf: Its groups.
-        source: What messages call it.
-        notes: What was ignored or assumed, for people.
+        source: Its name in messages.
+        notes: Notes on ignored elements and assumptions.
     """
 
     name: str
@@ -57,8 +57,8 @@ def compose(arm: Part | None, gripper: Part | None, base: SE3) -> RobotDescripti
     """One description of an arm, a gripper on its flange, or a gripper alone, fixed in the world.
 
     Args:
-        arm: None for a gripper on no arm.
-        gripper: None for an arm without one, or with one of its own.
+        arm: The arm; None for a gripper without an arm.
+        gripper: The gripper; None for an arm without one, or with an integrated one.
         base: T_world_base of the first link.
 
     Raises:
@@ -111,7 +111,7 @@ def compose(arm: Part | None, gripper: Part | None, base: SE3) -> RobotDescripti
 
 
 def _names(first: str) -> Iterator[str]:
-    """A name, and what it is called where that is taken."""
+    """A name, with a suffix if it is taken."""
     yield first
     yield from (f"{first}_{number}" for number in count(2))
 
@@ -130,7 +130,7 @@ def _flange(arm: Part, gripper: Part) -> str:
 
 
 def _mounted(gripper: Part, mount: Mount, flange: str) -> tuple[Link, list[Joint]]:
-    """The gripper's TCP frame, and the joints that hold it and the gripper's root."""
+    """The gripper's TCP frame, and the joints that attach it and the gripper's root."""
     root = gripper.urdf.root
     on_root = SE3.from_xyz_rpy(mount.tcp.xyz, mount.tcp.rpy)
     frame = Link(mount.tcp.link, None)
@@ -173,13 +173,13 @@ def _refuse_clashes(links: list[Link], joints: list[Joint], source: str) -> None
     ):
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
-            raise RobotError(f"{source}: {kind} names are there twice: {', '.join(twice)}")
+            raise RobotError(f"{source}: {kind} names are defined twice: {', '.join(twice)}")
 
 
 def _allowed(
     srdf: Srdf, links: tuple[Link, ...], joints: tuple[Joint, ...], source: str
 ) -> dict[tuple[str, str], str]:
-    """The SRDF's pairs, and neighbours."""
+    """The SRDF's pairs, and adjacent links."""
     names = {link.name for link in links}
     allowed = dict(srdf.disabled)
     for pair in allowed:
@@ -215,7 +215,7 @@ def _cameras(parts: list[Part], links: tuple[Link, ...]) -> dict[str, Camera]:
         for name, facts in part.facts.cameras.items():
             where = f"{Path(part.source) / 'robot.yaml'}: cameras.{name}"
             if name in cameras:
-                raise RobotError(f"{where}: another camera is called '{name}'")
+                raise RobotError(f"{where}: another camera has the name '{name}'")
             if facts.link not in names:
                 near = difflib.get_close_matches(facts.link, names, 1)
                 hint = f"; did you mean '{near[0]}'?" if near else ""
@@ -226,7 +226,7 @@ def _cameras(parts: list[Part], links: tuple[Link, ...]) -> dict[str, Camera]:
 
 
 def _start_state(parts: list[Part], srdf: Srdf) -> Mapping[str, float]:
-    """Start positions of robot.yaml: a named state's, then joints over it."""
+    """Start positions of robot.yaml: a named state, overridden by single joints."""
     positions: dict[str, float] = {}
     for part in parts:
         start = part.facts.start_state

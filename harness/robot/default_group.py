@@ -13,10 +13,10 @@ DEFAULT_GROUP = "arm"
 
 
 def default_srdf(urdf: Urdf, tip_link: str = "") -> Srdf:
-    """One group, from the root to a tip: that given, else the end of the chain of most joints.
+    """One group from the root to a tip: the given link, else the end of the chain of most joints.
 
-    Fingers that follow each other are no part of a chain. Where several chains are longest, it
-    ends where they part, as with fingers that move alone; of several arms it is the first.
+    Fingers that mimic each other are not part of a chain. If several chains are longest, the group
+    ends where they branch, as at fingers that move alone; of several arms it is the first.
     """
     before = {joint.child: joint for joint in urdf.joints}
 
@@ -38,17 +38,17 @@ def default_srdf(urdf: Urdf, tip_link: str = "") -> Srdf:
     if len(tips) > 1:
         others = ", ".join(tips[1:])
         notes.append(
-            f"several arms: '{tips[0]}' ends the one that moves; name another as tcp_link: {others}"
+            f"several arms: the group ends at '{tips[0]}'; other choices of tcp_link: {others}"
         )
     group = SrdfGroup(DEFAULT_GROUP, chains=((urdf.root, tips[0]),))
     return Srdf((group,), notes=tuple(notes))
 
 
 def _without_fingers(chain: Sequence[Joint], joints: Sequence[Joint]) -> Sequence[Joint]:
-    """The chain up to the first of its last joints that move together with joints off the chain.
+    """The chain without its last joints that move together with joints outside the chain.
 
-    A hand closes several fingers by one joint. A joint farther up that others follow, as in an
-    arm with a parallel linkage, is the arm's: joints that move alone come after it.
+    A hand closes several fingers by one joint. A joint farther up that others mimic, as in an arm
+    with a parallel linkage, belongs to the arm: joints that move alone follow it.
     """
     inside = {joint.name for joint in chain}
     leaders = {j.mimic.joint for j in joints if j.mimic and j.name not in inside}
@@ -65,7 +65,7 @@ def _without_fingers(chain: Sequence[Joint], joints: Sequence[Joint]) -> Sequenc
 
 
 def _tips(chains: Sequence[Sequence[Joint]]) -> list[str]:
-    """Last link of the part that the longest chains have in common; of each, if that is still."""
+    """Last link of the part that the longest chains share; of each, if that part cannot move."""
 
     def movable(chain: Sequence[Joint]) -> list[str]:
         return [joint.name for joint in chain if joint.is_movable and joint.mimic is None]

@@ -1,4 +1,4 @@
-"""Link pairs that may touch where no SRDF says: neighbours, and what touches at the start."""
+"""Allowed link pairs of a robot without an SRDF: those in contact at the start."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -18,15 +18,15 @@ from harness.robot.tree import carriers
 from harness.robot.urdf import Urdf
 
 NEARNESS = 0.001
-"""Links this near count as touching [m]: what is in touch by a hair is now and then not."""
+"""Distance up to which links count as touching [m], since contact at distance 0 is not robust."""
 
 
 def touching_pairs(urdf: Urdf, positions: Mapping[str, float]) -> tuple[tuple[str, str], ...]:
-    """Pairs of links that touch at joint positions: neither neighbours nor of one rigid piece.
+    """Pairs of links that touch at joint positions, except adjacent and rigidly connected ones.
 
     Args:
         urdf: The robot.
-        positions: Of the driven joints, by name; mimic joints follow.
+        positions: Positions of the driven joints, by name; mimic joints follow.
     """
     import coal  # here: robots with an SRDF do not need it
 
@@ -54,7 +54,7 @@ def touching_pairs(urdf: Urdf, positions: Mapping[str, float]) -> tuple[tuple[st
 
 
 def adjacent_pairs(links: Iterable[Link], joints: Iterable[Joint]) -> dict[tuple[str, str], None]:
-    """Every link that has a shape with the nearest one before it that has one, in link order."""
+    """Every link with shapes, with its nearest ancestor that has shapes, in link order."""
     shaped = dict.fromkeys(link.name for link in links if link.collisions)
     before = {joint.child: joint.parent for joint in joints}
     found: dict[tuple[str, str], None] = {}
@@ -81,7 +81,7 @@ def link_poses(urdf: Urdf, positions: Mapping[str, float]) -> dict[str, SE3]:
 
 
 def coal_transform(pose: SE3) -> Any:
-    """A pose as Coal's."""
+    """A pose as Coal's transform."""
     import coal
 
     return coal.Transform3s(np.asarray(pose.rotation), np.asarray(pose.translation))

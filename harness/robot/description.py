@@ -1,7 +1,7 @@
-"""The robot as plain data: what URDF, SRDF and robot.yaml say together, composed with its gripper.
+"""The robot as plain data: URDF, SRDF and robot.yaml combined, with its gripper.
 
-One description feeds the planner (Pinocchio, from `urdf`) and the physics (MuJoCo, from `links`
-and `joints`, in doubles).
+The planner (Pinocchio, from `urdf`) and the physics (MuJoCo, from `links` and `joints`, in doubles)
+are built from the same description.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ class Inertial:
     """Mass properties of a link.
 
     Attributes:
-        mass: [kg].
-        center_of_mass: In the link frame [m], shape (3,).
-        inertia: About the centre of mass, link axes [kg m^2], shape (3, 3).
+        mass: Mass [kg].
+        center_of_mass: Centre of mass in the link frame [m], shape (3,).
+        inertia: Inertia about the centre of mass, in link axes [kg m^2], shape (3, 3).
     """
 
     mass: float
@@ -63,14 +63,14 @@ class Joint:
     Attributes:
         pose: T_parent_joint at zero.
         axis: Unit vector in the joint frame, shape (3,).
-        lower: -inf when continuous.
-        upper: inf when continuous.
-        velocity: Limit; inf when the description gives none.
-        acceleration: Limit (joint_limits of robot.yaml, as MoveIt's joint_limits.yaml).
-        effort: Limit from a data sheet.
-        effort_source: Where the effort limit is from.
-        mimic: Set when the joint follows another.
-        command_interfaces: What ros2_control commands of it; here it is driven by its effort.
+        lower: Lower position limit; -inf when continuous.
+        upper: Upper position limit; inf when continuous.
+        velocity: Velocity limit; inf when the description has none.
+        acceleration: Acceleration limit (robot.yaml, as MoveIt's joint_limits.yaml).
+        effort: Effort limit from a data sheet.
+        effort_source: Source of the effort limit.
+        mimic: The relation to the joint that this joint mimics; None for a driven joint.
+        command_interfaces: Its command interfaces in ros2_control; the program commands efforts.
     """
 
     name: str
@@ -103,7 +103,7 @@ class PlanningGroup:
     Attributes:
         joint_names: Its active joints (movable, not mimic, not passive), from base to tip.
         base_link: First link of a chain group, else the common ancestor.
-        tip_link: Last link of a chain group: what pose goals speak of; empty for joint groups.
+        tip_link: Last link of a chain group, which pose goals place; empty for joint groups.
     """
 
     name: str
@@ -128,8 +128,8 @@ class Gripper:
     Attributes:
         group: Its SRDF group.
         joint: The actuated joint; others mimic it.
-        sides: Links of each finger side, by side name (two of them).
-        pads: The link of each side that touches what is grasped, by side name.
+        sides: Links of each of the two finger sides, by side name.
+        pads: The link of each side that touches a grasped object, by side name.
         palm_link: The link that carries the fingers.
         open_position: Joint position with the fingers widest apart.
         closed_position: Joint position with the fingers closest.
@@ -153,13 +153,13 @@ class Gripper:
 
     @property
     def links(self) -> tuple[str, ...]:
-        """Finger links of both sides: the default touch_links of what is attached."""
+        """Finger links of both sides: the default touch_links of attached objects."""
         return tuple(link for side in self.sides.values() for link in side)
 
 
 @dataclass(frozen=True)
 class TrackingTolerances:
-    """Of a JointTrajectoryController, for every joint [rad or m]."""
+    """Tolerances of a JointTrajectoryController for every joint [rad or m]."""
 
     trajectory: float = 0.2
     goal: float = 0.01
@@ -174,25 +174,25 @@ class RobotDescription:
     in the order of `joint_names`.
 
     Attributes:
-        name: As a person calls it (`ur3e`, or `ur3e + rh_p12_rn_a`).
-        urdf: The composed URDF; its root link is `world`, so frames come out in world coordinates.
+        name: Name for users (`ur3e`, or `ur3e + rh_p12_rn_a`).
+        urdf: The composed URDF; its root link is `world`, so poses are in world coordinates.
         srdf: The composed SRDF.
         links: `world` first, then parents before children.
         joints: In the same order as their child links.
-        groups: By name; the arm's group is `arm_group`.
+        groups: Groups by name; the arm's group is `arm_group`.
         named_states: All group states.
-        allowed_collisions: Unordered link pairs (sorted tuples) that are not checked, with reason.
-        arm_group: Default group of motion steps; empty for a gripper on no arm.
-        gripper: None when there is none.
+        allowed_collisions: Link pairs (sorted tuples) that are not checked, with the reason.
+        arm_group: Default group of motion steps; empty for a gripper without an arm.
+        gripper: The gripper; None for a robot without one.
         tcp_link: The link whose pose is "the TCP".
         base_link: First link of the arm.
         start_state: Joint positions by name at the start of a run.
-        cameras: By name, each on a link.
+        cameras: Cameras on links, by name.
         tracking: Tolerances of the trajectory controller.
         ik_solver: `ur`, `open_manipulator_x`, `numeric`, or `auto`: the first of these that fits.
-        position_only_groups: Groups whose pose goals fix the position alone, as MoveIt's
-            `position_only_ik` has it.
-        notes: What of its files was ignored or assumed, for people.
+        position_only_groups: Groups whose pose goals fix the position alone, as with MoveIt's
+            `position_only_ik`.
+        notes: Notes on ignored elements and assumptions.
     """
 
     name: str
@@ -226,7 +226,7 @@ class RobotDescription:
 
     @cached_property
     def joint_index(self) -> Mapping[str, int]:
-        """Place of each movable joint in description order."""
+        """Index of each movable joint in description order."""
         return {name: index for index, name in enumerate(self.joint_names)}
 
     @cached_property
@@ -250,11 +250,11 @@ class RobotDescription:
 
     @property
     def default_group(self) -> str:
-        """What a step moves that names no group: the arm, else the gripper."""
+        """Default group of steps: the arm, else the gripper."""
         return self.arm_group or (self.gripper.group if self.gripper else "")
 
     def group_indices(self, group: str) -> tuple[int, ...]:
-        """Places of a group's joints in description order."""
+        """Indices of a group's joints in description order."""
         return tuple(self.joint_index[name] for name in self.groups[group].joint_names)
 
     def states_of(self, group: str) -> Mapping[str, NamedState]:

@@ -1,4 +1,4 @@
-"""Files and folders that a scenario names for its robot."""
+"""Finds files and folders of a scenario's robot."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def find_file(name: str, key: str, base_dir: Path, given: Sequence[Path]) -> Pat
     """A robot's file: a path from the scenario's folder, or package://name/path.
 
     Raises:
-        RobotError: It is not there.
+        RobotError: It does not exist.
     """
     if name.startswith("package://"):
         try:
@@ -37,7 +37,7 @@ def find_folder(name: str, base_dir: Path) -> Path:
     """A folder of `packages`.
 
     Raises:
-        RobotError: It is not there.
+        RobotError: It does not exist.
     """
     folder = base_dir / Path(name).expanduser()
     if not folder.is_dir():

@@ -1,4 +1,4 @@
-"""Names in a robot's folder that its URDF or SRDF does not have."""
+"""Finds names in robot.yaml and SRDF that the robot does not have."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from harness.robot.urdf import Urdf
 from harness.spec.source import Loc
 
 Unknown = tuple[Loc, str]
-"""Key in robot.yaml, and what is wrong there."""
+"""Key in robot.yaml, and the mistake there."""
 
 
 def unknown_names(facts: RobotYaml, urdf: Urdf, srdf: Srdf) -> Iterator[Unknown]:
-    """Every group, joint and link that robot.yaml names and the robot does not have."""
+    """Every unknown group, joint and link in a robot.yaml."""
     groups = [group.name for group in srdf.groups]
     links = [link.name for link in urdf.links]
     joints = [joint.name for joint in urdf.joints]
@@ -53,7 +53,7 @@ def _unknown(
 
 
 def refuse_incomplete_states(srdf: Srdf, urdf: Urdf, facts: RobotYaml) -> None:
-    """Refuse named states without a joint that they have to place, and with unknown ones.
+    """Refuse named states with unknown joints, or without the joint of the gripper.
 
     Raises:
         SpecError: At the state's place in the SRDF.

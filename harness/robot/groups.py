@@ -1,4 +1,4 @@
-"""Planning groups: the joints that an SRDF's groups come to."""
+"""Planning groups: resolves the groups of an SRDF to joints."""
 
 from __future__ import annotations
 
@@ -11,21 +11,20 @@ from harness.robot.description import Joint, PlanningGroup
 from harness.robot.srdf import Srdf, SrdfGroup
 
 LEAST_ARM = 3
-"""Joints that a group needs to have a tip though it is no chain: fewer make a finger."""
+"""Fewest joints of a group without a chain that has a tip; groups of fewer joints are fingers."""
 
 
 def planning_groups(srdf: Srdf, joints: Sequence[Joint], source: str) -> dict[str, PlanningGroup]:
     """Every group with its active joints from base to tip.
 
     Args:
-        srdf: Whose groups.
-        joints: Of the whole robot, parents before children.
-        source: What messages call the file.
+        srdf: The SRDF with the groups.
+        joints: Joints of the whole robot, parents before children.
+        source: Name of the file in messages.
 
     Raises:
-        SpecError: A group names a joint, link or group that is not there; at its place, where
-            the SRDF was read from a file.
-        RobotError: The same, without a place.
+        SpecError: A group names an unknown joint, link or group; located, for an SRDF from a file.
+        RobotError: The same, for an SRDF without a file.
     """
     by_name = {group.name: group for group in srdf.groups}
     return {group.name: _resolve(group, by_name, joints, srdf, source) for group in srdf.groups}
@@ -42,7 +41,7 @@ def _resolve(
     members = _members(group, groups, joints, virtual, source, ())
     for tool in srdf.end_effectors:
         if tool.parent_group == group.name and tool.group in groups and tool.group != group.name:
-            # A tool is no part of the group that carries it, though its links be listed there.
+            # A tool is not part of the group that carries it, even if that group lists its links.
             members -= _members(groups[tool.group], groups, joints, virtual, source, ())
     active = tuple(
         joint.name
@@ -73,7 +72,7 @@ def _chain(base: str, tip: str, joints: Sequence[Joint]) -> set[str]:
 
 
 def _serial_tip(inside: Sequence[Joint]) -> str:
-    """Last link of joints that follow each other without a gap; empty where they do not."""
+    """Last link of joints that form a chain; empty when they do not."""
     for before, after in pairwise(inside):
         if after.parent != before.child:
             return ""
@@ -90,7 +89,7 @@ def _members(
 ) -> set[str]:
     """Names of all joints of a group, fixed and mimic ones included.
 
-    A virtual joint may be a member: it holds the robot in the world and never moves.
+    A virtual joint may be a member: it fixes the robot in the world and never moves.
     """
     by_child = {joint.child: joint for joint in joints}
     names = {joint.name for joint in joints} | set(virtual)
@@ -116,8 +115,8 @@ def _members(
         if name not in groups:
             _refuse(group, "group", name, f"names the unknown group '{name}'", source)
         if name in circle:
-            told = " - ".join((*circle[circle.index(name) :], name))
-            _refuse(group, "group", name, f"groups hold each other in a circle: {told}", source)
+            cycle = " - ".join((*circle[circle.index(name) :], name))
+            _refuse(group, "group", name, f"groups contain each other in a circle: {cycle}", source)
         members |= _members(groups[name], groups, joints, virtual, source, (*seen, group.name))
     return members
 

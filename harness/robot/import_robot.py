@@ -1,4 +1,4 @@
-"""A robot from files of its own: finds and reads them, and holds one against the other."""
+"""Imports a robot from the user's files, and checks them against each other."""
 
 from __future__ import annotations
 
@@ -12,29 +12,29 @@ from harness.robot.default_group import DEFAULT_GROUP, default_srdf
 from harness.robot.description import NamedState
 from harness.robot.find_file import find_file, find_folder
 from harness.robot.imported_part import imported_part
-from harness.robot.mass import refuse_weightless
 from harness.robot.mjcf import read_mjcf
 from harness.robot.packages import PackagePath
 from harness.robot.srdf import Srdf, parse_srdf
 from harness.robot.srdf_check import checked_srdf
+from harness.robot.tree import carriers
 from harness.robot.urdf import Urdf, parse_urdf
 from harness.robot.xacro_file import render
 from harness.spec.scenario import RobotSpec
 from harness.spec.xml_file import read_bounded
 
-ROOT_CALLED_WORLD = "robot_world"
-"""What a robot's own root link is called that had the name of ours."""
+RENAMED_ROOT = "robot_world"
+"""New name of a robot's root link that is named `world`, like the root of every composed robot."""
 
 
 def read_robot(spec: RobotSpec, base_dir: Path) -> Part:
-    """The robot of `urdf:`, `xacro:` or `mjcf:`, with what its SRDF says, or a plain one without.
+    """The robot of `urdf:`, `xacro:` or `mjcf:`, with its SRDF or a default one.
 
     Args:
         spec: The scenario's `robot:`.
-        base_dir: The scenario's folder, where relative names start.
+        base_dir: The scenario's folder, to which paths are relative.
 
     Raises:
-        SpecError: A file says what cannot be meant; at its line and column.
+        SpecError: A file has mistakes; at line and column.
         RobotError: A file is not found, or an option does not fit it.
     """
     key = next(key for key in ("urdf", "xacro", "mjcf") if getattr(spec, key) is not None)
@@ -50,8 +50,8 @@ def read_robot(spec: RobotSpec, base_dir: Path) -> Part:
         is_xacro = key == "xacro"
         text = render(path, spec.args, packages).encode() if is_xacro else read_bounded(path)
         urdf, states, excluded = parse_urdf(text, path.parent, str(path), packages), (), {}
-    urdf = _own_world(urdf)
-    refuse_weightless(urdf, str(path))
+    urdf = _without_world(urdf)
+    _refuse_weightless(urdf, str(path))
     srdf, source = _srdf(spec, urdf, states, path, base_dir, given)
     part = imported_part(spec, urdf, srdf, path, source)
     allowed = {**excluded, **part.srdf.disabled}
@@ -66,44 +66,68 @@ def _srdf(
     base_dir: Path,
     given: Sequence[Path],
 ) -> tuple[Srdf, str]:
-    """The SRDF, and what messages call it; keyframes of an MJCF are states of its groups."""
+    """The SRDF, and its name in messages; keyframes of an MJCF become states of its groups."""
     if spec.srdf is None:
         srdf = default_srdf(urdf, spec.tcp_link or "")
         named = tuple(replace(state, group=DEFAULT_GROUP) for state in states)
         return replace(srdf, states=named), str(path)
     found = find_file(spec.srdf, "srdf", base_dir, given)
     parsed = parse_srdf(read_bounded(found), str(found))
-    if urdf.root == ROOT_CALLED_WORLD:
-        parsed = _with_own_world(parsed)
+    if urdf.root == RENAMED_ROOT:
+        parsed = _with_renamed_root(parsed)
     parsed = replace(parsed, states=(*parsed.states, *states))
     return checked_srdf(parsed, urdf, str(found)), str(found)
 
 
-def _own_world(urdf: Urdf) -> Urdf:
-    """The tree with its root renamed where that is called as ours."""
+def _without_world(urdf: Urdf) -> Urdf:
+    """The tree with a link named `world` renamed."""
     if WORLD not in {link.name for link in urdf.links} or ("link", WORLD) not in urdf.elements:
         return urdf
 
     def name(link: str) -> str:
-        return ROOT_CALLED_WORLD if link == WORLD else link
+        return RENAMED_ROOT if link == WORLD else link
 
     links = tuple(replace(link, name=name(link.name)) for link in urdf.links)
     joints = tuple(
         replace(joint, parent=name(joint.parent), child=name(joint.child)) for joint in urdf.joints
     )
-    elements = {**urdf.elements, ("link", ROOT_CALLED_WORLD): urdf.elements["link", WORLD]}
+    elements = {**urdf.elements, ("link", RENAMED_ROOT): urdf.elements["link", WORLD]}
     return replace(urdf, links=links, joints=joints, elements=elements)
 
 
-def _with_own_world(srdf: Srdf) -> Srdf:
-    """Chains that began at the root begin at its new name."""
+def _with_renamed_root(srdf: Srdf) -> Srdf:
+    """The SRDF with chains from the renamed root."""
     groups = tuple(
         replace(
             group,
             chains=tuple(
-                (ROOT_CALLED_WORLD if base == WORLD else base, tip) for base, tip in group.chains
+                (RENAMED_ROOT if base == WORLD else base, tip) for base, tip in group.chains
             ),
         )
         for group in srdf.groups
     )
     return replace(srdf, groups=groups)
+
+
+def _refuse_weightless(urdf: Urdf, source: str) -> None:
+    """Refuse a robot with a massless rigid group that a joint moves.
+
+    Raises:
+        SpecError: A group has no mass; at the link's `<mass>`, or at the link without one.
+    """
+    carrier = carriers(urdf.joints, urdf.root)
+    masses = {carrier[link.name]: 0.0 for link in urdf.links}
+    for link in urdf.links:
+        if link.inertial is not None:
+            masses[carrier[link.name]] += link.inertial.mass
+    for first, mass in masses.items():
+        if mass > 0 or first == urdf.root:
+            continue
+        message = f"link '{first}' moves and weighs nothing"
+        hint = "give it an <inertial> with its mass [kg] and inertia [kg m^2]"
+        element = urdf.elements.get(("link", first))
+        if element is None:
+            raise RobotError(f"{source}: {message}; {hint}")
+        inertial = element.find("inertial")
+        written = None if inertial is None else inertial.find("mass")
+        (written or element).refuse(message, hint, at="value" if written else "name")

@@ -1,4 +1,4 @@
-"""What the robot.yaml of an imported robot would say, from its URDF and SRDF."""
+"""Derives the content of robot.yaml for an imported robot from its URDF and SRDF."""
 
 from __future__ import annotations
 
@@ -22,33 +22,33 @@ from harness.robot.urdf import Urdf
 from harness.spec.scenario import RobotSpec, StartState
 
 ACCELERATION = {"prismatic": 1.0}
-"""Acceleration limits that no URDF says [m/s^2]."""
+"""Acceleration limit of prismatic joints, which URDF lacks [m/s^2]."""
 
 TURNING_ACCELERATION = 5.0
-"""The same for turning joints [rad/s^2]: what MoveIt's Setup Assistant leads people to write."""
+"""Acceleration limit of revolute joints [rad/s^2], as MoveIt's Setup Assistant suggests."""
 
 VELOCITY = {"prismatic": 0.2}
-"""Velocity limits where the file gives none [m/s]."""
+"""Velocity limit of prismatic joints without one in the file [m/s]."""
 
 TURNING_VELOCITY = 1.5
-"""The same for turning joints [rad/s]."""
+"""Velocity limit of revolute joints without one in the file [rad/s]."""
 
 START_STATES = ("home", "ready", "start", "default", "init", "rest")
-"""Names of group states that an imported arm stands in at the start, the first that is there."""
+"""Names of start states of an imported arm, in order of preference."""
 
 
 def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: str) -> Part:
-    """The robot as a folder with a robot.yaml would describe it.
+    """The robot in the form of a folder with a robot.yaml.
 
     Args:
         spec: The scenario's `robot:`.
         urdf: The robot.
         srdf: Checked against it.
-        path: Of the robot's file.
-        source: What messages call the SRDF.
+        path: The robot's file.
+        source: Name of the SRDF in messages.
 
     Raises:
-        RobotError: There is no arm, or an option names what the robot has not.
+        RobotError: There is no arm, or an option refers to an unknown name.
     """
     notes = [*urdf.notes, *srdf.notes]
     urdf = replace(urdf, joints=tuple(_limited(joint, notes) for joint in urdf.joints))
@@ -77,7 +77,7 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
         except NoGripperError as error:
             if spec.gripper is not None:
                 raise RobotError(
-                    f"robot.gripper: '{spec.gripper}' is no gripper: {error}"
+                    f"robot.gripper: '{spec.gripper}' is not a gripper: {error}"
                 ) from error
             notes.append(f"'{hand.name}' is not used as a gripper: {error}")
     facts = RobotYaml(
@@ -98,14 +98,14 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
 
 
 def names_own_gripper(name: str | None, srdf: Srdf) -> bool:
-    """Whether a scenario's `gripper` is a group or an end effector of the robot's own."""
+    """Whether a scenario's `gripper` is a group or an end effector of the robot itself."""
     return name in {group.name for group in srdf.groups} | {t.name for t in srdf.end_effectors}
 
 
 def _hand(
     spec: RobotSpec, srdf: Srdf, groups: Mapping[str, PlanningGroup], arm: PlanningGroup
 ) -> PlanningGroup | None:
-    """The group of the hand: named, or that of the arm's end effector."""
+    """The group of the hand: the named one, or that of the arm's end effector."""
     if spec.gripper is not None:
         if not names_own_gripper(spec.gripper, srdf):
             return None
@@ -126,7 +126,7 @@ def _listed(pairs: Sequence[tuple[str, str]]) -> str:
 
 
 def _limited(joint: Joint, notes: list[str]) -> Joint:
-    """A joint with the limits that its file does not give."""
+    """A joint with defaults for the limits that its file lacks."""
     if not joint.is_movable:
         return joint
     joint = replace(
@@ -145,7 +145,7 @@ def _limited(joint: Joint, notes: list[str]) -> Joint:
 def _arm_group(
     spec: RobotSpec, srdf: Srdf, groups: Mapping[str, PlanningGroup], source: str
 ) -> PlanningGroup:
-    """The group that motion steps speak of by default."""
+    """The default group of motion steps."""
     movable = {name: group for name, group in groups.items() if group.joint_names}
     if spec.group is not None:
         if spec.group not in movable:

@@ -1,4 +1,4 @@
-"""Whether a robot's masses and inertias are those of bodies."""
+"""Checks whether a robot's masses and inertias are physically possible."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ LONGEST_GYRATION = 2.0
 MANY = 3
 
 FEATHER = 1e-3
-"""Links of less than this are frames that were given a mass for a library's sake [kg]."""
+"""Lighter links are frames that have a mass because a library requires one [kg]."""
 
 
 def mass_problems(description: RobotDescription) -> list[str]:
-    """What no rigid body can have, a line a link; of links that weigh anything."""
+    """Physically impossible mass properties, one line per link."""
     heavy = [
         link.name for link in description.links if link.inertial and link.inertial.mass > FEATHER
     ]
-    mended = [
+    corrected = [
         note
         for note in description.notes
         if NO_BODY in note and any(note.startswith(f"link '{name}':") for name in heavy)
     ]
-    return mended + [
+    return corrected + [
         f"link '{link.name}': {problem}"
         for link in description.links
         if link.inertial is not None
@@ -39,7 +39,7 @@ def mass_problems(description: RobotDescription) -> list[str]:
 
 
 def mass_notes(description: RobotDescription) -> list[str]:
-    """What looks like a placeholder, or cannot be right for a link of an arm."""
+    """Mass properties that are placeholders or implausible for a link of an arm."""
     moving = [link for link in description.links if link.name not in description.static_links]
     known = [link for link in moving if link.inertial is not None]
     notes = [
@@ -52,7 +52,7 @@ def mass_notes(description: RobotDescription) -> list[str]:
 
 
 def principal_moments(inertial: Inertial) -> tuple[float, float, float]:
-    """Smallest to largest [kg m^2]."""
+    """Principal moments in ascending order [kg m^2]."""
     least, middle, most = (float(value) for value in np.linalg.eigvalsh(inertial.inertia))
     return least, middle, most
 
@@ -89,7 +89,7 @@ def _doubtful(inertial: Inertial) -> list[str]:
 
 
 def _same_for_many(links: Sequence[Link]) -> list[str]:
-    """Links of several shapes that weigh and turn exactly alike."""
+    """Notes on links of different shapes with equal mass and inertia."""
     counts = Counter(
         (link.inertial.mass, tuple(link.inertial.inertia.ravel()))
         for link in links

@@ -1,4 +1,4 @@
-"""Robots by name or folder: what a scenario's `robot:` becomes."""
+"""Loads the robot of a scenario's `robot:`, by name, folder or file."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ OF_FILES = ("srdf", "packages", "group", "tcp_link", "flange_link")
 
 @lru_cache(maxsize=1)
 def _catalogue() -> dict[str, tuple[Path, RobotYaml]]:
-    """Every bundled model name, variants in place of their family, with its folder and facts."""
+    """Every bundled model name (variants instead of families) with its folder and robot.yaml."""
     models: dict[str, tuple[Path, RobotYaml]] = {}
     for path in sorted(data_folder("robots").glob("*/robot.yaml")):
         facts = read_robot_yaml(path.parent)
@@ -51,10 +51,10 @@ def robot_names() -> tuple[str, ...]:
 
 
 def read_bundled(names: Collection[str]) -> None:
-    """Read bundled robots and grippers ahead: this process, and its forks, do not read them again.
+    """Read bundled robots and grippers in advance, for this process and its forks.
 
     Args:
-        names: Those that are not bundled are left out.
+        names: Names of robots; those that are not bundled are skipped.
     """
     for name in _catalogue():
         if name in names:
@@ -67,17 +67,17 @@ def gripper_names() -> tuple[str, ...]:
 
 
 def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
-    """The robot that a scenario asks for, composed and with its options applied.
+    """The robot of a scenario, composed and with its options applied.
 
     Args:
         spec: The scenario's `robot:`.
-        base_dir: Where a `model` or `gripper` that is a path starts: the scenario's folder.
+        base_dir: The scenario's folder, to which paths in `model` and `gripper` are relative.
 
     Raises:
-        RobotError: The robot is not known, its files cannot be used, or an option does not fit it.
+        RobotError: The robot is unknown, its files cannot be used, or an option does not fit it.
     """
     if spec.base.frame != "world":
-        raise RobotError(f"robot.base stands in the frame 'world', not in '{spec.base.frame}'")
+        raise RobotError(f"robot.base is a pose in the frame 'world', not in '{spec.base.frame}'")
     main = _main(spec, base_dir)
     tool = None
     if spec.gripper is not None and not (main and _is_own(main, spec.gripper)):
@@ -106,17 +106,17 @@ def _calibrated(main: Part | None, path: Path) -> Part:
 
 
 def _main(spec: RobotSpec, base_dir: Path) -> Part | None:
-    """The arm, or the gripper that stands alone; None where only `gripper` is given."""
+    """The arm, or a gripper without an arm; None when only `gripper` is given."""
     if spec.urdf is not None or spec.xacro is not None or spec.mjcf is not None:
         return read_robot(spec, base_dir)
     for key in OF_FILES:
         if getattr(spec, key):
-            raise RobotError(f"robot.{key} goes with a robot's file: `urdf`, `xacro` or `mjcf`")
+            raise RobotError(f"robot.{key} requires a robot's file: `urdf`, `xacro` or `mjcf`")
     return None if spec.model is None else _part(spec.model, "model", spec.args, base_dir)
 
 
 def _is_own(main: Part, gripper: str) -> bool:
-    """Whether a name is that of an imported arm's own gripper."""
+    """Whether a name is that of an imported arm's integrated gripper."""
     return main.facts.gripper is not None and names_own_gripper(gripper, main.srdf)
 
 
@@ -163,7 +163,7 @@ def _read(
         path = folder / (facts.urdf or "")
         text = _text(path)
         if args:
-            raise RobotError(f"robot.args: '{name}' is no xacro file and takes no arguments")
+            raise RobotError(f"robot.args: '{name}' is not a xacro file and takes no arguments")
     packages = PackagePath.of_file(path, [find_folder(each, folder) for each in facts.packages])
     urdf = parse_urdf(text, folder, str(path), packages)
     urdf = replace(urdf, joints=tuple(_with_facts(joint, facts) for joint in urdf.joints))
@@ -205,7 +205,7 @@ def _rendered(
 
 
 def _with_facts(joint: Joint, facts: RobotYaml) -> Joint:
-    """A joint with what robot.yaml says of its limits."""
+    """A joint with the limits of robot.yaml."""
     if not joint.is_movable:
         return joint
     known = facts.joints.get(joint.name)

@@ -1,7 +1,7 @@
 """Mesh files (STL, OBJ, DAE) as triangles and convex hulls, the same for planner and physics.
 
-Read by Coal, which brings Assimp, as MoveIt and RViz do: as there, a COLLADA file's `up_axis` is
-not applied, and its `unit` is.
+Coal reads them with Assimp, as MoveIt and RViz do. As there, a COLLADA file's `unit` is applied and
+its `up_axis` is not.
 """
 
 # pyright: reportAttributeAccessIssue=false
@@ -21,7 +21,7 @@ from harness.core.types import FloatArray, IntArray
 
 SUFFIXES = (".stl", ".obj", ".dae")
 LARGEST_FILE = 64_000_000
-"""Bytes of a mesh file at most."""
+"""Largest mesh file [bytes]."""
 
 HEADER = 20_000
 UNIT = re.compile(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']\s*([0-9.eE+-]+)\s*[\"']")
@@ -34,8 +34,8 @@ class Triangles:
     """A mesh.
 
     Attributes:
-        vertices: Shape (N, 3) [m].
-        faces: Shape (M, 3), indices of vertices.
+        vertices: Vertices, shape (N, 3) [m].
+        faces: Indices of vertices, shape (M, 3).
     """
 
     vertices: FloatArray
@@ -47,7 +47,7 @@ def read_triangles(geometry: Mesh) -> Triangles:
     """All triangles of a file, for pictures.
 
     Raises:
-        RobotError: The file is of a kind that is not read, too large, or damaged.
+        RobotError: The file is of an unsupported kind, too large, or damaged.
     """
     model = _load(geometry)
     corners = [model.tri_indices(number) for number in range(model.num_tris)]
@@ -57,7 +57,7 @@ def read_triangles(geometry: Mesh) -> Triangles:
 
 @lru_cache(maxsize=128)
 def exact_surface(geometry: Mesh) -> Any:
-    """All triangles of a file as Coal's: the surface alone.
+    """All triangles of a file as Coal's geometry, a surface.
 
     Raises:
         RobotError: As `read_triangles`.
@@ -67,7 +67,7 @@ def exact_surface(geometry: Mesh) -> Any:
 
 @lru_cache(maxsize=512)
 def convex_hull(geometry: Mesh) -> Any:
-    """The convex hull of a file's points as Coal's: the solid that touches things.
+    """The convex hull of a file's points as Coal's geometry, a solid.
 
     Raises:
         RobotError: As `read_triangles`; or the mesh is flat.
@@ -87,7 +87,7 @@ def hull_points(geometry: Mesh) -> FloatArray:
 
 
 def _load(geometry: Mesh) -> Any:
-    import coal  # here: most robots are known without their meshes
+    import coal  # here: most robots are loaded without their meshes
 
     path = geometry.path
     scale = np.array(geometry.scale, dtype=float) * unit_of(geometry)
@@ -95,22 +95,24 @@ def _load(geometry: Mesh) -> Any:
         model = coal.MeshLoader().load(str(path), scale)
     except (RuntimeError, ValueError) as error:
         kind = path.suffix[1:].upper()
-        raise RobotError(f"{path.name} cannot be read: it is no {kind} file, or damaged") from error
+        raise RobotError(
+            f"{path.name} cannot be read: it is damaged or not in {kind} format"
+        ) from error
     if model.num_tris == 0 or not np.isfinite(model.vertices()).all():
         raise RobotError(f"{path.name} has no triangles")
     return model
 
 
 def unit_of(geometry: Mesh) -> float:
-    """Metres of a COLLADA file's unit; 1 for other files, which are taken in metres.
+    """Metres of a COLLADA file's unit; 1 for other files, which are in metres.
 
     Raises:
-        RobotError: The file is none that is read: its kind, its size, entities in it.
+        RobotError: The file is of an unsupported kind, too large, or declares entities.
     """
     path = geometry.path
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
-        raise RobotError(f"{path.name} is no STL, OBJ or DAE file")
+        raise RobotError(f"{path.name} is not an STL, OBJ or DAE file")
     try:
         size = path.stat().st_size
         with path.open("rb") as file:
@@ -123,7 +125,7 @@ def unit_of(geometry: Mesh) -> float:
     if suffix != ".dae":
         return 1.0
     if ROOT not in header:
-        raise RobotError(f"{path.name} is no COLLADA file")
+        raise RobotError(f"{path.name} is not a COLLADA file")
     if DECLARATION.search(header):
         raise RobotError(f"{path.name} declares a document type or entities, which are not read")
     found = UNIT.search(header)

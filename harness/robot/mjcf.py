@@ -25,7 +25,7 @@ from harness.spec.source import Source
 from harness.spec.xml_file import XmlElement
 
 ROOT = "robot_world"
-"""The link that the bodies of MJCF's own world body are fixed to."""
+"""The link to which the bodies of MJCF's world body are fixed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class Mjcf:
 
     Attributes:
         urdf: Its tree.
-        states: Keyframes, of the driven joints by name; their group is empty.
+        states: Keyframes as states of the driven joints; their group is empty.
         disabled: Pairs that the file excludes from contact.
     """
 
@@ -46,12 +46,12 @@ class Mjcf:
 def read_mjcf(path: Path, packages: PackagePath) -> Mjcf:
     """Read an MJCF file as MuJoCo compiles it.
 
-    Actuators are not read but for their force limits: the program drives every joint itself.
+    Only the force limits of actuators are read: the program drives every joint with its own servo.
 
     Raises:
         SpecError: A file cannot be read, or MuJoCo refuses it; at line and column where known.
     """
-    import mujoco  # here: other robots are known without it
+    import mujoco  # here: other robots do not need it
 
     roots = read_tree(path, packages)
     elements = {
@@ -74,7 +74,7 @@ def read_mjcf(path: Path, packages: PackagePath) -> Mjcf:
 
 
 def _problem(message: str, root: XmlElement, path: Path) -> Problem:
-    """What MuJoCo said, at the line that it names."""
+    """MuJoCo's message, at the line that it names."""
     lines = [line for line in message.splitlines() if line.strip()]
     text = lines[0].removeprefix("Error: ").removeprefix("XML Error: ")
     found = re.search(r"line (\d+)", message)
@@ -87,7 +87,7 @@ def _problem(message: str, root: XmlElement, path: Path) -> Problem:
 
 @dataclass(eq=False)
 class _Reader:
-    """Takes a compiled model apart."""
+    """Converts a compiled model to links and joints."""
 
     model: Any
     spec: Any
@@ -115,8 +115,8 @@ class _Reader:
             links += links_between(between, count, own)
             joints += chain
         if dropped:
-            told = ", ".join(dropped)
-            self.notes.append(f"bodies that are free or no part of the arm are left out: {told}")
+            names_out = ", ".join(dropped)
+            self.notes.append(f"bodies that are free or outside the arm are left out: {names_out}")
         self._sites(names, links, joints)
         self._count_ignored()
         return links, with_mimics(model, joints, self.notes)
@@ -126,7 +126,7 @@ class _Reader:
         return any(int(self.model.jnt_type[first + k]) in (0, 1) for k in range(count))
 
     def _sites(self, names: Mapping[int, str], links: list[Link], joints: list[Joint]) -> None:
-        """Sites as frames, where no body has their name."""
+        """Add sites as frames, except those with the name of a body."""
         model, taken = self.model, {link.name for link in links}
         for number in range(model.nsite):
             name, body = model.site(number).name, int(model.site_bodyid[number])
@@ -143,7 +143,7 @@ class _Reader:
             (model.ntendon, "tendons are ignored"),
             (model.nsensor, "sensors are ignored"),
             (_with_own_dynamics(model), "joints have an armature or a spring, which is ignored"),
-            (int(model.body_geomnum[0]), "geoms of the world body are no part of the robot"),
+            (int(model.body_geomnum[0]), "geoms of the world body are not part of the robot"),
         ):
             if count:
                 self.notes.append(f"{count} {what}")
@@ -176,6 +176,6 @@ class _Reader:
 
 
 def _with_own_dynamics(model: Any) -> int:
-    """How many joints have a motor's inertia or a spring."""
+    """Number of joints with an armature or a spring."""
     springs = np.reshape(model.jnt_stiffness, (model.njnt, -1)).any(axis=1)
     return int((springs | (model.dof_armature[model.jnt_dofadr] > 0)).sum())

@@ -1,11 +1,12 @@
-"""The XML of an MJCF robot and of all files it includes, held inside the given folders."""
+"""Reads the XML of an MJCF robot and of its includes, within the given folders."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from harness.robot.mesh_file import LARGEST_FILE
-from harness.robot.mjcf_bounds import refuse_unbounded
 from harness.robot.packages import NotFoundError, PackagePath
 from harness.spec.xml_file import XmlElement, read_xml
 
@@ -14,21 +15,45 @@ MOST_FILES = 200
 ASSETS = {"mesh": "meshdir", "texture": "texturedir", "hfield": "meshdir", "skin": "meshdir"}
 TEXTURE_SIDES = ("file", "fileright", "fileup", "fileleft", "filedown", "filefront", "fileback")
 
+USER_DATA = ("body", "jnt", "geom", "site", "cam", "tendon", "actuator", "sensor")
+MOST: Mapping[str, Mapping[str, int]] = {
+    "texture": {"width": 8192, "height": 8192 * 6},
+    "hfield": {"nrow": 2048, "ncol": 2048},
+    "mesh": {"params": 100},
+    "size": dict.fromkeys(
+        ("nkey", "nuserdata", *(f"nuser_{kind}" for kind in USER_DATA)),
+        1000,
+    ),
+}
+"""Largest numbers in attributes, by element; MuJoCo would allocate any amount of memory for them.
+
+The height of a cube's texture covers six sides.
+"""
+
+MOST_COPIES = 1000
+"""Most copies by all `<replicate>` together."""
+
+UNUSED = {
+    "composite": "deformable bodies are not part of an arm",
+    "flexcomp": "deformable bodies are not part of an arm",
+    "extension": "plugins are not loaded",
+    "model": "models of other files are not attached",
+}
+
 
 def read_tree(path: Path, packages: PackagePath) -> list[XmlElement]:
-    """The root elements of a file and of what it includes, each once, the file's own first.
+    """The root elements of a file and of its includes, each once, the file's own first.
 
     Raises:
-        SpecError: A file cannot be read, includes itself, is no MJCF, or names a file that is not
-            there or outside the folders that may be read, or asks for more memory than a robot
-            needs; at line and column.
+        SpecError: A file cannot be read, includes itself, is not MJCF, refers to a file that does
+            not exist or may not be read, or needs too much memory; at line and column.
     """
     roots: list[XmlElement] = []
     _include(path, packages, (), roots)
     top = roots[0]
     if top.tag != "mujoco":
         top.refuse(f"the root element is <{top.tag}>, an MJCF's is <mujoco>")
-    refuse_unbounded(roots)
+    _refuse_unbounded(roots)
     folders = _folders(roots, path.parent)
     for root in roots:
         for item in root.walk():
@@ -43,7 +68,7 @@ def read_tree(path: Path, packages: PackagePath) -> list[XmlElement]:
 def _include(
     path: Path, packages: PackagePath, above: tuple[Path, ...], roots: list[XmlElement]
 ) -> None:
-    """A file's root element, and those of what it includes, added to `roots`."""
+    """Add a file's root element, and those of its includes, to `roots`."""
     root = read_xml(path)
     roots.append(root)
     for item in root.walk():
@@ -51,7 +76,7 @@ def _include(
             continue
         name = item.need("file")
         try:
-            # MuJoCo starts every include at the folder of the first file.
+            # MuJoCo resolves every include from the folder of the first file.
             inside = packages.file(name, (above[0] if above else path).parent)
         except NotFoundError as error:
             item.refuse(str(error), at="file")
@@ -67,7 +92,7 @@ def _include(
 
 
 def _folders(roots: list[XmlElement], folder: Path) -> dict[str, Path]:
-    """Where meshes and textures are, by the compiler's words for them."""
+    """Folders of meshes and textures, by the compiler's attribute."""
     found = {"meshdir": folder, "texturedir": folder}
     for compiler in (item for root in roots for item in root.findall("compiler")):
         for key in found:
@@ -86,3 +111,31 @@ def _check(item: XmlElement, key: str, folder: Path, packages: PackagePath) -> N
     if size > LARGEST_FILE:
         most = LARGEST_FILE / 1e6
         item.refuse(f"{path.name} has {size / 1e6:.0f} MB; at most {most:.0f} MB are read", at=key)
+
+
+def _refuse_unbounded(roots: Sequence[XmlElement]) -> None:
+    """Refuse elements that a robot does not need, and numbers above their limits.
+
+    Raises:
+        SpecError: An element or number is refused; at the element or its attribute.
+    """
+    copies = 1.0
+    for item in (item for root in roots for item in root.walk()):
+        if item.tag in UNUSED:
+            item.refuse(UNUSED[item.tag], f"remove the <{item.tag}>")
+        for name, most in MOST.get(item.tag, {}).items():
+            if max(_numbers(item.get(name)), default=0.0) > most:
+                item.refuse(f"<{item.tag}> has a {name} above {most}", at=name)
+        if item.tag == "replicate":
+            copies *= max(_numbers(item.get("count")), default=1.0)
+            if copies > MOST_COPIES:
+                item.refuse(f"more than {MOST_COPIES} copies are made", at="count")
+
+
+def _numbers(text: str) -> list[float]:
+    """The numbers of an attribute; text that is not a number counts as infinite."""
+    try:
+        values = [float(word) for word in text.split()]
+    except ValueError:
+        return [math.inf]
+    return [math.inf if math.isnan(value) else value for value in values]

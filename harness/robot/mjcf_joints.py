@@ -22,13 +22,13 @@ SLIDE = 2  # of mjtJoint
 def body_chain(
     model: Any, elements: Mapping[tuple[str, str], XmlElement], body: int, parent: str, name: str
 ) -> tuple[list[str], list[Joint]]:
-    """The body's joints one behind the other, and the links between them.
+    """The body's joints in series, and the links between them.
 
     MuJoCo turns a body about an anchor in its own frame; here a joint's frame is the anchor,
     so a fixed joint leads from the last anchor back to the body's frame.
 
     Raises:
-        SpecError: A joint slides without an end.
+        SpecError: A slide joint has no range.
     """
     pose = mjcf_pose(model.body_pos[body], model.body_quat[body])
     first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
@@ -75,16 +75,17 @@ def _joint(
     dof = int(model.jnt_dofadr[number])
     bounded = np.isfinite(lower)
     kind = "prismatic" if slides else "revolute" if bounded else "continuous"
-    return Joint(
-        name, kind, parent, child, pose, axis, lower, upper,
+    joint = Joint(name, kind, parent, child, pose, axis, lower, upper)
+    return replace(
+        joint,
         effort=_effort(model, number),
         damping=float(model.dof_damping[dof].item()),
         friction=float(model.dof_frictionloss[dof].item()),
-    )  # fmt: skip
+    )
 
 
 def _effort(model: Any, joint: int) -> float:
-    """Force limit of the joint, or of the actuators on it; inf where there is none."""
+    """Force limit of the joint, or of its actuators; inf without a limit."""
     import mujoco
 
     if model.jnt_actfrclimited[joint]:
@@ -118,20 +119,22 @@ def with_mimics(model: Any, joints: Iterable[Joint], notes: list[str]) -> list[J
         first, second = int(model.eq_obj1id[number]), int(model.eq_obj2id[number])
         name, other = model.joint(first).name, model.joint(second).name
         if any(curve):
-            notes.append(f"joint '{name}' follows '{other}' by a curve: its slope is taken")
-        # The polynomial is of the ways from both joints' references.
+            notes.append(
+                f"joint '{name}' follows '{other}' by a polynomial: its linear term is used"
+            )
+        # The polynomial relates displacements from both joints' references.
         zero, other_zero = (float(model.qpos0[model.jnt_qposadr[j]]) for j in (first, second))
         mimics[name] = Mimic(other, slope, zero + offset - slope * other_zero)
     return [replace(j, mimic=mimics[j.name]) if j.name in mimics else j for j in joints]
 
 
 def mjcf_pose(position: Any, quat_wxyz: Any) -> SE3:
-    """A pose of MuJoCo's arrays."""
+    """A pose from MuJoCo's arrays."""
     return SE3.from_xyz_quat(np.array(position, dtype=float), np.array(quat_wxyz, dtype=float))
 
 
 def fixed_joint(name: str, parent: str, child: str, pose: SE3) -> Joint:
-    """A joint that does not move."""
+    """A fixed joint."""
     return Joint(name, "fixed", parent, child, pose, np.array([1.0, 0.0, 0.0]))
 
 

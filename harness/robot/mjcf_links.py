@@ -18,14 +18,14 @@ from harness.robot.mesh_file import SUFFIXES
 from harness.robot.mjcf_joints import mjcf_pose
 
 SHARE = 1e-3
-"""Part of a body's mass that a link between two of its joints takes."""
+"""Share of a body's mass that each link between two of its joints gets."""
 
 RADIUS = 0.01
-"""Radius of the solid sphere that such a link is [m]."""
+"""Radius of such a link, which is a solid sphere [m]."""
 
 
 def body_link(spec: Any, model: Any, folder: Path, body: int, name: str, notes: list[str]) -> Link:
-    """A body with its mass, and its geoms by whether they touch anything."""
+    """A body with its mass, its collision geoms and its visual geoms."""
     mass = float(model.body_mass[body])
     inertial = None
     if mass > 0:
@@ -45,10 +45,10 @@ def body_link(spec: Any, model: Any, folder: Path, body: int, name: str, notes: 
 
 
 def links_between(names: Sequence[str], joint_count: int, own: Link) -> list[Link]:
-    """A body's links: those between several joints of its own, then itself.
+    """A body's links: those between its joints, then the body itself.
 
-    MuJoCo lets a body turn about several joints at once; here each joint has a link, and nothing
-    that moves is without mass, so those between take a little of the body's.
+    In MuJoCo a body can have several joints; here each joint has a child link. Every moving link
+    needs mass, so the links between joints get a small share of the body's mass.
     """
     if own.inertial is None or joint_count < 2:
         return [*(Link(name, None) for name in names), own]

@@ -12,19 +12,19 @@ from harness.spec.source import Located
 
 SOLVER_KEYS = ("kinematics_solver", "position_only_ik")
 WRAPPERS = ("/**", "ros__parameters", "robot_description_planning", "robot_description_kinematics")
-"""Keys that ROS 2 launch files and parameter files put around the content."""
+"""Keys that ROS 2 launch and parameter files wrap around the content."""
 
 
 def with_joint_limits(
     joints: Sequence[Joint], path: Path, robot: str, notes: list[str]
 ) -> tuple[tuple[Joint, ...], frozenset[str]]:
-    """The joints under the limits of a joint_limits.yaml, and those with an acceleration there.
+    """The joints with the limits of a joint_limits.yaml, and those with an acceleration there.
 
-    Positions, velocities and efforts only narrow what the robot's file says; accelerations, which
-    it cannot say, are taken as they are.
+    Positions, velocities and efforts only narrow the limits of the robot's file; accelerations,
+    which it lacks, are used unchanged.
 
     Raises:
-        SpecError: A joint that the robot has not, or no number; at line and column.
+        SpecError: A joint is unknown, or a limit is not a number; at line and column.
     """
     root = read_data(path, ("joint_limits",), "joint_limits.yaml")
     entry = _content(root).mapping().get("joint_limits")
@@ -74,7 +74,7 @@ def _limited(joint: Joint, item: Located, notes: list[str]) -> Joint:
 
 
 def _value(item: Located, what: str, key: str = "") -> float | None:
-    """A limit that the file says there is: `has_velocity_limits: true` and `max_velocity`."""
+    """An enabled limit: for example `has_velocity_limits: true` and `max_velocity`."""
     entries = item.mapping()
     switch = entries.get(f"has_{what}_limits")
     entry = entries.get(key or f"max_{what}")
@@ -90,7 +90,7 @@ def position_only_groups(path: Path, groups: Collection[str], robot: str) -> fro
     """Groups of a kinematics.yaml with `position_only_ik: true`.
 
     Raises:
-        SpecError: A group that the robot has not; at its key.
+        SpecError: A group is unknown; at its key.
     """
     root = _content(read_data(path, SOLVER_KEYS, "kinematics.yaml"))
     sections = root.mapping()
@@ -108,7 +108,7 @@ def position_only_groups(path: Path, groups: Collection[str], robot: str) -> fro
 
 
 def _content(root: Located) -> Located:
-    """What stands inside the wrappers."""
+    """The content inside the wrapper keys."""
     while len(root.mapping()) == 1 and (key := next(iter(root.mapping()))) in WRAPPERS:
         root = root.mapping()[key].value
     return root

@@ -1,4 +1,4 @@
-"""What a scenario changes about a robot: tighter limits, more states, another start."""
+"""Applies a scenario's options to a robot: joint limits, states and start state."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from harness.spec.scenario import JointLimits, MoveItFiles, RobotSpec, StartStat
 
 
 def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescription:
-    """The robot under a scenario's joint limits, with its extra states and start.
+    """The robot with a scenario's joint limits, named states and start state.
 
     Raises:
-        RobotError: An option names something that the robot has not, or leaves its limits.
+        RobotError: An option refers to an unknown name, or exceeds the robot's limits.
     """
     joints = description.joints
     if spec.joint_limits:
@@ -51,11 +51,11 @@ def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescrip
 def with_moveit_files(
     description: RobotDescription, files: MoveItFiles, base_dir: Path
 ) -> tuple[RobotDescription, frozenset[str]]:
-    """The robot under MoveIt's files, and the joints whose acceleration they say.
+    """The robot with the limits of MoveIt's files, and the joints whose acceleration they give.
 
     Raises:
-        SpecError: A file says what cannot be meant; at line and column.
-        RobotError: A file is not there.
+        SpecError: A file has mistakes; at line and column.
+        RobotError: A file does not exist.
     """
     given: frozenset[str] = frozenset()
     if files.joint_limits is not None:
@@ -92,7 +92,7 @@ def _within(description: RobotDescription, name: str, position: float, where: st
 
 
 def _narrowed(joint: Joint, limits: JointLimits) -> Joint:
-    """A joint under tighter limits; its acceleration, which no URDF says, may be any."""
+    """A joint with tighter limits; its acceleration, which URDF lacks, may have any value."""
     for key, value, widest in (
         ("max_position", limits.max_position, joint.upper),
         ("max_velocity", limits.max_velocity, joint.velocity),
@@ -126,7 +126,7 @@ def _narrowed(joint: Joint, limits: JointLimits) -> Joint:
 
 
 def _with_states(description: RobotDescription, spec: RobotSpec) -> tuple[NamedState, ...]:
-    """The robot's states and the scenario's; one so named before is replaced."""
+    """The robot's states and the scenario's, which replace those of the same name."""
     states = {(state.group, state.name): state for state in description.named_states}
     for group, named in spec.named_states.items():
         if group not in description.groups:

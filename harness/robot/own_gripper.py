@@ -1,4 +1,4 @@
-"""A gripper that an imported arm has: recognised from its SRDF's end effector, or by name."""
+"""Recognises the integrated gripper of an imported arm, from its SRDF's end effector or by name."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -20,19 +20,19 @@ from harness.robot.srdf import Srdf, link_pair
 from harness.robot.urdf import Urdf
 
 SAMPLES = 11
-"""Joint positions at which the gap between the pads is measured."""
+"""Number of joint positions at which the gap between the pads is measured."""
 
 GRIP_FORCE = 20.0
-"""What each pad presses with when a step says no effort [N]."""
+"""Default force of each pad [N]."""
 
 LEAST_TRAVEL = 0.002
-"""A hand whose gap changes less is none that grasps [m]."""
+"""Smallest change of the gap of a hand that can grasp [m]."""
 
 STATES = {"open": ("open", "opened"), "closed": ("close", "closed")}
 
 
 class NoGripperError(ValueError):
-    """The hand is none that closes two sides with one joint; says why."""
+    """The hand does not close two sides with one joint; the message has the reason."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,11 +40,11 @@ class OwnGripper:
     """A recognised gripper.
 
     Attributes:
-        facts: As a robot.yaml would say them.
-        urdf: The robot, two fingers without a mimic coupled.
+        facts: The gripper as in a robot.yaml.
+        urdf: The robot, with two independent fingers coupled.
         center: Halfway between the pads, in palm axes [m], shape (3,).
         pairs: Links of the hand that may touch each other.
-        notes: What was assumed.
+        notes: Assumptions.
     """
 
     facts: GripperFacts
@@ -55,9 +55,9 @@ class OwnGripper:
 
 
 def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> OwnGripper:
-    """The gripper that a hand's group is.
+    """The gripper of a hand's group.
 
-    Two sides are the finger links that move towards each other, or one that moves towards the
+    The two sides are the finger links that move towards each other, or one that moves towards the
     palm. The pad of a side is its link that reaches farthest out; gaps are measured between the
     pads' shapes over the joint's range.
 
@@ -97,13 +97,15 @@ def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> OwnGripper:
     )
     links = [*sides[0], *sides[1], palm]
     pairs = [link_pair(a, b) for n, a in enumerate(links) for b in links[:n] if a != b]
-    told = f"gripper '{group.name}': {joint.name} moves {pads[0]} and {pads[1]}, up to "
-    notes.append(told + f"{1000 * gaps.max():.0f} mm apart")
+    notes.append(
+        f"gripper '{group.name}': {joint.name} moves {pads[0]} and {pads[1]}, up to "
+        f"{1000 * gaps.max():.0f} mm apart"
+    )
     return OwnGripper(facts, urdf, hand.center(pads, closed), tuple(pairs), tuple(notes))
 
 
 def _one_joint(urdf: Urdf, group: PlanningGroup) -> tuple[Urdf, Joint, list[str]]:
-    """The joint that closes the hand; the second of two alike is made to follow the first."""
+    """The joint that closes the hand; of two equal joints the second mimics the first."""
     joints = {joint.name: joint for joint in urdf.joints}
     driven = [joints[name] for name in group.joint_names]
     if len(driven) == 1:
@@ -121,20 +123,20 @@ def _one_joint(urdf: Urdf, group: PlanningGroup) -> tuple[Urdf, Joint, list[str]
             note = f"gripper '{group.name}': {second.name} is made to follow {first.name}"
             return replace(urdf, joints=changed), first, [note]
     names = ", ".join(group.joint_names) or "none"
-    raise NoGripperError(f"one joint closes a gripper here, and the group has {names}")
+    raise NoGripperError(f"a gripper has one driven joint, and the group has {names}")
 
 
 def _fingers(urdf: Urdf, joint: Joint) -> list[tuple[Joint, tuple[str, ...]]]:
-    """The outermost joints that move with the hand, each with all links behind it."""
+    """The first joints that move with the hand, each with all links distal to it."""
     moving = {
         j.name for j in urdf.joints if joint.name in (j.name, j.mimic.joint if j.mimic else "")
     }
-    behind: dict[str, str] = {}
+    finger_of: dict[str, str] = {}
     found: dict[str, tuple[Joint, list[str]]] = {}
     for each in urdf.joints:
-        first = behind.get(each.parent) or (each.name if each.name in moving else "")
+        first = finger_of.get(each.parent) or (each.name if each.name in moving else "")
         if first:
-            behind[each.child] = first
+            finger_of[each.child] = first
             found.setdefault(first, (each, []))[1].append(each.child)
     return [(first, tuple(links)) for first, links in found.values()]
 
@@ -187,20 +189,18 @@ class _Hand:
         for solid, pose in first:
             for other, other_pose in second:
                 result = coal.DistanceResult()
-                coal.distance(
-                    solid, coal_transform(pose), other, coal_transform(other_pose),
-                    coal.DistanceRequest(), result,
-                )  # fmt: skip
+                at, other_at = coal_transform(pose), coal_transform(other_pose)
+                coal.distance(solid, at, other, other_at, coal.DistanceRequest(), result)
                 nearest = min(nearest, float(result.min_distance))
         return max(nearest, 0.0)
 
     def center(self, pads: tuple[str, ...], position: float) -> FloatArray:
-        """Halfway between the pads' middles, shape (3,)."""
+        """Midpoint between the pads' centres, shape (3,)."""
         return 0.5 * (self.middle(pads[0], position) + self.middle(pads[1], position))
 
 
 def _sides(hand: _Hand, fingers: Sequence[tuple[str, ...]]) -> tuple[tuple[str, ...], ...]:
-    """Finger links by where closing moves them; a lone side closes on the palm."""
+    """Finger links of both sides, by closing direction; a single side closes on the palm."""
     shaped = [tuple(link for link in links if hand.has_shape(link)) for links in fingers]
     shaped = [links for links in shaped if links]
     if not shaped:
@@ -221,7 +221,7 @@ def _sides(hand: _Hand, fingers: Sequence[tuple[str, ...]]) -> tuple[tuple[str, 
 
 
 def _pad(hand: _Hand, links: tuple[str, ...], sides: Sequence[tuple[str, ...]]) -> str:
-    """The link that reaches farthest from the palm, along the way that the fingers point."""
+    """The link that extends farthest from the palm, in the fingers' direction."""
     middle = 0.5 * (hand.joint.lower + hand.joint.upper)
     fingers = [link for side in sides for link in side if link != hand.palm]
     out = np.mean([hand.middle(link, middle) for link in fingers], axis=0)

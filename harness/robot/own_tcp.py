@@ -1,4 +1,4 @@
-"""The frame between the fingers of an arm's own gripper."""
+"""The TCP frame of an arm's integrated gripper."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from harness.robot.tree import carriers
 from harness.robot.urdf import Urdf
 
 NEAR = 0.03
-"""A frame of the robot's own this near the middle between the pads is the TCP [m]."""
+"""Largest distance of an existing TCP frame from the midpoint between the pads [m]."""
 
 
 def with_own_gripper(
-    own: OwnGripper, urdf: Urdf, srdf: Srdf, arm: PlanningGroup, tip: str, wanted: str | None
+    own: OwnGripper, urdf: Urdf, srdf: Srdf, arm: PlanningGroup, tip: str, tcp_link: str | None
 ) -> tuple[Urdf, Srdf, str]:
     """The robot with its gripper coupled, and the link that is its TCP.
 
-    That is the wanted one, else a frame of the robot's own halfway between the pads, else one
-    that is added there, with the axes of the arm's tip. The arm's chain then ends at it.
+    The TCP is `tcp_link`, else a frame of the robot at the midpoint between the pads, else a new
+    frame there with the axes of the arm's tip. The arm's chain ends at the TCP.
     """
     srdf = replace(srdf, disabled={**dict.fromkeys(own.pairs, "Gripper"), **srdf.disabled})
     urdf = own.urdf
     carrier = carriers(urdf.joints, urdf.root)
-    if wanted is not None:
-        return urdf, _ending_at(srdf, arm, tip, wanted, carrier), wanted
+    if tcp_link is not None:
+        return urdf, _ending_at(srdf, arm, tip, tcp_link, carrier), tcp_link
     if carrier.get(own.facts.palm_link) != carrier.get(tip):
         return urdf, srdf, tip
     poses = link_poses(urdf, {})
@@ -56,7 +56,7 @@ def with_own_gripper(
 def _ending_at(
     srdf: Srdf, arm: PlanningGroup, tip: str, link: str, carrier: dict[str, str]
 ) -> Srdf:
-    """Chains of the arm that ended at its tip end at a link that is rigid with it."""
+    """The SRDF with the arm's chains from its tip moved to a link rigidly connected with it."""
     if carrier.get(link) != carrier.get(tip):
         return srdf
 

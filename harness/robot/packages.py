@@ -1,4 +1,4 @@
-"""Where `package://` leads, and which folders a robot's files may be read from."""
+"""Resolves `package://` names, within the folders that may be read."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from functools import lru_cache
 from pathlib import Path
 
 SEARCH_VARIABLE = "HARNESS_PACKAGE_PATH"
-"""Environment variable with more folders to search, divided as in PATH."""
+"""Environment variable with additional folders to search, separated as in PATH."""
 
 MANIFEST = "package.xml"
 DEEPEST = 4
@@ -24,18 +24,18 @@ SCHEMES = ("package://", "model://")
 
 
 class NotFoundError(ValueError):
-    """A file name leads nowhere, or out of the folders that may be read."""
+    """A file does not exist, or is outside the folders that may be read."""
 
 
 @dataclass(frozen=True)
 class PackagePath:
-    """Folders that a robot's files may be in.
+    """Folders that may contain a robot's files.
 
-    A package is looked for in `given`, around `home`, and among the installed Python packages;
-    what is found there may be read too.
+    Packages are searched in `given`, around `home`, and among the installed Python packages; their
+    folders may be read too.
 
     Attributes:
-        home: The folder of the robot's own package, or of its file where that has no package.xml.
+        home: The folder of the robot's package, or of its file if there is no package.xml.
         given: Folders of the scenario, then of the environment.
     """
 
@@ -56,7 +56,7 @@ class PackagePath:
         """The folder of a package.
 
         Raises:
-            NotFoundError: There is none; says where it was looked for.
+            NotFoundError: The package is not found; the message has the searched places.
         """
         if name not in self._found:
             found = next(self._candidates(name), None)
@@ -70,14 +70,14 @@ class PackagePath:
         return self._found[name]
 
     def file(self, name: str, folder: Path) -> Path:
-        """The file that a name in a robot's file means.
+        """The path of a file name in a robot's file.
 
         Args:
             name: `package://name/path`, `file:///path`, or a path.
-            folder: Where relative paths start.
+            folder: The folder to which paths are relative.
 
         Raises:
-            NotFoundError: It is not there, or not in a folder that may be read.
+            NotFoundError: It does not exist, or is not in a folder that may be read.
         """
         scheme = next((each for each in SCHEMES if name.startswith(each)), None)
         if scheme is not None:
@@ -87,7 +87,7 @@ class PackagePath:
             except NotFoundError as error:
                 raise NotFoundError(f"'{name}': {error}") from error
         elif re.match(r"\w+://", name) and not name.startswith("file://"):
-            raise NotFoundError(f"'{name}' is no file: known are package:// and file://")
+            raise NotFoundError(f"'{name}' is not a file: known are package:// and file://")
         else:
             path = (folder / name.removeprefix("file://")).resolve()
         if not self.may_read(path):
@@ -118,7 +118,7 @@ class PackagePath:
             yield from (each for each in _packages_below(folder) if _is_package(each, name))
 
     def _around(self) -> Iterator[Path]:
-        """Where a package's neighbours are: beside it, or in install folders beside its own."""
+        """Folders of adjacent packages: the parent folder, and install folders next to its own."""
         if (self.home / MANIFEST).is_file():
             yield self.home.parent
             if self.home.parent.name == "share":
@@ -133,7 +133,7 @@ def environment_folders() -> tuple[Path, ...]:
 
 @contextmanager
 def searched_too(folders: Sequence[Path]) -> Iterator[None]:
-    """Search more folders than the environment says, here and in processes that start meanwhile."""
+    """Search additional folders, in this process and in processes that start meanwhile."""
     before = os.environ.get(SEARCH_VARIABLE)
     listed = [*(str(folder.resolve()) for folder in folders), *([before] if before else [])]
     if listed:
@@ -148,14 +148,14 @@ def searched_too(folders: Sequence[Path]) -> Iterator[None]:
 
 
 def _inside(folder: Path, name: str) -> Iterator[Path]:
-    """As colcon's `src`, `install` and merged `install` folders hold a package."""
+    """The folder of a package in colcon's `src`, `install` and merged `install` layouts."""
     for path in (folder / name / "share" / name, folder / "share" / name, folder / name):
         if path.is_dir():
             yield path
 
 
 def _installed(name: str) -> Iterator[Path]:
-    """A Python package, or the `share` folder that a wheel brought."""
+    """A Python package, or the `share` folder of a wheel."""
     module = name.replace("-", "_")
     try:
         spec = importlib.util.find_spec(module) if module.isidentifier() else None

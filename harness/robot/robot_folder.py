@@ -1,4 +1,4 @@
-"""A robot's own files as a folder of ours: robot.yaml, with the URDF and SRDF as they are used."""
+"""Writes an imported robot as a robot folder: robot.yaml, URDF and SRDF."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ DIGITS = 10
 
 @dataclass(frozen=True)
 class RobotFolder:
-    """What a folder would hold.
+    """The content of a robot folder.
 
     Attributes:
-        name: Of the robot.
-        files: Their text by name.
-        notes: What was left out or assumed.
+        name: Name of the robot.
+        files: Texts of the files, by name.
+        notes: Notes on ignored elements and assumptions.
     """
 
     name: str
@@ -41,25 +41,25 @@ class RobotFolder:
 
 
 def robot_folder(spec: RobotSpec, base_dir: Path, folder: Path) -> RobotFolder:
-    """The files that make `model: folder` the robot that a scenario's `robot:` is.
+    """The files with which `model: folder` is the same robot as a scenario's `robot:`.
 
-    URDF and SRDF are written anew: xacro rendered, the fingers of a gripper coupled and its TCP
-    frame added, pairs and states of what is not there left out.
+    URDF and SRDF are generated: xacro is rendered, the fingers of a gripper are coupled, its TCP
+    frame is added, and pairs and states with unknown names are left out.
 
     Args:
         spec: A `urdf`, `xacro` or `mjcf` with its `srdf`.
-        base_dir: Where its relative names start.
-        folder: Where the files will be: meshes are named from there.
+        base_dir: The folder to which its paths are relative.
+        folder: The folder of the files, to which paths of meshes are relative.
 
     Raises:
-        SpecError: A file says what cannot be meant.
+        SpecError: A file has mistakes.
         RobotError: A file is not found, or an option does not fit it.
     """
     part = read_robot(spec, base_dir)
     if spec.gripper is not None and not names_own_gripper(spec.gripper, part.srdf):
         raise RobotError(
             f"robot.gripper: the SRDF has no group '{spec.gripper}'; a bundled gripper is named"
-            " by the scenario, beside `model`"
+            " by the scenario, next to `model`"
         )
     description = load_robot(spec, base_dir)
     name = part.urdf.name or part.name
@@ -73,9 +73,9 @@ def robot_folder(spec: RobotSpec, base_dir: Path, folder: Path) -> RobotFolder:
         allow_unicode=True,
     )
     notes = [f"#   {note}" for note in description.notes]
-    told = ["# Taken or assumed:", *notes] if notes else []
+    comment = ["# Ignored or assumed:", *notes] if notes else []
     files = {
-        "robot.yaml": "\n".join([f"# From {_sources(spec)}", *told, text]),
+        "robot.yaml": "\n".join([f"# From {_sources(spec)}", *comment, text]),
         f"{name}.urdf": write_urdf(name, part.urdf.links, part.urdf.joints, folder),
         f"{name}.srdf": write_srdf(name, part.srdf),
     }
@@ -88,7 +88,7 @@ def _sources(spec: RobotSpec) -> str:
 
 
 def _facts(part: Part, name: str, joints: Iterable[Joint], outside: list[str]) -> dict[str, Any]:
-    """What robot.yaml says, in the order in which people read it."""
+    """The content of robot.yaml, in the order for readers."""
     facts = part.facts
     gripper = None if facts.gripper is None else facts.gripper.model_dump(mode="json")
     return {
@@ -116,7 +116,7 @@ def _facts(part: Part, name: str, joints: Iterable[Joint], outside: list[str]) -
 
 
 def _short(value: Any) -> Any:
-    """The same with numbers of ten digits: measured ones have no more that matter."""
+    """The value with numbers rounded to ten significant digits, enough for measured ones."""
     match value:
         case dict():
             return {key: _short(item) for key, item in value.items()}
@@ -129,7 +129,7 @@ def _short(value: Any) -> Any:
 
 
 def _outside(part: Part) -> tuple[Path, ...]:
-    """Folders of mesh files that no package name leads to, sorted."""
+    """Folders of mesh files outside packages, sorted."""
     return tuple(sorted({path.parent for path in _meshes(part) if not package_name(path)}))
 
 

@@ -1,4 +1,4 @@
-"""What a robot's folder says beside URDF and SRDF: `robot.yaml`."""
+"""`robot.yaml`: the properties of a robot that URDF and SRDF lack."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ FILE = "robot.yaml"
 
 
 class JointFacts(JointLimits):
-    """Limits of a joint that URDF cannot say or says wrongly, with the source of its effort."""
+    """Limits of a joint that its URDF lacks or has wrong, with the source of the effort limit."""
 
     effort_source: str = ""
 
 
 class XacroFile(SpecModel):
-    """A URDF that is rendered first.
+    """A URDF in xacro format.
 
-    `variant_arg` is given the variant's name; `mesh_arg` is given whether `mesh_package` is
+    The argument `variant_arg` gets the variant's name; `mesh_arg` gets whether `mesh_package` is
     installed and has the variant among `mesh_variants`.
     """
 
@@ -41,7 +41,7 @@ class XacroFile(SpecModel):
 
 
 class FingerSide(SpecModel):
-    """Links of one side of a gripper, and the one of them that touches."""
+    """Links of one side of a gripper; `pad` is the one that touches objects."""
 
     links: Annotated[tuple[Name, ...], Field(min_length=1)]
     pad: Name
@@ -60,12 +60,12 @@ class GripperFacts(SpecModel):
     max_effort: Annotated[float, Field(gt=0)]
     friction: Annotated[float, Field(ge=0)] = 1.0
     widths: Annotated[tuple[tuple[float, Length], ...], Field(min_length=2)] = Field(
-        description="Rows of joint position and gap between the pads [m], position rising."
+        description="Rows of joint position and gap between the pads [m], with rising position."
     )
 
 
 class Placement(SpecModel):
-    """Where something stands on something else."""
+    """A pose as position and roll, pitch, yaw."""
 
     xyz: Xyz = (0.0, 0.0, 0.0)
     rpy: Rpy = (0.0, 0.0, 0.0)
@@ -79,27 +79,27 @@ class ToolCenterPoint(Placement):
 
 
 class Mount(Placement):
-    """How a gripper's root link stands on an arm's flange, and the TCP it brings."""
+    """Pose of a gripper's root link on an arm's flange, and the gripper's TCP."""
 
     joint: Name
     tcp: ToolCenterPoint
 
 
 class Flange(Placement):
-    """Where another gripper goes in place of the arm's own; grippers point along its +z."""
+    """Flange for a gripper that replaces the arm's own one; grippers point along its +z."""
 
     link: Name
 
 
 class CameraFacts(CameraFields):
-    """A camera on a link, in the words of SDF's camera sensor; looks along +x of its pose."""
+    """A camera on a link, with the parameters of SDF's sensor; it looks along its +x axis."""
 
     link: Name
     pose: Placement = Placement()
 
 
 class Tracking(SpecModel):
-    """Tolerances of the trajectory controller [rad or m], and how long it may settle [s]."""
+    """Tolerances of the trajectory controller [rad or m], and its settling time [s]."""
 
     trajectory: Annotated[float, Field(gt=0)] = 0.2
     goal: Annotated[float, Field(gt=0)] = 0.01
@@ -107,11 +107,11 @@ class Tracking(SpecModel):
 
 
 class RobotYaml(SpecModel):
-    """A robot's folder.
+    """The robot.yaml of a robot's folder.
 
-    Attributes of an arm: `arm_group`, `tcp_link`, `flange_link` (where grippers go; absent when
-    none can), `flange` (where one goes in place of its own), `ik_solver`. Of a gripper: `mount`.
-    Either may have a `gripper` section.
+    An arm has `arm_group`, `tcp_link`, `flange_link` (where grippers are mounted; absent when none
+    can be), `flange` (for a gripper that replaces its own one) and `ik_solver`. A gripper has
+    `mount`. Both may have a `gripper` section.
     """
 
     robot: Name
@@ -121,7 +121,8 @@ class RobotYaml(SpecModel):
     xacro: XacroFile | None = None
     srdf: str
     packages: tuple[str, ...] = Field(
-        default=(), description="Folders where package:// is looked up and meshes may be read."
+        default=(),
+        description="Folders that are searched for package:// and from which meshes may be read.",
     )
     variants: tuple[Name, ...] = ()
     arm_group: Name | None = None
@@ -131,9 +132,9 @@ class RobotYaml(SpecModel):
     ik_solver: IkSolver = "numeric"
     start_state: StartState = StartState()
     max_acceleration: Annotated[float, Field(gt=0)] = Field(
-        5.0, description="Of every joint that `joints` gives none [rad/s^2 or m/s^2]."
+        5.0, description="Acceleration limit of joints without one in `joints` [rad/s^2 or m/s^2]."
     )
-    effort_source: str = Field("", description="Of every effort limit that `joints` gives none.")
+    effort_source: str = Field("", description="Source of effort limits without one in `joints`.")
     joints: dict[Name, JointFacts] = Field(default_factory=dict[str, JointFacts])
     gripper: GripperFacts | None = None
     mount: Mount | None = None
@@ -155,8 +156,7 @@ def read_robot_yaml(folder: Path) -> RobotYaml:
     """The folder's robot.yaml.
 
     Raises:
-        SpecError: The file is not there, no YAML, or says something that cannot be meant; every
-            problem at its place.
+        SpecError: The file does not exist, is not YAML, or has mistakes; all of them, located.
     """
     text = read_text(folder / FILE)
     try:
@@ -169,10 +169,10 @@ def read_robot_yaml(folder: Path) -> RobotYaml:
 
 
 def robot_yaml_error(folder: Path, problems: Iterable[tuple[Loc, str]]) -> SpecError:
-    """Mistakes of a robot.yaml, each at its place.
+    """Located mistakes of a robot.yaml.
 
     Raises:
-        SpecError: The file is no YAML.
+        SpecError: The file is not YAML.
     """
     path = folder / FILE
     text = read_text(path)

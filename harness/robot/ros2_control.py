@@ -1,4 +1,4 @@
-"""What a URDF's `<ros2_control>` says of its joints: how they are commanded, and within what."""
+"""Reads a URDF's `<ros2_control>`: command interfaces of joints and their limits."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from harness.spec.xml_file import XmlElement
 def with_interfaces(
     joints: Sequence[Joint], root: XmlElement, notes: list[str]
 ) -> tuple[Joint, ...]:
-    """The joints with their command interfaces, under the `min` and `max` of these.
+    """The joints with their command interfaces, limited by the interfaces' `min` and `max`.
 
-    The program drives every joint by its effort; what the interfaces are called is kept for
-    people. Their bounds only narrow what `<limit>` says, as ros2_control's limiter does.
+    The program drives every joint by its effort; the interfaces' names are kept for users. Their
+    bounds only narrow `<limit>`, as in ros2_control's limiter.
 
     Raises:
-        SpecError: A bound is no number, or leaves nothing; at its place.
+        SpecError: A bound is not a number, or the range is empty; located.
     """
     known = {joint.name: joint for joint in joints}
     for item in (each for block in root.findall("ros2_control") for each in block.findall("joint")):

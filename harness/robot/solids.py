@@ -1,4 +1,4 @@
-"""Our shapes as Coal's."""
+"""Converts shapes to Coal's geometries."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -16,12 +16,12 @@ from harness.robot.mesh_file import convex_hull, exact_surface
 def coal_geometry(shape: Shape) -> Any:
     """Coal's geometry of a shape in its own frame; a mesh is its convex hull unless it is exact.
 
-    The physics touches the same hulls.
+    The physics collides with the same hulls.
 
     Raises:
         RobotError: A mesh file cannot be read.
     """
-    import coal  # here: most robots are known without their solids
+    import coal  # here: most robots are loaded without their solids
 
     match shape.geometry:
         case Box(size=size):
@@ -41,17 +41,16 @@ def coal_geometry(shape: Shape) -> Any:
 
 @cache
 def _settle_boxes() -> None:
-    """Have Coal's boxes be as large as they say for as long as this process lives.
+    """Make Coal use the exact size of boxes in this process.
 
-    Coal 3.0 inflates every box by 1e-10 or not at all, as the first direction in which the process
-    ever asked a box for its farthest point has a zero in it or not (a function's static variable).
-    Distances, and with them digests, would follow from what was measured first. This asks first,
-    in a direction without zeros.
+    Coal 3.0 inflates all boxes by 1e-10 if the direction of the process's first support query for a
+    box has a zero component (a static variable). Distances and digests would depend on the first
+    query, so this function makes that query with a direction without zeros.
     """
     import coal
 
     turned = np.array([[2.0, -2.0, 1.0], [1.0, 2.0, 2.0], [-2.0, -1.0, 2.0]]) / 3.0
-    beside = coal.Transform3s(turned, np.array([3.0, 4.0, 5.0]))
+    apart = coal.Transform3s(turned, np.array([3.0, 4.0, 5.0]))
     origin = coal.Transform3s(np.eye(3), np.zeros(3))
     cylinder, box = coal.Cylinder(0.1, 0.2), coal.Box(1.0, 1.0, 1.0)
-    coal.distance(cylinder, origin, box, beside, coal.DistanceRequest(), coal.DistanceResult())
+    coal.distance(cylinder, origin, box, apart, coal.DistanceRequest(), coal.DistanceResult())

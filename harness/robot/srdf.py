@@ -1,4 +1,4 @@
-"""SRDF as plain data: groups, their states, pairs that are not checked."""
+"""SRDF as plain data: groups, states, disabled collision pairs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ READ = frozenset(
 
 @dataclass(frozen=True)
 class SrdfGroup:
-    """What a `<group>` lists: joints, links (their parent joints), chains, other groups."""
+    """A `<group>`: joints, links (for their parent joints), chains, other groups."""
 
     name: str
     joints: tuple[str, ...] = ()
@@ -40,7 +40,7 @@ class EndEffector:
 
 @dataclass(frozen=True)
 class VirtualJoint:
-    """How the robot's root is held by the world."""
+    """The connection of the robot's root with the world."""
 
     name: str
     kind: str
@@ -53,9 +53,9 @@ class Srdf:
     """A semantic description.
 
     Attributes:
-        passive: Joints that nothing drives.
-        disabled: Link pair (sorted) that is not checked, with the reason.
-        notes: What is ignored, for people.
+        passive: Joints without a drive.
+        disabled: Link pairs (sorted) that are not checked, with the reason.
+        notes: Notes on ignored elements.
         root_element: The document it was read from.
     """
 
@@ -78,8 +78,8 @@ def parse_srdf(text: str | bytes, source: str) -> Srdf:
     """Read an SRDF.
 
     Raises:
-        SpecError: It is no SRDF, an element lacks an attribute, or a position is no number; at
-            the line and column.
+        SpecError: It is not an SRDF, an element lacks an attribute, or a position is not a
+            number; at line and column.
     """
     root = parse_xml(text, source)
     if root.tag != "robot":
@@ -134,7 +134,7 @@ def parse_srdf(text: str | bytes, source: str) -> Srdf:
 
 
 def has_several_values(joint: XmlElement) -> bool:
-    """Whether a state places a joint of several axes, as a floating or planar one."""
+    """Whether a state has a joint of several axes, such as a floating or planar one."""
     return len(joint.need("value").split()) > 1
 
 

@@ -1,4 +1,4 @@
-"""An SRDF held against its URDF."""
+"""Checks an SRDF against its URDF."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from harness.robot.urdf import Urdf
 
 
 def checked_srdf(srdf: Srdf, urdf: Urdf, source: str) -> Srdf:
-    """The SRDF without pairs of links that the robot has not.
+    """The SRDF without pairs of unknown links.
 
     Raises:
-        SpecError: It speaks of joints, links or groups that are not there; at the place.
+        SpecError: It names unknown joints, links or groups; located.
     """
     resolved = planning_groups(srdf, urdf.joints, source)
     root = srdf.root_element
@@ -76,7 +76,7 @@ def checked_srdf(srdf: Srdf, urdf: Urdf, source: str) -> Srdf:
 def _with_groups(
     states: Iterable[NamedState], groups: Mapping[str, PlanningGroup], notes: list[str]
 ) -> Iterable[NamedState]:
-    """The states; one that names no group is the first group's that has all its joints."""
+    """The states; one without a group belongs to the first group with all its joints."""
     for state in states:
         if state.group:
             yield state
@@ -91,7 +91,7 @@ def _with_groups(
 
 
 def _within(state: NamedState, joints: Mapping[str, Joint], notes: list[str]) -> NamedState:
-    """A state without virtual joints, told where it leaves the limits."""
+    """A state without virtual joints; adds a note on positions outside the limits."""
     positions = {name: value for name, value in state.positions.items() if name in joints}
     for name, value in positions.items():
         joint = joints[name]

@@ -1,4 +1,4 @@
-"""Links and joints as one tree: order, and what is rigidly together."""
+"""The tree of links and joints: order and rigid groups."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from harness.robot.description import Joint, Link
 from harness.spec.xml_file import XmlElement
 
 Elements = Mapping[tuple[str, str], XmlElement]
-"""By kind (`link`, `joint`) and name: where each is written."""
+"""Elements of links and joints, by kind (`link`, `joint`) and name."""
 
 
 def in_tree_order(
@@ -18,14 +18,14 @@ def in_tree_order(
     """Links from the root outwards, joints in the order of their child links.
 
     Args:
-        links: All of them.
-        joints: All of them.
-        source: What messages call the robot.
-        elements: Where links and joints are written.
+        links: All links.
+        joints: All joints.
+        source: Name of the robot in messages.
+        elements: Elements of links and joints.
 
     Raises:
-        SpecError: They are not one tree; at the joint or link, where `elements` has it.
-        RobotError: The same, without a place.
+        SpecError: They are not one tree; at the element of the joint or link.
+        RobotError: The same, without an element.
     """
     by_name = {link.name: link for link in links}
     children: dict[str, list[Joint]] = {name: [] for name in by_name}
@@ -69,7 +69,7 @@ def in_tree_order(
 
 
 def _circle(start: str, parents: Mapping[str, str]) -> list[str]:
-    """The links of the circle that a link's parents lead into, from parent to child."""
+    """The links of the cycle among a link's ancestors, from parent to child."""
     seen: list[str] = []
     link = start
     while link not in seen:
@@ -79,11 +79,11 @@ def _circle(start: str, parents: Mapping[str, str]) -> list[str]:
 
 
 def carriers(joints: Iterable[Joint], root: str) -> dict[str, str]:
-    """For each link the first link of the rigid piece it belongs to.
+    """For each link, the first link of its rigid group.
 
     Args:
         joints: Parents before children.
-        root: The link that is no joint's child.
+        root: The link without a parent joint.
     """
     carrier = {root: root}
     for joint in joints:

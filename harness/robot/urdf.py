@@ -25,9 +25,9 @@ class Urdf:
     """A robot's tree: links with parents before children, joints in the order of their children.
 
     Attributes:
-        notes: What is ignored or read otherwise than written, for people.
-        elements: Where links and joints are written.
-        root_element: The document, for what only some robots have in it.
+        notes: Notes on ignored and changed elements.
+        elements: Elements of links and joints.
+        root_element: The document, for readers of optional elements.
     """
 
     name: str
@@ -39,7 +39,7 @@ class Urdf:
 
     @property
     def root(self) -> str:
-        """The link that is no joint's child."""
+        """The link without a parent joint."""
         return self.links[0].name
 
 
@@ -48,13 +48,13 @@ def parse_urdf(
 ) -> Urdf:
     """Read a URDF.
 
-    Beyond URDF, `<capsule radius length>` is known.
+    In addition to URDF, `<capsule radius length>` is supported.
 
     Args:
         text: The document.
-        folder: Where relative mesh file names start.
-        source: What messages call the document.
-        packages: Where other mesh file names lead; by default from `folder`.
+        folder: The folder to which mesh file names are relative.
+        source: Name of the document in messages.
+        packages: Search path for other mesh file names; by default around `folder`.
 
     Raises:
         SpecError: The document is not a URDF of one tree; at the line and column.
@@ -86,7 +86,7 @@ def parse_urdf(
 
 
 def _by_name(root: XmlElement) -> dict[tuple[str, str], XmlElement]:
-    """Links and joints by kind and name; a name that is there twice is a mistake."""
+    """Links and joints by kind and name; a duplicate name is a mistake."""
     elements: dict[tuple[str, str], XmlElement] = {}
     for item in root.children:
         if item.tag in ("link", "joint"):
@@ -101,7 +101,7 @@ def _by_name(root: XmlElement) -> dict[tuple[str, str], XmlElement]:
 
 
 def _ignored(children: Sequence[XmlElement]) -> list[str]:
-    """One note for each kind of element that has no meaning here."""
+    """A note for each kind of ignored element."""
     counts = Counter(child.tag for child in children if child.tag not in READ)
     return [
         f"{count} <{tag}> element{'s' if count > 1 else ''} ignored"

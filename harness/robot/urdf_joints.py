@@ -24,11 +24,11 @@ FREE = ("floating", "planar")
 def read_joint(element: XmlElement, notes: list[str]) -> Joint:
     """A joint.
 
-    Soft limits of a `safety_controller` narrow the position limits, as MoveIt has it. A velocity
-    or effort limit of zero is a placeholder, as no such joint moves: it counts as not given.
+    Soft limits of a `safety_controller` narrow the position limits, as in MoveIt. A velocity or
+    effort limit of zero is a placeholder, since such a joint could not move: it counts as missing.
 
     Raises:
-        SpecError: Something in it cannot be meant.
+        SpecError: It has a mistake.
     """
     name = element.need("name")
     kind = _kind(element, name)
@@ -71,8 +71,8 @@ def _kind(element: XmlElement, name: str) -> JointKind:
     word = element.need("type")
     if word in FREE:
         element.refuse(
-            f"joint '{name}' is {word}; arms stand on a fixed base",
-            "make it fixed; where the robot stands is said by the scenario's `base`",
+            f"joint '{name}' is {word}; an arm has a fixed base",
+            "make it fixed; the scenario's `base` places the robot",
             at="type",
         )
     if word not in KINDS:
@@ -127,7 +127,7 @@ def _rate(limit: XmlElement | None, key: str, name: str, notes: list[str]) -> fl
 def resolved_mimics(
     joints: Sequence[Joint], elements: dict[tuple[str, str], XmlElement]
 ) -> tuple[Joint, ...]:
-    """The joints with each mimic following a joint that is driven, over all between.
+    """The joints with each mimic resolved to a driven joint.
 
     Raises:
         SpecError: A mimic follows an unknown or a fixed joint, or itself in the end.

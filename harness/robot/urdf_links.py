@@ -19,21 +19,21 @@ from harness.spec.xml_file import XmlElement
 
 DEFAULT_RGBA: Rgba = (0.6, 0.6, 0.6, 1.0)
 SMALLEST_RADIUS = 0.005
-"""Radius of the solid sphere that a link's inertia is no less than [m]."""
+"""Radius of the solid sphere whose inertia is a lower bound of a link's inertia [m]."""
 
 NO_BODY = "no body has the principal moments of inertia"
-"""Begins the note on a tensor that was not taken as written."""
+"""Beginning of the note on a corrected tensor."""
 
 
 @dataclass(frozen=True, eq=False)
 class LinkReader:
-    """Reads links of one file.
+    """Reads the links of one file.
 
     Attributes:
-        folder: Where relative mesh file names start.
-        packages: Where others lead.
+        folder: The folder to which mesh file names are relative.
+        packages: Search path for other mesh file names.
         materials: Colours of the file's named materials.
-        notes: What is read otherwise than written, added to.
+        notes: Collects notes on corrected elements.
     """
 
     folder: Path
@@ -45,7 +45,7 @@ class LinkReader:
         """A link.
 
         Raises:
-            SpecError: Something in it cannot be meant.
+            SpecError: It has a mistake.
         """
         name = element.need("name")
         inertial = element.find("inertial")
@@ -59,7 +59,7 @@ class LinkReader:
         )
 
     def _inertial(self, element: XmlElement, link: str) -> Inertial | None:
-        """Mass properties with the tensor turned into link axes; None for no mass at all."""
+        """Mass properties with the tensor in link axes; None for a mass of 0."""
         mass_element, tensor = element.find("mass"), element.find("inertia")
         if mass_element is None:
             element.refuse(f"link '{link}': <inertial> has no <mass>")
@@ -81,7 +81,7 @@ class LinkReader:
     def _of_a_body(
         self, inertia: np.ndarray, mass: float, tensor: XmlElement, link: str
     ) -> np.ndarray:
-        """The tensor, or the nearest one that a body of that mass can have."""
+        """The tensor, corrected to a physically possible one."""
         moments, axes = np.linalg.eigh(inertia)
         if moments[0] < -1e-3 * abs(moments).max():
             tensor.refuse(
@@ -150,7 +150,7 @@ class LinkReader:
                     f"link '{link}': the visual '{name}' is not drawn (no STL, OBJ, DAE)"
                 )
                 return None
-            item.refuse(f"link '{link}': '{name}' is no STL, OBJ or DAE file", at="filename")
+            item.refuse(f"link '{link}': '{name}' is not an STL, OBJ or DAE file", at="filename")
         try:
             path = self.packages.file(name, self.folder)
         except NotFoundError as error:

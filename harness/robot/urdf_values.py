@@ -1,4 +1,4 @@
-"""Numbers and poses of a robot's XML, each mistake at its place."""
+"""Numbers and poses of a robot's XML, with located errors."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ Three = tuple[float, float, float]
 
 
 def number(element: XmlElement, name: str, default: float | None = None) -> float:
-    """A finite number in an attribute; required where there is no default."""
+    """A finite number in an attribute, which is required without a default."""
     text = element.need(name) if default is None else element.get(name, repr(default))
     if name not in element.attributes and default is not None:
         return default
     values = _floats(text)
     if values is None or len(values) != 1:
-        element.refuse(f"'{text}' is no finite number", at=name)
+        element.refuse(f"'{text}' is not a finite number", at=name)
     return values[0]
 
 
@@ -27,7 +27,7 @@ def text_number(element: XmlElement) -> float:
     """A finite number that is an element's text."""
     values = _floats(element.text)
     if values is None or len(values) != 1:
-        element.refuse(f"'{element.text.strip()}' is no finite number")
+        element.refuse(f"'{element.text.strip()}' is not a finite number")
     return values[0]
 
 
@@ -70,7 +70,7 @@ def rgba(color: XmlElement) -> Rgba:
 
 
 def pose(element: XmlElement) -> SE3:
-    """The pose of an element's `<origin>`; identity where it has none."""
+    """The pose of an element's `<origin>`; identity without one."""
     origin = element.find("origin")
     if origin is None:
         return SE3.identity()

@@ -17,7 +17,7 @@ from harness.core.types import FloatArray
 from harness.robot.description import Inertial, Joint, Link
 
 NO_LIMIT = 1e30
-"""What is written for a velocity or effort without limit, and from which on one is read as such."""
+"""The written value of an unlimited velocity or effort; larger values are read as unlimited."""
 
 
 def write_urdf(
@@ -26,10 +26,11 @@ def write_urdf(
     """A URDF of the links and joints, every number with all its digits.
 
     Args:
-        name: Of the robot.
-        links: Its links.
-        joints: Its joints.
-        folder: Where mesh files of no Python package are named from; None: by their whole paths.
+        name: Name of the robot.
+        links: The robot's links.
+        joints: The robot's joints.
+        folder: The folder to which mesh files outside Python packages are relative; None for
+            absolute paths.
     """
     root = ET.Element("robot", name=name)
     for link in links:
@@ -49,8 +50,8 @@ def write_urdf(
 def rpy_from_rotation(rotation: FloatArray) -> FloatArray:
     """Fixed-axis roll, pitch, yaw of a rotation, stable at pitch ±π/2, shape (3,).
 
-    Roll is taken from the axes turned back by yaw, so that what yaw loses near the singularity,
-    roll makes up for.
+    Roll is computed after undoing yaw, so that it compensates for the error of yaw near the
+    singularity.
     """
     yaw = float(np.arctan2(rotation[1, 0], rotation[0, 0]))
     sine, cosine = np.sin(yaw), np.cos(yaw)
@@ -89,7 +90,7 @@ def _write_inertial(parent: ET.Element, inertial: Inertial) -> None:
 
 
 def _known_to_urdf(shape: Shape) -> tuple[Shape, ...]:
-    """The shape, or the cylinder and two spheres that make up a capsule, which URDF lacks."""
+    """The shape; a capsule, which URDF lacks, becomes a cylinder and two spheres."""
     if not isinstance(shape.geometry, Capsule):
         return (shape,)
     radius, length = shape.geometry.radius, shape.geometry.length

@@ -1,4 +1,4 @@
-"""Renders xacro files: the bundled ones here, anyone else's in a process with bounds."""
+"""Renders xacro files: bundled ones in this process, others in a restricted process."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from harness.spec.xml_file import XmlElement, read_bounded, read_xml
 
 XACRO_ARG = "xacro:arg"
 PROCESSOR_TIME = 8
-"""Seconds of processor time that a rendering may take."""
+"""CPU time limit of a rendering [s]."""
 
 WALL_TIME = 60.0
-"""Seconds after which a rendering that neither ends nor uses its processor time is given up."""
+"""Time limit of a rendering that uses less CPU time [s]."""
 
 
 def arguments_of(root: XmlElement) -> frozenset[str]:
@@ -30,14 +30,16 @@ def arguments_of(root: XmlElement) -> frozenset[str]:
 
 
 def render_bundled(path: Path, mappings: Mapping[str, str]) -> str:
-    """The URDF text of a file that came with the program.
+    """The URDF text of a bundled file.
 
     Raises:
         RobotError: It cannot be rendered with these arguments.
     """
     import xacro  # here: parsing plain URDFs does not need it
 
-    xacro.__dict__["open"] = partial(open, encoding="utf-8")  # it would read by the locale
+    xacro.__dict__["open"] = partial(
+        open, encoding="utf-8"
+    )  # it would read with the locale's encoding
     try:
         document: Any = xacro.process_file(str(path), mappings=dict(mappings))
     except (xacro.XacroException, OSError) as error:
@@ -46,14 +48,14 @@ def render_bundled(path: Path, mappings: Mapping[str, str]) -> str:
 
 
 def render(path: Path, args: Mapping[str, Any], packages: PackagePath) -> str:
-    """The URDF text of a xacro file, each element marked with the place it is from.
+    """The URDF text of a xacro file, each element marked with its source place.
 
-    Expressions of a xacro file are Python: they are worked out in a process of its own, which may
-    read only the given folders, start nothing, and use bounded memory and processor time.
+    Expressions of a xacro file are Python. A separate process evaluates them: it may read only the
+    given folders, may not start processes, and has limited memory and CPU time.
 
     Raises:
         SpecError: The file, or one that it includes, cannot be rendered.
-        RobotError: An argument that the file does not take.
+        RobotError: The file does not take one of the arguments.
     """
     root = read_xml(path)
     declared = arguments_of(root)
@@ -114,7 +116,7 @@ def _endless(path: Path) -> Problem:
 
 
 def _problem(answer: Mapping[str, Any], path: Path, packages: PackagePath) -> Problem:
-    """The child's complaint, at the text that it speaks of where the file has that."""
+    """The process's message, at the text in the file that it refers to."""
     if "problem" in answer:
         return Problem(**answer["problem"])
     named = str(answer.get("file") or path)

@@ -1,4 +1,4 @@
-"""The process that renders one xacro file: an order on stdin, its text or complaint on stdout."""
+"""The process that renders one xacro file: request on stdin, text or error on stdout."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from harness.robot.packages import NotFoundError, PackagePath
 from harness.spec.xml_file import LARGEST_FILE, mark_places, read_bounded
 
 MEMORY = 1_000_000_000
-"""Bytes of address space."""
+"""Limit of the address space [bytes]."""
 
 DEEPEST_INCLUDE = 40
 MOST_BYTES_READ = 64_000_000
@@ -38,15 +38,15 @@ HARMLESS = frozenset(
         "builtins.id",
     }
 )
-"""Audit events that rendering may cause; files are looked at one by one, all else is refused."""
+"""Audit events that are allowed; files are checked one by one, all other events are refused."""
 
 
 class RefusedError(Exception):
-    """A file asks for what no description of a robot needs."""
+    """A file uses a feature that no robot description needs."""
 
 
 def outside(name: str, packages: PackagePath) -> str:
-    """What is said of a file that may not be read."""
+    """The message for a file that may not be read."""
     return (
         f"'{name}' lies outside the robot's folder {packages.home} and the given ones; "
         "add its folder to `packages`"
@@ -54,7 +54,7 @@ def outside(name: str, packages: PackagePath) -> str:
 
 
 class Guard:
-    """Refuses, for the rest of the process, what a robot's file must not do."""
+    """Refuses forbidden actions for the rest of the process."""
 
     def __init__(self, packages: PackagePath) -> None:
         self._packages = packages
@@ -94,7 +94,7 @@ class Guard:
 
 
 def main() -> None:
-    """Render what stdin orders."""
+    """Render the file of the request on stdin."""
     order = json.loads(sys.stdin.read())
     resource.setrlimit(resource.RLIMIT_CPU, (order["processor_time"], order["processor_time"]))
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
@@ -112,7 +112,7 @@ def _answer(file: str, mappings: dict[str, str], packages: PackagePath) -> dict[
     guard = Guard(packages)
     reader = _Reader(guard, packages)
     xacro.parse = reader.parse
-    # No ROS here: `$(find name)` has no hook of its own.
+    # without ROS, `$(find name)` has no hook of its own
     substitution_args._eval_find = reader.find  # noqa: SLF001
     substitution_args._eval_dict["find"] = reader.find  # noqa: SLF001
     sys.addaudithook(guard)
@@ -138,7 +138,7 @@ def _answer(file: str, mappings: dict[str, str], packages: PackagePath) -> dict[
 
 
 def _is_of_memory(error: object) -> bool:
-    """Whether a MemoryError lies at the ground of xacro's exception, which has no words."""
+    """Whether a MemoryError caused xacro's exception, whose message is empty."""
     while error is not None and not isinstance(error, MemoryError):
         error = getattr(error, "exc", None)
     return error is not None
@@ -151,7 +151,7 @@ def _bounded(text: str, file: str) -> dict[str, Any]:
 
 
 def _complaint(message: str, stack: list[str | None] | None, file: str) -> dict[str, Any]:
-    """The message, the file it is about, and words that may stand at the place."""
+    """The message, its file, and words that may be at the place."""
     named = next((each for each in reversed(stack or []) if each), file)
     quoted = re.findall(r"['\"]([^'\"]+)['\"]", message)
     bare = re.findall(r"\b\w+:\w+\b", message)
@@ -169,7 +169,7 @@ class _Reader:
         self._read = 0
 
     def parse(self, inp: object, filename: str | None = None) -> Any:
-        """As `xacro.parse`, for files: bounded, and not one inside itself."""
+        """Like `xacro.parse` for files, with size limits and a check for cycles."""
         from xml.dom import minidom
 
         import xacro
@@ -202,7 +202,7 @@ class _Reader:
         return minidom.parseString(mark_places(content, filename, skip="xacro:"))
 
     def find(self, name: str) -> str:
-        """What `$(find name)` leads to."""
+        """The folder of `$(find name)`."""
         self._guard.is_on = False
         try:
             return str(self._packages.package(name))

@@ -1,4 +1,4 @@
-"""Files in YAML that other programs write for a robot, each mistake at its place."""
+"""Third-party YAML files for a robot, with located errors."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from harness.spec.yaml_file import parse_yaml, read_text, require_key
 
 
 def read_data(path: Path, keys: Sequence[str], kind: str) -> Located:
-    """The one mapping of a file.
+    """The mapping at the top of a file.
 
     Args:
         path: The file.
-        keys: It has one of these at least.
-        kind: What it should be, for messages.
+        keys: Keys of which it has at least one.
+        kind: Kind of the file, for messages.
 
     Raises:
-        SpecError: It is no such file, or no YAML; at line and column.
+        SpecError: It is of another kind, or not YAML; at line and column.
     """
     text = read_text(path)
     require_key(text, keys, str(path), kind)
@@ -33,7 +33,7 @@ def number(item: Located) -> float:
     """A finite number.
 
     Raises:
-        SpecError: It is none.
+        SpecError: It is not a finite number.
     """
     value = item.value
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
@@ -44,10 +44,10 @@ def number(item: Located) -> float:
 def known_entry(
     entries: dict[str, Entry], name: str, known: Iterable[str], kind: str, robot: str
 ) -> Located:
-    """The value of a key that has to name something of the robot's.
+    """The value of a key that names a part of the robot.
 
     Raises:
-        SpecError: The robot has nothing of that name; at the key.
+        SpecError: The robot has no part of that name; at the key.
     """
     names = list(known)
     if name not in names:

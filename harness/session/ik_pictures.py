@@ -21,11 +21,9 @@ def draw_ik_example(
         file: JPEG to write.
         caption: Below the picture.
     """
-    from harness.cameras.asked_and_reached import draw_asked_and_reached
+    from harness.cameras.asked_and_reached import draw_ik_comparison
 
     way = target.joint_positions
     asked = None if way is None else chain.whole(way)
     reached = None if answer is None else chain.whole(answer)
-    draw_asked_and_reached(
-        chain.description, chain.link, target.pose, asked, reached, file, caption
-    )
+    draw_ik_comparison(chain.description, chain.link, target.pose, asked, reached, file, caption)

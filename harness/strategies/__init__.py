@@ -1,6 +1,6 @@
-"""Hypothesis strategies for robot arms; what fails is shrunk towards the home state.
+"""Hypothesis strategies for robot arms; counterexamples shrink towards the home state.
 
-Poses come from forward kinematics and are never filtered, so nothing is drawn in vain.
+Poses result from forward kinematics and are never filtered, so no draw is discarded.
 """
 
 from harness.strategies.paths import StraightLine, joint_paths, straight_lines

@@ -1,4 +1,4 @@
-"""Ways through joint space, and straight lines that the arm can follow."""
+"""Joint paths, and straight lines that the arm can follow."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from harness.strategies.tasks import Task, manipulability, natural_task, task_er
 
 _CORNERS = np.array(list(product((1.0, -1.0), repeat=3))) / np.sqrt(3.0)
 DIRECTIONS: FloatArray = np.concatenate([np.eye(3), -np.eye(3), _CORNERS])
-"""Along the axes of the world and between them."""
+"""Unit vectors along the axes of the world and along its space diagonals, shape (14, 3)."""
 
 STEP = 0.002  # [m] between points of a line
 MARGIN = 0.02  # share of the ranges that lines keep from the limits
@@ -45,9 +45,9 @@ def joint_paths(
     """Paths through joint positions anywhere between the limits.
 
     Args:
-        chain: Of the arm.
-        min_size: Waypoints at least.
-        max_size: Waypoints at most.
+        chain: The arm's chain.
+        min_size: Smallest number of waypoints.
+        max_size: Largest number of waypoints.
     """
     waypoints = st.lists(joint_positions(chain), min_size=min_size, max_size=max_size)
     return waypoints.map(lambda each: JointPath(chain.joint_names, np.array(each)))
@@ -62,20 +62,20 @@ def straight_lines(
 ) -> st.SearchStrategy[StraightLine]:
     """Straight lines of the link that keep what the task fixes of its orientation.
 
-    They start at joint positions and end where a limit or a singularity comes near, so that there
-    always is a continuous way along them; some are a single point.
+    A line starts at joint positions and ends close to a limit or a singularity, so that a
+    continuous joint path along it always exists. A line may be a single point.
 
     Args:
-        chain: Of the arm.
-        task: By default the most that the arm's joints can do.
-        positions: Where lines start; by default anywhere between the limits.
-        max_length: [m].
+        chain: The arm's chain.
+        task: The arm's task; by default `natural_task`.
+        positions: Start positions; by default anywhere between the limits.
+        max_length: Largest length of a line [m].
     """
-    wanted = task or natural_task(chain)
+    fixed = task or natural_task(chain)
     starts = joint_positions(chain, margin=MARGIN) if positions is None else positions
     counts = st.integers(1, max(1, round(max_length / STEP)))
     return st.builds(
-        lambda start, direction, count: _follow(chain, wanted, start, direction, count),
+        lambda start, direction, count: _follow(chain, fixed, start, direction, count),
         starts,
         st.sampled_from(list(DIRECTIONS)),
         counts,

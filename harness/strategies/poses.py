@@ -1,4 +1,4 @@
-"""Poses of a link: within reach by construction, out of reach by construction, or anywhere."""
+"""Poses of a link: reachable by construction, unreachable by construction, or either."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from harness.strategies.tasks import Task
 
 @dataclass(frozen=True, eq=False)
 class Target:
-    """A pose that is asked for.
+    """A target pose.
 
     Attributes:
         pose: T_world_link.
-        joint_positions: That reach it, shape (dof,); None where nobody knows any.
+        joint_positions: Joint positions that reach the pose, shape (dof,); None when unknown.
     """
 
     pose: SE3
@@ -35,15 +35,15 @@ class Target:
 Targets = st.SearchStrategy[Target]
 
 BEYOND = (0.001, 0.01, 0.1, 1.0)
-"""How far outside the arm's reach, in shares of it."""
+"""Distances outside the arm's reach, as shares of the reach."""
 
 
 def reachable_poses(chain: Chain, positions: Positions | None = None) -> Targets:
     """Poses that the arm can take: forward kinematics of joint positions within the limits.
 
     Args:
-        chain: Of the arm.
-        positions: Where from; by default anywhere between the limits.
+        chain: The arm's chain.
+        positions: Joint positions to draw from; by default anywhere between the limits.
     """
     drawn = joint_positions(chain) if positions is None else positions
     return drawn.map(lambda each: Target(chain.link_pose(each), each))
@@ -63,13 +63,13 @@ def unreachable_poses(chain: Chain, *, any_orientation: bool = False) -> Targets
     """Poses that no joint positions reach, whatever the limits: the arm is too short.
 
     Args:
-        chain: Of the arm.
-        any_orientation: Out of reach even where the orientation is free; else the pose puts the
-            last joint out of reach.
+        chain: The arm's chain.
+        any_orientation: Whether the position is unreachable in every orientation; else the pose
+            puts the last joint out of reach.
     """
     centre, radius = chain.farthest()
-    behind = np.linalg.norm(chain.tip.translation) if any_orientation else 0.0
-    reach = radius + float(behind)
+    tip_length = np.linalg.norm(chain.tip.translation) if any_orientation else 0.0
+    reach = radius + float(tip_length)
 
     def beyond(target: Target, share: float) -> Target:
         pose = target.pose
@@ -87,7 +87,7 @@ def unreachable_poses(chain: Chain, *, any_orientation: bool = False) -> Targets
 def poses_around(chain: Chain) -> Targets:
     """Poses anywhere in and around the arm's reach: a reachable one, moved by up to its reach.
 
-    Whether the arm can take them is not known.
+    Whether the arm can reach them is unknown.
     """
     size = chain.farthest()[1] + float(np.linalg.norm(chain.tip.translation))
     shares = st.integers(-100, 100).map(lambda percent: 0.01 * percent)

@@ -16,11 +16,11 @@ from harness.strategies.tasks import Task, manipulability, natural_task
 
 Positions = st.SearchStrategy[FloatArray]
 
-MOST_CELLS = 256  # Hypothesis draws as many numbers evenly; of more, mostly the small ones
+MOST_CELLS = 256  # Hypothesis draws up to this many numbers evenly; of more, mostly small ones
 CELLS = (1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 0.01, 0.02, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0)
-"""Widths that ranges are divided by [rad or m]; shrunk positions lie on the cells' edges."""
+"""Widths of the cells that divide a range [rad or m]; positions shrink to the cells' edges."""
 
-PARTS = 100  # of a cell; what is drawn lies between the edges too
+PARTS = 100  # of a cell; positions are drawn between its edges too
 OFFSETS = (0.0, 1e-9, 1e-6, 1e-4, 1e-2)
 """Distances from a limit or a singularity [rad or m]."""
 
@@ -31,13 +31,13 @@ def load_chain(robot: str, *, gripper: str | None = None, group: str = "", link:
     """The chain of a robot, its base at the world's origin.
 
     Args:
-        robot: A bundled name (`ur3e`), a folder with a robot.yaml, or a .urdf or .xacro file.
+        robot: A bundled name (`ur3e`), a folder with a robot.yaml, a .urdf or a .xacro file.
         gripper: A bundled gripper's name.
         group: A planning group; by default the arm's.
-        link: The link that is placed; by default the TCP.
+        link: The link at the chain's end; by default the TCP.
 
     Raises:
-        RobotError: There is none of that name, or its files cannot be used.
+        RobotError: The robot is unknown, or its files cannot be used.
     """
     suffix = Path(robot).suffix.lower()
     key = {".urdf": "urdf", ".xacro": "xacro"}.get(suffix, "model")
@@ -49,8 +49,8 @@ def joint_positions(chain: Chain, *, margin: float = 0.0) -> Positions:
     """Positions anywhere between the limits, shape (dof,) [rad or m]; the simplest is home.
 
     Args:
-        chain: Of the arm.
-        margin: Share of each range that is left free on both sides, [0, 0.5).
+        chain: The arm's chain.
+        margin: Share of each range that is kept free on both sides, [0, 0.5).
     """
     return st.tuples(*_each_joint(chain, margin)).map(np.array)
 
@@ -81,17 +81,17 @@ def near_limit_positions(chain: Chain) -> Positions:
 def near_singular_positions(chain: Chain, task: Task | None = None) -> Positions:
     """Positions at a singularity of a task, or next to it.
 
-    From positions anywhere, the one joint that helps most is turned to where the smallest
-    singular value of the Jacobian is least.
+    Starting from arbitrary positions, the joint with the strongest effect moves to the minimum of
+    the Jacobian's smallest singular value.
 
     Args:
-        chain: Of the arm.
-        task: What is asked of the arm; by default the most that its joints can do.
+        chain: The arm's chain.
+        task: The arm's task; by default `natural_task`.
     """
-    wanted = task or natural_task(chain)
+    fixed = task or natural_task(chain)
 
     def singular(positions: FloatArray, offset: float) -> FloatArray:
-        found, joint = _to_singularity(chain, wanted, positions)
+        found, joint = _to_singularity(chain, fixed, positions)
         moved = np.array(found)
         moved[joint] += offset if moved[joint] + offset <= chain.upper[joint] else -offset
         return moved

@@ -1,4 +1,4 @@
-"""Scenario files that can be meant, small ones first."""
+"""Valid scenario files, which shrink to small ones."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from harness.strategies.poses import Target, reachable_poses
 from harness.strategies.positions import joint_positions, load_chain
 
 Document = dict[str, Any]
-"""A scenario as a YAML file says it; `yaml.safe_dump` writes it."""
+"""The content of a scenario's YAML file; `yaml.safe_dump` writes it."""
 
 
 def scenarios(
     robots: Sequence[str] = ("open_manipulator_x", "ur3e"), *, max_steps: int = 4
 ) -> st.SearchStrategy[Document]:
-    """Scenarios of one arm in an empty world; every name and number in them is known.
+    """Scenarios of one arm in an empty world; every name and number in them is valid.
 
-    Their goals are within reach; an arm that would touch itself there lets its step fail.
+    Their goals are reachable. A step whose goal is in self-collision fails.
 
     Args:
         robots: Bundled names to choose from, the simplest first.
-        max_steps: At most.
+        max_steps: Largest number of steps.
     """
     return st.sampled_from(list(robots)).flatmap(lambda robot: _of_robot(robot, max_steps))
 
 
 def _of_robot(robot: str, max_steps: int) -> st.SearchStrategy[Document]:
     chain = load_chain(robot)
-    steps = st.lists(st.one_of(_waits(), _states(chain), *_moves(chain)), min_size=1,
-                     max_size=max_steps)  # fmt: skip
+    step = st.one_of(_waits(), _states(chain), *_moves(chain))
+    steps = st.lists(step, min_size=1, max_size=max_steps)
     return st.builds(
         lambda steps, seed: {
             "scenario": f"Drawn for {robot}",

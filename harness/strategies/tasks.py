@@ -1,4 +1,4 @@
-"""What is asked of an arm: a pose, a position with a pitch, or a position."""
+"""Tasks of an arm: to reach a pose, a position with a pitch, or a position."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from harness.robot.chain import Chain
 Task = Literal["pose", "position and pitch", "position"]
 
 ROWS: dict[Task, int] = {"pose": 6, "position and pitch": 4, "position": 3}
-"""Numbers that a task fixes, which is how many joints it takes."""
+"""Number of coordinates that a task fixes: the number of joints that it needs."""
 
 _LEAST_HORIZONTAL = 0.05  # the pitch of an x axis that is nearly vertical changes no faster
 
 
 def natural_task(chain: Chain) -> Task:
-    """The most that an arm with so many joints can be asked for anywhere in its reach."""
+    """The task of most coordinates that the chain has enough joints for."""
     fitting: list[Task] = [task for task, rows in ROWS.items() if rows <= chain.dof]
     return fitting[0] if fitting else "position"
 
@@ -30,20 +30,20 @@ def pitch_of(pose: SE3) -> float:
     return float(np.arctan2(-x_axis[2], np.hypot(x_axis[0], x_axis[1])))
 
 
-def miss(task: Task, asked: SE3, reached: SE3) -> tuple[float, float]:
-    """How far a pose is from what a task asks for: [m], and [rad] of pitch or orientation."""
-    shift, turn = asked.distance_to(reached)
+def miss(task: Task, target: SE3, reached: SE3) -> tuple[float, float]:
+    """Position error [m] and pitch or orientation error [rad] of a pose, as the task has it."""
+    shift, turn = target.distance_to(reached)
     if task == "pose":
         return shift, turn
-    return shift, abs(pitch_of(asked) - pitch_of(reached)) if "pitch" in task else 0.0
+    return shift, abs(pitch_of(target) - pitch_of(reached)) if "pitch" in task else 0.0
 
 
 def task_jacobians(chain: Chain, task: Task, samples: FloatArray) -> FloatArray:
-    """How joints change what a task fixes, positions in shares of the arm's reach.
+    """Jacobians of a task's coordinates, with positions in shares of the arm's reach.
 
     Args:
-        chain: Of the arm.
-        task: What is fixed.
+        chain: The arm's chain.
+        task: The task.
         samples: Joint positions, shape (N, dof).
 
     Returns:
@@ -62,17 +62,17 @@ def task_jacobians(chain: Chain, task: Task, samples: FloatArray) -> FloatArray:
     return np.concatenate([jacobians[:, :3], pitch[:, None]], axis=1)
 
 
-def task_error(task: Task, asked: SE3, here: SE3, reach: float) -> FloatArray:
-    """What is left to a target, in the rows of `task_jacobians`; `reach` in m.
+def task_error(task: Task, target: SE3, here: SE3, reach: float) -> FloatArray:
+    """Error to a target in the rows of `task_jacobians`; `reach` in m.
 
-    The turn is to first order.
+    The rotation error is of first order.
     """
-    shift = (asked.translation - here.translation) / reach
+    shift = (target.translation - here.translation) / reach
     if task == "position":
         return shift
     if task == "position and pitch":
-        return np.append(shift, pitch_of(asked) - pitch_of(here))
-    crossed = np.cross(here.rotation, asked.rotation, axis=0)  # column by column
+        return np.append(shift, pitch_of(target) - pitch_of(here))
+    crossed = np.cross(here.rotation, target.rotation, axis=0)  # column by column
     return np.concatenate([shift, 0.5 * crossed.sum(axis=1)])
 
 

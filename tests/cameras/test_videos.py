@@ -100,7 +100,9 @@ def test_a_long_run_is_recorded_more_slowly_and_says_so():
     tiny = replace(CAMERA, width=16, height=16)
     video, _, (note,) = recorded(replace(run, cameras=(tiny,)), objects)
     assert len(video.times) <= MOST_FRAMES + 1
-    assert note.message == "eye is recorded at 5 Hz instead of 10 Hz: the run is long"
+    assert note.message == (
+        "eye is recorded at 5 Hz instead of 10 Hz: a video has at most 1500 frames"
+    )
 
 
 def test_videos_of_equal_runs_are_equal_bytes():

@@ -48,7 +48,7 @@ def test_an_imported_sdf_world_means_what_the_sdf_file_does(tmp_path, capsys):
     assert main(["import", "sdf", str(FRAMES), "-o", str(written)]) == 0
     said = capsys.readouterr().out
     assert f"wrote {written}: 6 objects; `world: frames.yaml`" in said
-    assert "the revolute joint 'j' is held where it stands" in said
+    assert "the revolute joint 'j' is held in its initial position" in said
     world = load_world("frames.yaml", written.parent).world
     assert world == load_sdf(FRAMES).world
     assert "#   " + said.splitlines()[0].removeprefix("note: ") in written.read_text()
@@ -105,7 +105,7 @@ def test_a_mistake_of_the_file_is_told_at_its_line_and_nothing_written(tmp_path,
     source = tmp_path / "a.scene"
     source.write_text(NEW.replace("cylinder", "cone"))
     assert main(["import", "scene", str(source)]) == 2
-    assert "a.scene:11:1: a shape cannot be a `cone` here" in capsys.readouterr().err
+    assert "a.scene:11:1: a shape cannot be a `cone`" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["a.scene"]
 
 

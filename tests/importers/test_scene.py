@@ -131,16 +131,20 @@ def test_a_plane_is_solid_behind_its_normal_at_its_distance(tmp_path):
 @pytest.mark.parametrize(
     ("text", "line", "message"),
     [
-        (NEW.replace("\n.\n", "\n"), 29, "an object is meant, not the end of the file"),
-        (NEW.replace("* ball", "# ball"), 20, "an object is meant, not `#`"),
-        (NEW.replace("* ball", "* table"), 20, "another object is called 'table'"),
-        (NEW.replace("cylinder", "cone"), 11, "a shape cannot be a `cone` here"),
+        (NEW.replace("\n.\n", "\n"), 29, "expected an object, found the end of the file"),
+        (NEW.replace("* ball", "# ball"), 20, "expected an object, found `#`"),
+        (NEW.replace("* ball", "* table"), 20, "another object has the name 'table'"),
+        (NEW.replace("cylinder", "cone"), 11, "a shape cannot be a `cone`"),
         (NEW.replace("0.05", "-1"), 24, "a shape has sizes above 0"),
-        (NEW.replace("0.05", "nan"), 25, "a finite number is meant, not `nan`"),
+        (NEW.replace("0.05", "nan"), 25, "expected a finite number, found `nan`"),
         (NEW.replace("0 0 1\n0 0 0 1\n1\nsphere", "0 0 1\n0 0 0 0\n1\nsphere"), 22, "has norm 1"),
-        (NEW.replace("\n2\nbox", "\n99999999\nbox"), 5, "99999999 shapes; at most 10000 are read"),
-        (NEW.replace("\n2\nbox", "\ntwo\nbox"), 5, "a number of shapes is meant, not `two`"),
-        ("", 1, "an object is meant, not the end of the file"),
+        (
+            NEW.replace("\n2\nbox", "\n99999999\nbox"),
+            5,
+            "99999999 shapes; at most 10000 are supported",
+        ),
+        (NEW.replace("\n2\nbox", "\ntwo\nbox"), 5, "expected a number of shapes, found `two`"),
+        ("", 1, "expected an object, found the end of the file"),
     ],
 )
 def test_a_mistake_is_told_at_its_line(tmp_path, text, line, message):

@@ -78,7 +78,9 @@ def test_a_mistake_of_the_world_is_told_at_its_line_with_exit_code_2(cell, capsy
     world = cell.parent / "cell.sdf"
     world.write_text(TABLE_AND_CYLINDER.replace("<mass>0.1</mass>", "<mass>zero</mass>"))
     assert main(["run", str(cell), "--no-report"]) == 2
-    assert f"{world}:13:33: <mass>: a finite number is meant, not `zero`" in capsys.readouterr().out
+    assert (
+        f"{world}:13:33: <mass>: expected a finite number, found `zero`" in capsys.readouterr().out
+    )
 
 
 @pytest.mark.parametrize("given", ["scenario", "environment"])

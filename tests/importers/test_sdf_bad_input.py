@@ -34,34 +34,34 @@ BOMB = "<!DOCTYPE b [<!ENTITY a 'aaaaaaaaaa'>" + "".join(
         ("<sdf version='1.9'>\n<world>\n</sdf>", 3, "mismatched tag"),
         (f"{BOMB}]><sdf version='1.9'>&j;</sdf>", 1, "a DOCTYPE, and with it entities"),
         ("<!DOCTYPE s SYSTEM 'file:///etc/passwd'><sdf version='1.9'/>", 1, "a DOCTYPE"),
-        ("<robot/>", 1, "the root element is <robot>, an SDF file's is <sdf>"),
+        ("<robot/>", 1, "the root element is <robot>; that of an SDF file is <sdf>"),
         ("<sdf/>", 1, "<sdf> lacks its attribute 'version'"),
         ("<sdf version='1.3'/>", 1, "SDF 1.3 is older than 1.4"),
-        ("<sdf version='nine'/>", 1, "`nine` is no version of SDF"),
+        ("<sdf version='nine'/>", 1, "`nine` is not a version of SDF"),
         ("<sdf version='1.9'>\n" + "<a>" * 300 + "</a>" * 300 + "</sdf>", 2, "nested more than"),
-        (text_with("model", "\n<pose>0 0 zero 0 0 0</pose>"), 8, "6 finite numbers are meant"),
-        (text_with("model", "\n<pose>0 0 inf 0 0 0</pose>"), 8, "6 finite numbers are meant"),
+        (text_with("model", "\n<pose>0 0 zero 0 0 0</pose>"), 8, "expected 6 finite numbers"),
+        (text_with("model", "\n<pose>0 0 inf 0 0 0</pose>"), 8, "expected 6 finite numbers"),
         (
             text_with("model", "\n<pose rotation_format='quat_xyzw'>0 0 0 0 0 0</pose>"),
             8,
-            "7 finite numbers are meant",
+            "expected 7 finite numbers",
         ),
         (text_with("model", "\n<static>maybe</static>"), 8, "`maybe` is neither true nor false"),
         (text_with("inertial", "\n<mass>0</mass>"), 10, "has a mass above 0, not 0 kg"),
         (
             text_with("inertial", "\n<inertia><ixx>1</ixx><iyy>1</iyy><izz>9</izz></inertia>"),
             10,
-            "no body has this inertia",
+            "no rigid body has this inertia",
         ),
         (text_with("geometry", "\n<box><size>1 1 0</size></box>"), 12, "sizes above 0, not 1 1 0"),
         (text_with("geometry", "\n<sphere/>"), 12, "<sphere> lacks its <radius>"),
-        (text_with("geometry", "\n<ball/>"), 12, "no shape is called <ball>"),
+        (text_with("geometry", "\n<ball/>"), 12, "the shape <ball> is not known"),
         (
             text_with("geometry", "\n<mesh><uri>none.stl</uri></mesh>"),
             12,
             "`none.stl` is not found",
         ),
-        (text_with("geometry", "\n<mesh><uri>crate</uri></mesh>"), 12, "`crate` is no file"),
+        (text_with("geometry", "\n<mesh><uri>crate</uri></mesh>"), 12, "`crate` is not a file"),
         (
             text_with("mesh", "\n<uri>http://example.org/a.stl</uri>"),
             23,
@@ -70,17 +70,17 @@ BOMB = "<!DOCTYPE b [<!ENTITY a 'aaaaaaaaaa'>" + "".join(
         (
             text_with("mesh", "\n<uri>/etc/passwd</uri>"),
             23,
-            "`/etc/passwd` is outside of the folders that may be read",
+            "`/etc/passwd` is outside the folders that may be read",
         ),
         (
             text_with("mesh", "\n<uri>file:///etc/passwd</uri>"),
             23,
-            "`file:///etc/passwd` is outside of the folders that may be read",
+            "`file:///etc/passwd` is outside the folders that may be read",
         ),
         (
             text_with("include", "\n<uri>model://crate/../../../../../../../../etc</uri>"),
             27,
-            "is outside of the folders that may be read",
+            "is outside the folders that may be read",
         ),
         (text_with("include", "\n<uri>model://crat</uri>"), 27, "`model://crat` is not found"),
         (text_with("physics", "\n<max_step_size>1</max_step_size>"), 5, "a physics step of 1 s"),
@@ -97,7 +97,7 @@ def test_models_that_include_each_other_are_told_with_the_circle(tmp_path):
     loop = "<sdf version='1.9'><model name='a'>\n<include><uri>model://loop</uri></include></model></sdf>"
     (tmp_path / "loop" / "model.sdf").write_text(loop)
     problem = problem_of(tmp_path, text_with("world", "<include><uri>model://loop</uri></include>"))
-    assert problem.message == "includes run in a circle: world.sdf -> model.sdf -> model.sdf"
+    assert problem.message == "includes form a cycle: world.sdf -> model.sdf -> model.sdf"
     assert (problem.path, problem.line) == (str(tmp_path / "loop" / "model.sdf"), 2)
 
 
@@ -127,7 +127,7 @@ def test_a_link_out_of_the_folder_is_not_followed(tmp_path):
     (tmp_path / "inside" / "part2.stl").symlink_to(tmp_path / "secret.stl")
     text = text_with("mesh", "<uri>part2.stl</uri>")
     problem = problem_of(tmp_path / "inside", text)
-    assert "`part2.stl` is outside of the folders that may be read" in problem.message
+    assert "`part2.stl` is outside the folders that may be read" in problem.message
     assert "model_path" in problem.hint
 
 

@@ -68,12 +68,12 @@ def test_a_format_without_a_meaning_and_other_sensors_are_told(tmp_path):
 @pytest.mark.parametrize(
     ("kind", "snippet", "message"),
     [
-        ("camera", "\n<horizontal_fov>3.2</horizontal_fov>", "sees 3.2 rad wide"),
+        ("camera", "\n<horizontal_fov>3.2</horizontal_fov>", "a field of view of 3.2 rad"),
         ("image", "\n<width>9000</width>", "width is 8 to 2048 pixels, not 9000"),
-        ("image", "\n<width>wide</width>", "a finite number is meant"),
+        ("image", "\n<width>wide</width>", "expected a finite number"),
         ("clip", "\n<near>10</near>", "<near> (10 m) is above 0 and less than <far> (9 m)"),
         ("noise", "\n<stddev>7</stddev>", "a share of full white"),
-        ("noise", "\n<type>perlin</type>", "no noise is called `perlin`"),
+        ("noise", "\n<type>perlin</type>", "the noise type `perlin` is not known"),
     ],
 )
 def test_a_number_that_no_camera_has_is_told_at_its_place(tmp_path, kind, snippet, message):

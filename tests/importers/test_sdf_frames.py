@@ -73,12 +73,12 @@ def test_the_frame_of_a_pose_has_its_old_word_and_its_new_one(tmp_path, word):
             "<frame name='a'><pose relative_to='b'/></frame>"
             "<frame name='b'><pose relative_to='a'/></frame>"
             "<model name='n'><pose relative_to='a'/><link name='l'/></model>",
-            "stands on itself in a circle",
+            "is relative to itself in a cycle",
         ),
         ("joint", "<parent>nothing</parent>", "there is no link or frame 'nothing' here"),
         ("collision", "<pose relative_to='x'>0 0 0 0 0 0</pose>", "there is no frame 'x' here"),
-        ("model", "<frame name='l'/>", "'l' is here twice"),
-        ("model", "<link name='world'/>", "'world' has a meaning of its own"),
+        ("model", "<frame name='l'/>", "'l' is defined twice"),
+        ("model", "<link name='world'/>", "'world' is a reserved name"),
     ],
 )
 def test_a_frame_that_cannot_be_is_told_at_its_place(tmp_path, kind, snippet, message):
@@ -93,7 +93,9 @@ def test_a_frame_that_cannot_be_is_told_at_its_place(tmp_path, kind, snippet, me
 def test_what_can_move_in_gazebo_is_held_here_and_told_of(tmp_path):
     found = load(tmp_path, text_with().replace('type="fixed"', 'type="revolute"'))
     assert [item.name for item in found.world.objects] == ["m", "crate"]
-    assert "the revolute joint 'j' is held where it stands" in [n.message for n in found.notes]
+    assert "the revolute joint 'j' is held in its initial position" in [
+        n.message for n in found.notes
+    ]
 
 
 def test_links_that_nothing_joins_are_objects_of_their_own(tmp_path):

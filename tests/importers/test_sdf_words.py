@@ -363,7 +363,7 @@ def test_the_colour_is_the_ambient_or_the_scripts_where_there_is_no_diffuse(tmp_
     assert the(red).visuals[0].color == (1, 0, 0, 1)
     wood = load(tmp_path, bare.replace("{}", script.replace("{name}", "Wood")))
     assert the(wood.world).visuals[0].color is None
-    assert "the material script `Gazebo/Wood` is no plain colour" in str(wood.notes)
+    assert "the material script `Gazebo/Wood` is not a plain colour" in str(wood.notes)
 
 
 def test_a_file_of_models_alone_is_a_world_of_them(tmp_path):

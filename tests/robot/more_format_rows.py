@@ -130,7 +130,7 @@ MJCF_ROWS = (
     refused("a slide without a range", "", ' range="0 0.1"', "", "has no range"),
     refused("`<extension>`", "", EQUALITY, "<extension/>" + EQUALITY, "plugins are not loaded"),
     refused("`<composite>`, `<flexcomp>`", "", BALL, BALL + '<flexcomp name="a"/>',
-            "bodies that bend"),
+            "deformable bodies"),
     refused("`<model>`, `<attach>`", "", "<asset>", '<asset><model name="a" file="arm.xml"/>',
             "are not attached"),
     refused("a file outside of the given folders", "", "t.obj", "/etc/passwd", "outside"),

@@ -119,7 +119,7 @@ CASES = {
             "arm.srdf", '<group name="manipulator">',
             '<group name="b"><group name="manipulator"/></group>'
             '<group name="manipulator"><group name="b"/>',
-            "3:93: group 'manipulator': groups hold each other in a circle: ",
+            "3:93: group 'manipulator': groups contain each other in a circle: ",
         ),
     ],
     "no mass": [
@@ -208,7 +208,7 @@ def test_a_bad_file_is_told_at_its_place(tmp_path, capsys, kind, file, old, new,
         ("</asset>", "<mesh name='s' builtin='supersphere' params='1e5 1 1'/></asset>", "params"),
         ("</asset>", "<model name='m' file='arm.xml'/></asset>", "other files are not attached"),
         ("<compiler", "<size nkey='1e9'/><compiler", "nkey above 1000"),
-        ("<equality>", "<worldbody><flexcomp name='f'/></worldbody><equality>", "that bend"),
+        ("<equality>", "<worldbody><flexcomp name='f'/></worldbody><equality>", "deformable"),
         ("<equality>", f"<a {' '.join(f'b{n}=' + repr('1') for n in range(300))}/><equality>",
          "has more than 200 attributes"),
     ],

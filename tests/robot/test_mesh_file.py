@@ -84,10 +84,10 @@ def test_planner_and_physics_touch_the_same_hull(tmp_path):
 @pytest.mark.parametrize(
     ("name", "text", "words"),
     [
-        ("a.stl", "", "no STL file, or damaged"),
+        ("a.stl", "", "damaged or not in STL format"),
         ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "is flat"),
         ("a.dae", "<!DOCTYPE a>" + DAE.format(unit=1), "declares a document type"),
-        ("a.ply", "ply", "no STL, OBJ or DAE file"),
+        ("a.ply", "ply", "not an STL, OBJ or DAE file"),
         ("a.stl", "x" * 64_000_001, "at most 64 MB"),
     ],
 )

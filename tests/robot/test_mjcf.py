@@ -82,9 +82,9 @@ def test_limits_efforts_states_and_pairs_are_read(tmp_path):
     assert arm.allowed_collisions["base", "lower"] == "Excluded"
     assert arm.notes[:4] == (
         "body 'upper' has 2 joints: links are put between them",
-        "bodies that are free or no part of the arm are left out: cube",
+        "bodies that are free or outside the arm are left out: cube",
         "3 actuators are not used: the program drives every joint with its own servo",
-        "1 geoms of the world body are no part of the robot",
+        "1 geoms of the world body are not part of the robot",
     )
 
 

@@ -131,7 +131,7 @@ def test_groups_of_every_form_have_their_active_joints():
         ('tip_link="c"', 'tip_link="d"', ["'arm'", "no chain", "'d'"]),
         ('joint name="ab"/></group>', 'joint name="cd"/></group>', ["'joints'", "'cd'"]),
         ('<group name="links"/>', '<group name="both"/>', ["'both'"]),
-        ('value="0.1"', 'value="low"', ["arm.srdf:4:60", "'low' is no finite number"]),
+        ('value="0.1"', 'value="low"', ["arm.srdf:4:60", "'low' is not a finite number"]),
         ('link2="a"', 'link3="a"', ["link2"]),
     ],
 )

@@ -65,7 +65,7 @@ def test_a_mistake_of_a_macro_is_told_in_the_file_that_has_it(tmp_path):
     problem = caught.value.problems[0]
     assert problem.path.endswith("parts/limb.xacro")
     assert (problem.line, problem.column) == (8, 21)
-    assert "'low' is no finite number" in problem.message
+    assert "'low' is not a finite number" in problem.message
 
 
 ESCAPE = "${python.vars(python.type)['__subclasses__'](python.type('').mro()[1])}"

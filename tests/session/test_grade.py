@@ -160,7 +160,7 @@ def test_without_poses_of_objects_only_the_robot_is_judged(recording, tmp_path, 
     bag = recording.without(POSES).write(tmp_path / "blind.mcap")
     assert main(["grade", str(SCENARIO), str(bag)]) == 1
     said = capsys.readouterr().out
-    assert "nobody recorded where red_box, green_cylinder" in said
+    assert "the recording lacks poses of red_box, green_cylinder" in said
     assert "not observable: where 'green_cylinder' stood was not recorded" in said
     assert said.splitlines()[-1] == "4 of 14 points; 10 of them cannot be seen in this recording"
 
@@ -204,7 +204,7 @@ def test_objects_stamped_by_another_clock_come_over_the_recorders(recording, tmp
     grade = grade_bag(SCENARIO, recording.write(tmp_path / "clocks.mcap"), GAZEBO)
     assert grade.earned == 14
     [note] = grade.notes
-    assert "has another clock than the joint states" in note
+    assert "and the joint states have different clocks" in note
 
 
 def test_joint_states_without_stamps_are_where_the_recorder_got_them(recording, tmp_path):
@@ -275,7 +275,7 @@ def test_frames_that_go_in_a_circle_are_told_and_end(recording, tmp_path):
     blind = recording.without(POSES)
     blind.add("/tf", "tf2_msgs/msg/TFMessage", 0.0, {"transforms": circle})
     grade = grade_bag(SCENARIO, blind.write(tmp_path / "circle.mcap"))
-    assert any("go round in a circle" in note for note in grade.notes)
+    assert any("form a cycle" in note for note in grade.notes)
     assert status_of(grade, "displaced") in ("not observable", "not reached")
 
 
@@ -316,7 +316,7 @@ def test_qos_in_any_dialect_is_no_reason_to_refuse(recording, tmp_path):
     (tmp_path / "bag/metadata.yaml").unlink()
     grade = grade_bag(SCENARIO, tmp_path / "bag", GAZEBO)
     assert grade.earned == 14
-    assert "metadata.yaml is missing, as when a recorder is killed" in grade.notes[0]
+    assert "metadata.yaml is missing, as after a recorder was killed" in grade.notes[0]
 
 
 EACH = {
@@ -422,7 +422,7 @@ def cut_off(path, whole):
 
 def no_mcap(path, _):
     (path / "bag.mcap").write_text("joint states of Monday\n" * 20)
-    return path / "bag.mcap", "no MCAP file"
+    return path / "bag.mcap", "not an MCAP file"
 
 
 def one_byte_changed(path, whole):
@@ -453,7 +453,7 @@ def bomb(path, _):
         file.flush()
     start = (path / "bag.mcap").read_bytes()
     (path / "bag.mcap").write_bytes(start + record)
-    return path / "bag.mcap", "unpacks to more than the 1000 bytes"
+    return path / "bag.mcap", "unpacks to more than the maximum of 1000 bytes"
 
 
 def nothing(path, _):
@@ -462,12 +462,12 @@ def nothing(path, _):
 
 def an_empty_folder(path, _):
     (path / "bag").mkdir()
-    return path / "bag", "is no recording: no metadata.yaml, no .mcap and no .db3 file in it"
+    return path / "bag", "is not a recording: it has no metadata.yaml, no .mcap and no .db3 file"
 
 
 def another_file(path, _):
     (path / "notes.txt").write_text("x")
-    return path / "notes.txt", "is no recording"
+    return path / "notes.txt", "is not a recording"
 
 
 def broken_metadata(path, _):
@@ -479,7 +479,7 @@ def broken_metadata(path, _):
 def metadata_without_files(path, _):
     (path / "bag").mkdir()
     (path / "bag/metadata.yaml").write_text("- 1\n")
-    return path / "bag", "does not say which files the recording has"
+    return path / "bag", "does not list the recording's files"
 
 
 def a_missing_file(path, whole):
@@ -487,7 +487,7 @@ def a_missing_file(path, whole):
     text = "rosbag2_bagfile_information: {relative_file_paths: [../../one.mcap]}"
     (path / "bag/metadata.yaml").write_text(text)
     shutil.copy(whole, path / "one.mcap")
-    return path / "bag", "one.mcap: is missing, though metadata.yaml names it"
+    return path / "bag", "one.mcap: is missing, although metadata.yaml lists it"
 
 
 def no_database(path, _):
@@ -500,7 +500,7 @@ def another_database(path, _):
     database.execute("CREATE VIEW messages AS SELECT 1 AS topic_id")
     database.commit()
     database.close()
-    return path / "bag.db3", "it has no tables of topics and messages"
+    return path / "bag.db3", "it lacks the tables `topics` and `messages`"
 
 
 def without_messages(path, _):
@@ -508,7 +508,7 @@ def without_messages(path, _):
         writer = McapWriter(file)
         writer.start(profile="ros2")
         writer.finish()
-    return path / "bag.mcap", "it holds no messages"
+    return path / "bag.mcap", "it has no messages"
 
 
 BROKEN = (
@@ -538,9 +538,12 @@ def test_a_recording_that_cannot_be_used_is_told_by_its_name(breaks, whole, tmp_
     [
         (["--objects", "/nowhere"], f"has no topic /nowhere\n  topics with poses there: {POSES}"),
         (["--objects", "/joint_states"], "/joint_states is of type sensor_msgs/msg/JointState"),
-        (["--object", "green_cylinder=" + POSES], "which gives no poses of objects"),
+        (["--object", "green_cylinder=" + POSES], "which has no poses of objects"),
         (["--object", "cylinder"], "'cylinder' is not NAME=TOPIC"),
-        (["--joint-states", "/arm/joints"], "joint states there: /joint_states (--joint-states"),
+        (
+            ["--joint-states", "/arm/joints"],
+            "topics of joint states: /joint_states (--joint-states",
+        ),
         (["--set", "robot.model=open_manipulator_x"], ""),
     ],
 )

@@ -1,1 +1,1 @@
-"""Recordings of other programs, rosbag2 or MCAP, as a run that can be judged."""
+"""Importer of third-party recordings, rosbag2 or MCAP, as runs that can be judged."""

@@ -1,4 +1,4 @@
-"""One time line for everything recorded, whatever clocks its senders had."""
+"""One time line for all topics of a recording, whose senders may use different clocks."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.importers.bag.content import Track
 
 SET_BACK = 10**9
-"""A clock that goes back by more was set back: a restarted simulation [ns]. Less is disorder."""
+"""A clock that jumps back by more than this [ns] was restarted; a smaller jump is disorder."""
 SAME_CLOCK = 0.5
-"""Half of a topic's stamps are within so much of the reference's clock, or it is another [s]."""
+"""Largest median difference between the stamps of one clock and the reference's clock [s]."""
 
 
 class Timeline:
     """Seconds since the first sample of the reference, by its sender's clock.
 
-    Stamps of other topics count as they are where their clock is the same; where it is not (one
-    node with `use_sim_time`, the other without; two computers), the recorder's clock leads from one
-    to the other. Stamps may be in disorder. Where a clock was set back, only what follows counts.
+    Stamps of other topics are used directly when they are from the same clock. Otherwise (one node
+    with `use_sim_time`, the other without; two computers), the recorder's times convert between the
+    clocks. Stamps may be in disorder. After a clock was set back, only the later part is used.
 
     Attributes:
-        notes: What was found out about clocks.
+        notes: Notes on the clocks.
     """
 
     def __init__(self, reference: Track) -> None:
@@ -32,13 +32,13 @@ class Timeline:
         if (stamps.min() == stamps.max() and len(stamps) > 1) or stamps.min() <= 0:
             stamps = logged
             self.notes.append(
-                "the joint states have no stamps; the recorder's times stand for them"
+                "the joint states have no stamps; the recorder's times are used instead"
             )
         begin = _last_start(stamps)
         self._is_restarted = begin > 0
         if begin:
             self.notes.append(
-                "the clock was set back during the recording; what is judged is the part after that"
+                "the clock was set back during the recording; only the part after that is judged"
             )
         self._first_logged = int(logged[begin])
         logged, stamps = logged[begin:], stamps[begin:]
@@ -48,11 +48,11 @@ class Timeline:
         self._has_log = bool(self._logged[-1] > 0)
 
     def rows(self, track: Track, name: str) -> tuple[FloatArray, BoolArray]:
-        """Time of every row [s], and which rows are of the part that is judged; shape (N,) each.
+        """Time of every row [s], and whether the row is in the judged part; shape (N,) each.
 
         Args:
-            track: Of any topic.
-            name: For notes.
+            track: The track of any topic.
+            name: Name of the topic in notes.
         """
         logged, stamps = track.times()
         is_judged: BoolArray = np.ones(len(logged), dtype=bool)
@@ -66,14 +66,14 @@ class Timeline:
             return by_log, is_judged
         apart = np.abs(own - by_log)[is_judged]
         if len(apart) and float(np.median(apart)) > SAME_CLOCK:
-            note = f"{name} has another clock than the joint states; the recorder's leads to theirs"
+            note = f"{name} and the joint states have different clocks; the recorder's aligns them"
             if note not in self.notes:
                 self.notes.append(note)
             return by_log, is_judged
         return own, is_judged
 
     def at_logged(self, logged: IntArray) -> FloatArray:
-        """Times of the reference's clock at which the recorder got something [s]."""
+        """Times of the reference's clock for times of the recorder's clock [s]."""
         seconds = (logged - self._first_logged) / 1e9
         inside = np.interp(seconds, self._logged, self._stamped)
         before = np.minimum(seconds - self._logged[0], 0.0)
@@ -82,9 +82,9 @@ class Timeline:
 
 
 def _last_start(stamps: IntArray) -> int:
-    """Index of the first row after a clock was set back for the last time; 0 when it never was.
+    """Index of the first row after the last restart of the clock; 0 without a restart.
 
-    One late message is followed by stamps that go on as before; a restart is not.
+    After a single late message the stamps continue as before it; after a restart they do not.
     """
     for index in np.flatnonzero(np.diff(stamps) < -SET_BACK)[::-1]:
         after = stamps[index + 1 : index + 6]

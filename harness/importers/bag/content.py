@@ -1,4 +1,4 @@
-"""What a recording holds that a run is made of: joints, frames, events, compact."""
+"""The parts of a recording that make up a run: joints, frames and events."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from harness.core.types import FloatArray, IntArray
 
 @dataclass
 class Track:
-    """Rows of numbers with two times each.
+    """Rows of numbers, each with two times.
 
     Attributes:
-        logged: By the recorder's clock [ns].
-        stamps: By the sender's clock [ns]; 0 where it gave none.
-        numbers: Rows one behind the other.
-        width: Of a row.
+        logged: Times of the recorder's clock [ns].
+        stamps: Times of the sender's clock [ns]; 0 where a message has none.
+        numbers: The rows, concatenated.
+        width: Length of a row.
     """
 
     width: int
@@ -29,33 +29,32 @@ class Track:
     numbers: array[float] = field(default_factory=lambda: array("d"))
 
     def rows(self) -> FloatArray:
-        """Shape (N, width), in the order of the recording."""
+        """The rows in the order of the recording, shape (N, width)."""
         return np.array(self.numbers, dtype=float).reshape(-1, self.width)
 
     def times(self) -> tuple[IntArray, IntArray]:
-        """`logged` and `stamps`, shape (N,) each."""
+        """`logged` and `stamps` as arrays, shape (N,) each."""
         return np.array(self.logged, dtype=np.int64), np.array(self.stamps, dtype=np.int64)
 
 
 Tracks = dict[tuple[str, ...], Track]
-"""By the joints of a message, or by parent and child frame."""
+"""Tracks by the joints of a message, or by parent and child frame."""
 
 
 @dataclass
 class BagContent:
-    """What was found.
+    """The content of a recording.
 
     Attributes:
-        joints: By the names of a message: positions, velocities, efforts of each, one after the
-            other; NaN where the message has none.
-        commands: The same of commanded joints.
-        edges: T_parent_child (xyz, quat wxyz) by frames, of the tree of frames.
-        static_edges: Those that were said to hold for ever.
-        objects: T_frame_object by (frame, object), of topics that the user named.
-        events: (logged [ns], content) of the events of this program, or of a student's in the same
-            form.
-        topics: How many messages each topic has, and of what type they are.
-        notes: What a person should know.
+        joints: Tracks by the joint names of a message; a row has all positions, then velocities,
+            then efforts, NaN where the message has none.
+        commands: Tracks of commanded joints in the same form.
+        edges: T_parent_child (xyz, quat wxyz) by frames, from the frame tree.
+        static_edges: The same for static transforms.
+        objects: T_frame_object by (frame, object), from the topics that the user named.
+        events: (logged [ns], content) of events in this program's form.
+        topics: Type and number of messages of each topic.
+        notes: Notes for the user.
     """
 
     joints: Tracks = field(default_factory=dict[tuple[str, ...], Track])
@@ -72,11 +71,11 @@ class BagContent:
 
 @dataclass(frozen=True)
 class BagTopics:
-    """Where to look.
+    """The topics to read.
 
     Attributes:
         joint_states: Topic of the measured joints.
-        objects: Topics whose messages name the objects that they are about.
+        objects: Topics whose messages contain object names and poses.
         object_poses: Topic of the pose of one object, by the object's name.
     """
 

@@ -1,4 +1,4 @@
-"""Steps and attachments that a recording's events tell of."""
+"""Steps and attachments from a recording's events."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from harness.importers.bag.content import BagContent
 from harness.recording.run import AttachmentRecord, StepRecord, StepStatus
 
 RESOLUTION = 1e-6
-"""Of times that are compared [s]; stamps are whole nanoseconds."""
+"""Tolerance of comparisons of times [s]; stamps are whole nanoseconds."""
 STATUSES: Mapping[str, StepStatus] = {status: status for status in get_args(StepStatus)}
 Timed = tuple[float, dict[str, Any]]
 Interval = tuple[float, float]
@@ -30,11 +30,11 @@ def timed_events(content: BagContent, timeline: Timeline) -> list[Timed]:
 def steps_of(
     events: list[Timed], times: FloatArray, known: Mapping[str, tuple[int, str]]
 ) -> tuple[StepRecord, ...]:
-    """Steps that began; one whose end nobody tells lasts to the next one's begin, or to the end.
+    """Steps that began; without an end event, a step lasts until the next step or the run's end.
 
     Args:
-        events: In order of time.
-        times: Of the run's samples [s].
+        events: Events in order of time.
+        times: Times of the run's samples [s].
         known: Line and summary of the scenario's steps, by id and by path.
     """
     events = [(time, event) for time, event in events if "step" in event]
@@ -43,15 +43,14 @@ def steps_of(
         if event.get("event") == "step_not_reached":
             steps.append(_step(event, known, (begin, begin), times, "not_reached"))
         elif event.get("event") == "step_started":
-            end, told = _end(event, events[number + 1 :], float(times[-1]))
-            said = str(told.get("status"))
-            status: StepStatus = STATUSES.get(said, "passed")
-            steps.append(_step({**event, **told}, known, (begin, end), times, status))
+            end, final = _end(event, events[number + 1 :], float(times[-1]))
+            status = STATUSES.get(str(final.get("status")), "passed")
+            steps.append(_step({**event, **final}, known, (begin, end), times, status))
     return tuple(steps)
 
 
 def presence_of(events: list[Timed], name: str, times: FloatArray) -> tuple[Interval, ...]:
-    """Intervals (from, to) in which an object was in the scene [s]; all of it without events."""
+    """Intervals (from, to) [s] of an object in the scene; the whole run without events."""
     changes = [
         (time, event["event"] == "object_added")
         for time, event in events
@@ -70,7 +69,7 @@ def presence_of(events: list[Timed], name: str, times: FloatArray) -> tuple[Inte
 
 
 def is_present(intervals: Sequence[Interval], times: FloatArray) -> BoolArray:
-    """At which samples one of the intervals holds, shape (N,)."""
+    """Whether each sample is in one of the intervals, shape (N,)."""
     inside: BoolArray = np.zeros(len(times), dtype=bool)
     for begin, end in intervals:
         inside |= (times >= begin - RESOLUTION) & (times <= end + RESOLUTION)
@@ -78,7 +77,7 @@ def is_present(intervals: Sequence[Interval], times: FloatArray) -> BoolArray:
 
 
 def attachments_of(events: list[Timed]) -> tuple[AttachmentRecord, ...]:
-    """What the planner fixed to links."""
+    """Objects that were attached to links in the planning scene."""
     records: list[AttachmentRecord] = []
     for number, (begin, event) in enumerate(events):
         pose: Any = event.get("pose_in_link")
@@ -104,7 +103,7 @@ def attachments_of(events: list[Timed]) -> tuple[AttachmentRecord, ...]:
 
 
 def _end(event: dict[str, Any], later: list[Timed], last: float) -> Timed:
-    """When a step ended, and what was said of it then."""
+    """Time at which a step ended, and its last event."""
     for time, other in later:
         if other.get("event") == "step_finished" and _path(other) == _path(event):
             return time, other

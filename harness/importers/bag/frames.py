@@ -1,4 +1,4 @@
-"""Where objects stood, from the frames that a recording names."""
+"""Object poses from the frames of a recording."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ WORLD = "world"
 
 
 class Frames:
-    """Poses in the world, along the frames' parents.
+    """World poses of frames, composed along their parents.
 
-    Links of the robot are where the joints put them; a frame without a parent is taken for the
-    world, and a note says so.
+    Poses of the robot's links result from the joints. A frame without a parent counts as the world,
+    with a note.
 
     Attributes:
-        notes: What was assumed.
+        notes: Assumptions about frames.
     """
 
     def __init__(
@@ -35,30 +35,30 @@ class Frames:
         self.notes: list[str] = []
         self._links, self._timeline, self._times = links, timeline, times
         self._parents: dict[str, tuple[str, Track]] = {}
-        # what the user named comes last, and counts
+        # topics that the user named have precedence
         for edges in (content.edges, content.static_edges, content.objects):
             for (parent, child), track in edges.items():
                 self._parents[child] = (parent, track)
         self._static = {id(track) for track in content.static_edges.values()}
 
     def knows(self, frame: str) -> bool:
-        """Whether the recording says where a frame is."""
+        """Whether the recording has a pose of a frame."""
         return frame in self._parents
 
     def pose(self, frame: str) -> FloatArray:
-        """T_world_frame, NaN where it is not known, shape (N, 7)."""
+        """T_world_frame, NaN where it is unknown, shape (N, 7)."""
         chain: list[Track] = []
         passed: set[str] = set()
         while frame not in self._links and frame != WORLD and frame in self._parents:
             if frame in passed:
-                self.notes.append(f"the frames of {frame} go round in a circle")
+                self.notes.append(f"the parents of the frame {frame} form a cycle")
                 return np.full((len(self._times), 7), np.nan)
             passed.add(frame)
             frame, track = self._parents[frame]
             chain.append(track)
         root = self._links.get(frame)
         if root is None and frame != WORLD:
-            note = f"frame '{frame}' has no parent; it is taken for the world"
+            note = f"frame '{frame}' has no parent; it counts as the world"
             if note not in self.notes:
                 self.notes.append(note)
         pose = np.broadcast_to(IDENTITY if root is None else root, (len(self._times), 7))

@@ -18,7 +18,7 @@ from harness.robot.description import RobotDescription
 
 @dataclass(frozen=True, eq=False)
 class JointRows:
-    """Joints at each sample, in description order, shape (N, n); NaN where nothing is known."""
+    """Joints at each sample, in description order, shape (N, n); NaN where unknown."""
 
     positions: FloatArray
     velocities: FloatArray
@@ -28,14 +28,14 @@ class JointRows:
 def reference_track(
     content: BagContent, description: RobotDescription, arm_joints: Collection[str]
 ) -> Track | None:
-    """The messages that give the run its samples: those with most of the arm's joints.
+    """The messages that define the run's samples: those with most of the arm's joints.
 
-    Where there are no joint states, those of the frame that one of these joints moves.
+    Without joint states, they are the transforms of a link that one of these joints moves.
 
     Args:
-        content: What the recording holds.
+        content: The content of the recording.
         description: The robot.
-        arm_joints: Joints of the arm; every movable joint of a gripper alone.
+        arm_joints: Joints of the arm; all movable joints of a gripper without an arm.
     """
     arm = set(arm_joints)
     known = [
@@ -59,9 +59,9 @@ def sample_times(reference: Track, timeline: Timeline) -> FloatArray:
 def joint_rows(
     tracks: Tracks, description: RobotDescription, timeline: Timeline, times: FloatArray, name: str
 ) -> JointRows:
-    """Every joint that messages name; of several publishers each gives its own.
+    """All joints from the messages of all publishers.
 
-    A joint that follows another and is in no message is where that one puts it.
+    The position of a mimic joint that no message names follows from the joint that it mimics.
     """
     joints = description.movable_joints
     values = np.full((3, len(times), len(joints)), np.nan)
@@ -105,7 +105,7 @@ def joints_of_frames(
     timeline: Timeline,
     times: FloatArray,
 ) -> JointRows:
-    """Joint positions from the frames that the joints move, where there are no joint states."""
+    """Joint positions from the transforms of the links, for recordings without joint states."""
     positions = np.full((len(times), len(description.movable_joints)), np.nan)
     for column, joint in enumerate(description.movable_joints):
         track = content.edges.get((joint.parent, joint.child))
@@ -126,11 +126,11 @@ def joints_of_frames(
 
 
 def foreign_links(content: BagContent, placements: Mapping[str, LinkPlacement]) -> list[str]:
-    """What the recording's frames say against this robot being the one that was recorded.
+    """Differences between the recording's transforms and this robot's link placements.
 
-    How a link hangs on its parent does not change while its joint turns, but for its rotation.
+    The position of a link in its parent does not change while its revolute joint turns.
     """
-    told: list[str] = []
+    differences: list[str] = []
     for edges in (content.edges, content.static_edges):
         for (parent, child), track in sorted(edges.items()):
             placement = placements.get(child)
@@ -139,8 +139,8 @@ def foreign_links(content: BagContent, placements: Mapping[str, LinkPlacement]) 
             place, recorded = np.array(placement.pose[:3]), track.rows()[0, :3]
             apart = float(np.linalg.norm(recorded - place))
             if apart > 0.005:
-                told.append(
-                    f"{child} hangs {1000 * apart:.0f} mm elsewhere on {parent} in the recording"
-                    " than on this robot: is it the same robot, on the same base?"
+                differences.append(
+                    f"the recording has {child} {1000 * apart:.0f} mm away from its place on"
+                    f" {parent} of this robot: is it the same robot, on the same base?"
                 )
-    return told
+    return differences

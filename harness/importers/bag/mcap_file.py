@@ -1,6 +1,6 @@
-"""Messages of an MCAP file, record by record, in the order in which the file holds them.
+"""Messages of an MCAP file, record by record, in the order of the file.
 
-QoS metadata is not looked at: its many dialects are no reason to refuse a recording.
+QoS metadata is not read: its variants are no reason to refuse a recording.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from harness.core.errors import HarnessError
 from harness.importers.bag.raw import LARGEST_RECORD, RawMessage, bag_error, unzstd
 
 RECOVER = "`mcap recover FILE -o WHOLE.mcap` saves what is whole"
-"""What to do with an MCAP file that its recorder did not close."""
+"""Advice for an MCAP file that its recorder did not close."""
 
 
 def mcap_messages(file: Path, named: Path) -> Iterator[RawMessage]:
     """Every message of an MCAP file.
 
     Args:
-        file: To be read.
-        named: As the user knows it; the same, unless it was unpacked for this.
+        file: The file to read.
+        named: The file in messages; it differs from `file` when that is an unpacked copy.
 
     Raises:
-        SpecError: It is empty, damaged, or not of its kind.
+        SpecError: The file is empty, damaged, or not an MCAP file.
     """
     if not file.stat().st_size:
         raise bag_error(named, "is empty")
@@ -64,11 +64,11 @@ def mcap_messages(file: Path, named: Path) -> Iterator[RawMessage]:
         except Exception as error:
             # whatever the reader raises on damaged bytes: struct.error, MemoryError, KeyError ...
             place, said = f"near byte {stream.tell()}", str(error) or type(error).__name__
-            raise bag_error(named, f"is damaged {place}, or no MCAP file: {said}") from error
+            raise bag_error(named, f"is damaged {place}, or not an MCAP file: {said}") from error
 
 
 def _mcap_records(stream: Any, named: Path) -> Iterator[Any]:
-    """Records, those of chunks after their chunk was unpacked within bounds."""
+    """All records; chunks are unpacked within bounds."""
     reader = StreamReader(stream, emit_chunks=True, record_size_limit=LARGEST_RECORD)
     for record in reader.records:
         if isinstance(record, Chunk):
@@ -80,7 +80,9 @@ def _mcap_records(stream: Any, named: Path) -> Iterator[Any]:
 def _unpacked_chunk(chunk: Chunk, named: Path) -> Chunk:
     size = chunk.uncompressed_size
     if size > LARGEST_RECORD:
-        raise bag_error(named, f"has a chunk of {size} bytes; {LARGEST_RECORD} are read")
+        raise bag_error(
+            named, f"has a chunk of {size} bytes; at most {LARGEST_RECORD} bytes are read"
+        )
     match chunk.compression:
         case "":
             data = chunk.data

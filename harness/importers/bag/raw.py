@@ -1,4 +1,4 @@
-"""Messages as they were recorded, and what to say of a recording that cannot be used."""
+"""Recorded messages, and errors of recordings that cannot be used."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ import zstandard
 from harness.core.errors import Problem, SpecError
 
 LARGEST_RECORD = 256 * 2**20
-"""Of a message or a chunk of messages, unpacked [bytes]."""
+"""Largest unpacked message or chunk of messages [bytes]."""
 
 
 @dataclass(frozen=True)
 class RawMessage:
-    """A message as it was recorded.
+    """A recorded message.
 
     Attributes:
-        log_time: When the recorder got it, by its clock [ns].
-        data: In CDR.
+        log_time: Time of receipt by the recorder's clock [ns].
+        data: The message in CDR.
     """
 
     topic: str
@@ -29,14 +29,14 @@ class RawMessage:
 
 
 def bag_error(path: Path, message: str, hint: str = "") -> SpecError:
-    """A recording that cannot be used."""
+    """The error of a recording that cannot be used."""
     return SpecError([Problem(str(path), 0, 0, message, hint)])
 
 
 def unzstd(data: bytes, largest: int, named: Path) -> bytes:
-    """Unpack at most so many bytes, whatever the data say of themselves."""
+    """Unpack data of at most a given size, whatever size the data declare."""
     with zstandard.ZstdDecompressor().stream_reader(data) as stream:
         content = stream.read(largest + 1)
     if len(content) > largest:
-        raise bag_error(named, f"unpacks to more than the {largest} bytes that it may have")
+        raise bag_error(named, f"unpacks to more than the maximum of {largest} bytes")
     return content

@@ -1,4 +1,4 @@
-"""From messages to content: what is of use, what is not, and no more than can be kept."""
+"""Reads messages into content, with bounded memory."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from harness.importers.bag.raw import RawMessage, bag_error
 from harness.importers.bag.storage import bag_files, messages
 
 MOST_NUMBERS = 20_000_000
-"""Kept of one recording: an hour of ten joints at 100 Hz is half of it; 160 MB."""
+"""Most numbers kept of one recording (160 MB); an hour of ten joints at 100 Hz needs half of it."""
 
 LATEST = 2**63 - 1
-"""Time of a message that can be kept [ns]."""
+"""Latest time of a message [ns]."""
 
 NEW_KEY = 200
-"""What a new frame or set of joints costs of it, besides the characters of its names."""
+"""Numbers that a new frame or set of joints counts for, in addition to its names' characters."""
 
 TF = "tf2_msgs/msg/TFMessage"
 FRAMES = {"/tf": False, "/tf_static": True}
-"""Topics of the tree of frames, and whether what they say holds for ever."""
+"""Topics of the frame tree, and whether their transforms are static."""
 
 MODEL_STATES = "gazebo_msgs/msg/ModelStates"
 TYPES = get_typestore(Stores.ROS2_JAZZY)
@@ -35,21 +35,21 @@ TYPES.register(
     )
 )
 NAMED_POSES = (TF, MODEL_STATES)
-"""Types whose messages name the objects they are about."""
+"""Types whose messages contain object names."""
 SINGLE_POSES = (
     "geometry_msgs/msg/PoseStamped",
     "geometry_msgs/msg/TransformStamped",
     "geometry_msgs/msg/PoseWithCovarianceStamped",
     "nav_msgs/msg/Odometry",
 )
-"""Types of topics that are about one object."""
+"""Types of topics with poses of one object."""
 
 
 def read_bag(path: Path, topics: BagTopics) -> BagContent:
-    """Read what can be used of a recording.
+    """Read the usable content of a recording.
 
     Raises:
-        SpecError: It cannot be read, is too large, or a named topic is not in it or of no use.
+        SpecError: It cannot be read, is too large, or lacks a named topic with poses.
     """
     files = bag_files(path)
     content = BagContent(notes=list(files.notes))
@@ -68,7 +68,7 @@ class _Reader:
         self._kept = 0
 
     def take(self, message: RawMessage) -> None:
-        """Keep what is of use in a message."""
+        """Add the content of a message."""
         msgtype, count = self._content.topics.get(message.topic, (message.msgtype, 0))
         self._content.topics[message.topic] = (msgtype, count + 1)
         keep = self._handler(message)
@@ -78,7 +78,7 @@ class _Reader:
             if message.log_time > LATEST:
                 raise ValueError("a time beyond the year 2262")  # noqa: TRY301
             keep(TYPES.deserialize_cdr(message.data, message.msgtype), message)
-        except Exception:  # noqa: BLE001 - whatever breaks in a message is that message's
+        except Exception:  # noqa: BLE001 - a damaged message may raise anything
             self._malformed[message.topic] = self._malformed.get(message.topic, 0) + 1
         if self._kept > MOST_NUMBERS:
             raise bag_error(
@@ -88,15 +88,15 @@ class _Reader:
             )
 
     def finish(self) -> None:
-        """Refuse what cannot be what the user meant; note what was left out."""
+        """Refuse topics that cannot be used; add notes on messages that are left out."""
         known = self._content.topics
         for topic in (*self._topics.objects, *self._topics.object_poses.values()):
             if topic not in known:
                 raise bag_error(self._path, f"has no topic {topic}", _offer(known))
             types = NAMED_POSES if topic in self._topics.objects else SINGLE_POSES
             if known[topic][0] not in types:
-                said = f"{topic} is of type {known[topic][0]}, which gives no poses of objects"
-                raise bag_error(self._path, said, f"known here: {', '.join(types)}")
+                said = f"{topic} is of type {known[topic][0]}, which has no poses of objects"
+                raise bag_error(self._path, said, f"supported types: {', '.join(types)}")
         for topic, count in sorted(self._malformed.items()):
             whole = known[topic][1]
             if count == whole:
@@ -130,11 +130,11 @@ class _Reader:
         names = tuple(map(str, content.name))
         count = len(names)
         if not count or len(set(names)) < count:
-            raise ValueError("no names, or the same twice")
+            raise ValueError("the names are missing or not unique")
         parts: list[Sequence[float]] = []
         for values in (content.position, content.velocity, content.effort):
             if len(values) not in (0, count):
-                raise ValueError("not one value a name")
+                raise ValueError("the number of values is not that of the names")
             parts.append(values if len(values) else [math.nan] * count)
         row = [float(value) for part in parts for value in part]
         if any(map(math.isinf, row)):
@@ -197,7 +197,7 @@ class _Reader:
         self._content.events.append((message.log_time, event))
 
     def _track(self, tracks: Tracks, names: tuple[str, ...], width: int) -> Track:
-        """The track under some names; a new one costs what it takes to keep."""
+        """The track of some names; a new one counts towards the memory limit."""
         if names not in tracks:
             self._kept += NEW_KEY + sum(map(len, names))
             tracks[names] = Track(width)
@@ -212,7 +212,7 @@ class _Reader:
 
 
 def _frame(name: str) -> str:
-    """Without the slash that old frames begin with; no name is the world's, as in Gazebo."""
+    """A frame's name without a leading slash; an empty name is the world, as in Gazebo."""
     return str(name).lstrip("/") or "world"
 
 

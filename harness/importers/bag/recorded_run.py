@@ -1,4 +1,4 @@
-"""A recording as a run: what it holds, in the nouns that expectations are judged by."""
+"""Converts a recording to a run."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ NEVER_THERE = (
     *("contact_forces", "presses", "support_forces"),
     *("clearances", "planned_clearances"),
 )
-"""Signals that no recording has."""
+"""Signals that no recording contains."""
 JOINT_SIGNALS = (
     "joint_velocities",
     "joint_efforts",
@@ -57,15 +57,17 @@ FINDING = "recording"
 
 @dataclass(frozen=True, eq=False)
 class Recorded:
-    """What a scenario knows of what was recorded.
+    """The scenario's knowledge about a recording.
 
     Attributes:
-        robot: The robot, as records have it.
-        description: The same, in full.
-        objects: Those of the world, then those that steps add.
-        at_start: Names of those of the world.
+        robot: The robot's record.
+        description: The robot's description.
+        objects: Objects of the world, then those that steps add.
+        at_start: Names of the world's objects.
         frames: Links whose poses expectations need.
-        steps: Line and summary by id and by path.
+        steps: Line and summary of each step, by id and by path.
+        title: Title of the scenario.
+        gravity: Gravity in world axes [m/s^2].
     """
 
     robot: RobotRecord
@@ -79,10 +81,10 @@ class Recorded:
 
 
 def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
-    """Read a recording as a run; what it lacks is named in `unrecorded`, and in findings.
+    """Read a recording as a run; `unrecorded` and findings name the missing signals.
 
     Raises:
-        SpecError: It cannot be read, or holds no joints of this robot.
+        SpecError: It cannot be read, or has no joints of this robot.
     """
     content = read_bag(path, topics)
     reference = reference_track(content, known.description, known.robot.arm_joints)
@@ -91,7 +93,7 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
     timeline = Timeline(reference)
     times = sample_times(reference, timeline)
     if len(times) < 2:
-        raise bag_error(path, "has joints at one moment only; there is nothing to judge")
+        raise bag_error(path, "has joints at a single time; at least two samples are needed")
     placements = {placement.link: placement for placement in known.robot.placements}
     if content.joints:
         measured = joint_rows(
@@ -151,7 +153,7 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
 
 
 def _links_needed(known: Recorded, content: BagContent) -> set[str]:
-    """Links that expectations look at, or that something else hangs on."""
+    """Links that expectations use, or that other frames are attached to."""
     robot = set(known.robot.link_names)
     edges = [*content.edges, *content.static_edges, *content.objects]
     carriers = {parent for parent, child in edges if child not in robot}
@@ -159,7 +161,7 @@ def _links_needed(known: Recorded, content: BagContent) -> set[str]:
 
 
 def _unrecorded(signals: Signals, events: list[Timed], *, has_steps: bool) -> tuple[str, ...]:
-    """What the recording lacks; events of a run of ours are whole, others' may say only steps."""
+    """Signals that are missing; events of other programs than this one may have steps alone."""
     names = [name for name in JOINT_SIGNALS if np.isnan(getattr(signals, name)).all()]
     if not any(event.get("event") == "run_started" for _, event in events):
         names += ["attachments"] if has_steps else ["attachments", "steps"]
@@ -172,7 +174,7 @@ def _object_record(
     poses: Mapping[str, FloatArray],
     present: tuple[Interval, ...],
 ) -> ObjectRecord:
-    """An object whose pose no topic gives is where the scenario puts it, if it cannot move."""
+    """An object's record, with the scenario's pose if the object is static and not recorded."""
     is_known = obj.name not in poses and obj.is_static and obj.name in known.at_start
     return ObjectRecord(
         name=obj.name,
@@ -189,31 +191,33 @@ def _object_record(
 def _gaps(
     known: Recorded, signals: Signals, present: Mapping[str, tuple[Interval, ...]]
 ) -> list[str]:
-    """Joints and objects of which something is missing."""
-    told: list[str] = []
+    """Messages about gaps in joints and objects."""
+    messages: list[str] = []
     unknown: BoolArray = np.isnan(signals.joint_positions)
     names = [joint.name for joint in known.robot.joints]
     without = [
         name for name, gone in zip(names, np.all(unknown, axis=0).tolist(), strict=True) if gone
     ]
     if without:
-        told.append(f"nothing is recorded of the joints {', '.join(without)}")
+        messages.append(f"the recording lacks the joints {', '.join(without)}")
     for column, name in enumerate(names):
         gone = unknown[:, column]
         if gone.any() and name not in without:
-            told.append(f"{name} is not known from t={signals.times[gone][0]:.3f} s on for a while")
+            messages.append(f"{name} has a gap that begins at t={signals.times[gone][0]:.3f} s")
     for name, poses in sorted(signals.object_poses.items()):
         there = is_present(present[name], signals.times)
         gone = np.isnan(poses[:, 0]) & there
         if gone.any():
             share = 100 * float(gone.sum() / there.sum())
             first = signals.times[gone][0]
-            told.append(f"{name}: no pose for {share:.0f} % of the time, first at t={first:.3f} s")
+            messages.append(
+                f"{name}: no pose for {share:.0f} % of the time, first at t={first:.3f} s"
+            )
     dynamic = [obj.name for obj in known.objects if not obj.is_static]
     lost = [name for name in dynamic if name not in signals.object_poses]
     if lost:
-        told.append(f"nobody recorded where {', '.join(lost)} stood")
-    return told
+        messages.append(f"the recording lacks poses of {', '.join(lost)}")
+    return messages
 
 
 def _whole(poses: FloatArray, times: FloatArray) -> FloatArray:
@@ -221,21 +225,21 @@ def _whole(poses: FloatArray, times: FloatArray) -> FloatArray:
 
 
 def _no_joints(path: Path, topics: BagTopics, content: BagContent, known: Recorded) -> Exception:
-    wanted = known.robot.arm_joints
+    expected = known.robot.arm_joints
     if content.joints:
         seen = sorted({name for names in content.joints for name in names})
         return bag_error(
             path,
             f"{topics.joint_states} names none of the robot's joints, but {', '.join(seen[:12])}",
-            f"expected: {', '.join(wanted)}",
+            f"expected: {', '.join(expected)}",
         )
     others = [n for n, (kind, _) in sorted(content.topics.items()) if kind.endswith("/JointState")]
     if others:
-        hint = f"joint states there: {', '.join(others)} (--joint-states TOPIC)"
+        hint = f"topics of joint states: {', '.join(others)} (--joint-states TOPIC)"
     else:
         hint = (
             f"its topics: {', '.join(sorted(content.topics)[:20])}"
             if content.topics
-            else "it holds no messages"
+            else "it has no messages"
         )
     return bag_error(path, f"has no {topics.joint_states} and no frames of this robot in /tf", hint)

@@ -1,4 +1,4 @@
-"""Messages of a SQLite file, as rosbag2 writes them."""
+"""Messages of a SQLite file in rosbag2's format."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ def sqlite_messages(file: Path, named: Path) -> Iterator[RawMessage]:
     """Every message of a SQLite file.
 
     Args:
-        file: To be read.
-        named: As the user knows it; the same, unless it was unpacked for this.
+        file: The file to read.
+        named: The file in messages; it differs from `file` when that is an unpacked copy.
 
     Raises:
-        SpecError: It is empty, damaged, or not of its kind.
+        SpecError: The file is empty, damaged, or not a SQLite recording.
     """
     if not file.stat().st_size:
         raise bag_error(named, "is empty")
@@ -31,7 +31,9 @@ def sqlite_messages(file: Path, named: Path) -> Iterator[RawMessage]:
             database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST_RECORD)
             kinds = dict(database.execute("SELECT name, type FROM sqlite_master"))
             if any(kinds.get(name) != "table" for name in ("topics", "messages")):
-                raise bag_error(named, "is no recording: it has no tables of topics and messages")
+                raise bag_error(
+                    named, "is not a recording: it lacks the tables `topics` and `messages`"
+                )
             topics = {
                 number: (str(name), str(msgtype))
                 for number, name, msgtype in database.execute(
@@ -49,5 +51,5 @@ def sqlite_messages(file: Path, named: Path) -> Iterator[RawMessage]:
 
 
 def _text(data: bytes) -> str:
-    """A text of the database; damaged bytes are replaced, as names they match nothing."""
+    """A text of the database, with damaged bytes replaced; names with such bytes match nothing."""
     return data.decode("utf-8", errors="replace")

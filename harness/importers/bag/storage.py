@@ -1,4 +1,4 @@
-"""The files of a recording, and their messages one after the other, with bounded memory."""
+"""The files of a recording, and an iterator over their messages with bounded memory."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from harness.importers.bag.sqlite_file import sqlite_messages
 METADATA = "metadata.yaml"
 SUFFIXES = (".mcap", ".db3")
 LARGEST_FILE = 16 * 2**30
-"""Of a file that was compressed as a whole, unpacked [bytes]."""
+"""Largest unpacked size of a file that is compressed as a whole [bytes]."""
 LARGEST_METADATA = 4 * 2**20  # [bytes]
 
 
@@ -28,8 +28,8 @@ class BagFiles:
     """The files of a recording, in order.
 
     Attributes:
-        has_packed_messages: Each message is compressed (zstd).
-        notes: What is odd about it.
+        has_packed_messages: Whether each message is compressed (zstd).
+        notes: Irregularities of the files.
     """
 
     paths: tuple[Path, ...]
@@ -38,14 +38,14 @@ class BagFiles:
 
 
 def bag_files(path: Path) -> BagFiles:
-    """What belongs to a recording: a rosbag2 folder, or a single file.
+    """The files of a recording: a rosbag2 folder, or a single file.
 
     Raises:
-        SpecError: There is none, or its metadata cannot be read.
+        SpecError: There is no recording, or its metadata cannot be read.
     """
     if path.is_file():
         if _suffix(path) not in SUFFIXES:
-            raise bag_error(path, "is no recording", f"known: folders, {' and '.join(SUFFIXES)}")
+            raise bag_error(path, "is not a recording", f"known: folders, {' and '.join(SUFFIXES)}")
         return BagFiles((path,))
     if not path.is_dir():
         raise bag_error(path, "there is no such recording")
@@ -53,16 +53,18 @@ def bag_files(path: Path) -> BagFiles:
         return _of_metadata(path)
     found = tuple(sorted(file for file in path.iterdir() if _suffix(file) in SUFFIXES))
     if not found:
-        raise bag_error(path, f"is no recording: no {METADATA}, no .mcap and no .db3 file in it")
-    note = f"{METADATA} is missing, as when a recorder is killed; the files are read as they are"
+        raise bag_error(
+            path, f"is not a recording: it has no {METADATA}, no .mcap and no .db3 file"
+        )
+    note = f"{METADATA} is missing, as after a recorder was killed; the files are read without it"
     return BagFiles(found, notes=(note,))
 
 
 def messages(files: BagFiles) -> Iterator[RawMessage]:
-    """Every message, in the order in which the files hold them.
+    """Every message, in the order of the files.
 
     Raises:
-        SpecError: A file is empty, cut off, damaged, or not of its kind.
+        SpecError: A file is empty, cut off, damaged, or of another format.
     """
     for path in files.paths:
         with tempfile.TemporaryDirectory() as place:
@@ -84,13 +86,13 @@ def _of_metadata(folder: Path) -> BagFiles:
     about: Any = content.get("rosbag2_bagfile_information") if isinstance(content, dict) else None
     names: Any = about.get("relative_file_paths") if isinstance(about, dict) else None
     if not isinstance(names, list) or not names:
-        raise bag_error(file, "does not say which files the recording has")
+        raise bag_error(file, "does not list the recording's files")
     paths = tuple(folder / PurePath(str(name)).name for name in names)
     for path in paths:
         if not path.is_file():
-            raise bag_error(path, f"is missing, though {METADATA} names it")
+            raise bag_error(path, f"is missing, although {METADATA} lists it")
         if _suffix(path) not in SUFFIXES:
-            raise bag_error(path, "is no .mcap and no .db3 file")
+            raise bag_error(path, "is neither an .mcap nor a .db3 file")
     is_packed = str(about.get("compression_mode") or "").lower() == "message"
     return BagFiles(paths, is_packed)
 
@@ -101,9 +103,11 @@ def _plain_yaml(file: Path) -> Any:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark
         place = (mark.line + 1, mark.column + 1) if mark else (0, 0)
-        raise SpecError([Problem(str(file), *place, f"is no YAML: {error.problem}")]) from error
+        raise SpecError(
+            [Problem(str(file), *place, f"is not valid YAML: {error.problem}")]
+        ) from error
     except (yaml.YAMLError, RecursionError, ValueError) as error:
-        raise bag_error(file, f"is no YAML: {error}") from error
+        raise bag_error(file, f"is not valid YAML: {error}") from error
 
 
 def _suffix(path: Path) -> str:
@@ -112,7 +116,7 @@ def _suffix(path: Path) -> str:
 
 
 def _unpacked(path: Path, place: Path) -> Path:
-    """A file that was compressed as a whole, in a place of its own."""
+    """The unpacked copy of a file that is compressed as a whole."""
     target, left = place / path.stem, LARGEST_FILE
     try:
         with path.open("rb") as packed, target.open("wb") as plain:
