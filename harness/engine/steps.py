@@ -5,6 +5,7 @@ from __future__ import annotations
 from harness.core.registry import Registry
 from harness.engine.blends import check_blends
 from harness.engine.goals import arm_has_six_joints
+from harness.engine.grasping import GAP_SLACK
 from harness.engine.program import Loc
 from harness.engine.scope import Scope
 from harness.spec.goals import GoalFields
@@ -196,6 +197,7 @@ def _gripper(step: Gripper, at: At) -> None:
     if hand is not None and step.named_target is not None:
         at.scope.check_state(hand.group, step.named_target, at.key("named_target"))
     _check_gripper_position(step.position, at)
+    _check_gripper_width(step.width, at)
 
 
 @check.handles(Grasp)
@@ -228,6 +230,19 @@ def _check_gripper_position(position: float | None, at: At) -> None:
         at.scope.problems.add(
             at.key("position"),
             f"'{joint.name}' goes from {joint.lower:g} to {joint.upper:g}, not to {position:g}",
+        )
+
+
+def _check_gripper_width(width: float | None, at: At) -> None:
+    hand = at.scope.description.gripper
+    if width is None or hand is None:
+        return
+    narrowest, widest = hand.widths[:, 1].min(), hand.widths[:, 1].max()
+    if not narrowest - GAP_SLACK <= width <= widest + GAP_SLACK:
+        at.scope.problems.add(
+            at.key("width"),
+            f"the gap between the pads goes from {1e3 * narrowest:.1f} to {1e3 * widest:.1f} mm,"
+            f" not to {1e3 * width:.1f} mm",
         )
 
 
