@@ -16,6 +16,8 @@ from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 
 GRASP_DEPTH = 0.02  # [m] below the top of a tall object
+GAP_SLACK = 0.001
+"""How much a gap between the pads may differ from what the robot's table says [m]."""
 MAX_LEAN = 10.0  # [degrees]
 UP = np.array([0.0, 0.0, 1.0])
 EIGHTHS = [eighth * math.pi / 4 for eighth in (0, 4, 1, -1, 2, -2, 3, -3)]
@@ -52,7 +54,7 @@ def top_grasps(obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:
 
     Raises:
         StepFailed: INVALID_OBJECT_NAME, when the object leans, or its shape says too little;
-            GOAL_STATE_INVALID, when the gripper does not open wide enough.
+            GOAL_STATE_INVALID, when no level side fits between the pads.
     """
     shape, at, size, vertical, level = _standing(obj, object_pose)
     check_opening(obj, object_pose, cell)
@@ -61,8 +63,8 @@ def top_grasps(obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:
     side /= np.linalg.norm(side)
     height = size[vertical]
     point = at.translation + np.array([0.0, 0.0, height / 2 - min(GRASP_DEPTH, height / 2)])
-    fits_across = size[level[1]] <= _opening(cell)
-    turns = _equal_turns(shape.geometry, vertical, fits_across=fits_across)
+    fits = [_fits(size[axis], cell) for axis in level]
+    turns = _equal_turns(shape.geometry, vertical, fits)
     return _from_above(point, side, turns, cell)
 
 
@@ -90,32 +92,37 @@ def _from_above(
 
 
 def check_opening(obj: WorldObject, object_pose: SE3, cell: Cell) -> None:
-    """Compare the narrow one of an object's level sides with the gripper's opening.
+    """Compare an object's level sides with the gaps that the gripper opens and closes to.
 
     Raises:
-        StepFailed: GOAL_STATE_INVALID, when the shape tells that the gripper does not open so wide.
+        StepFailed: GOAL_STATE_INVALID, when the shape tells that neither side fits.
     """
     try:
         _, _, size, vertical, level = _standing(obj, object_pose)
     except StepFailed:
         return
-    width, opening = size[level[0]], _opening(cell)
-    if width <= opening:
+    width, opening, least = size[level[0]], _opening(cell), least_gap(cell)
+    if any(_fits(size[axis], cell) for axis in level):
         return
-    stated, most = distinct(width, opening, lambda value, more: f"{value * 1e3:.{1 + more}f} mm")
+    too, limit, does = ("thin", least, "closes") if width < least else ("wide", opening, "opens")
+    stated, most = distinct(width, limit, lambda value, more: f"{value * 1e3:.{1 + more}f} mm")
     height = f"{size[vertical] * 1e3:.1f} mm"
+    other = "a thicker object, or a gripper that closes further"
+    if too == "wide":
+        other = "a narrower object, or a gripper that opens wider"
     raise StepFailed(
         "GOAL_STATE_INVALID",
-        f"'{obj.name}' is too wide for the gripper: {stated} across its narrowest level side, and"
-        f" the gripper opens to {most}",
+        f"'{obj.name}' is too {too} for the gripper: {stated} across its narrowest level side, and"
+        f" the gripper {does} to {most}",
         {
             "width": width,
             "opening": opening,
+            "least_gap": least,
             "height": size[vertical],
             "advice": (
                 f"its height of {height} fits: give a `grasp_pose` that takes it from the side"
-                if size[vertical] <= opening
-                else "take a narrower object, or a gripper that opens wider: no side of it fits"
+                if _fits(size[vertical], cell)
+                else f"take {other}: no side of it fits"
             ),
         },
     )
@@ -124,6 +131,17 @@ def check_opening(obj: WorldObject, object_pose: SE3, cell: Cell) -> None:
 def _opening(cell: Cell) -> float:
     """Largest gap between the pads [m]."""
     return float(cell.gripper.widths[:, 1].max())
+
+
+def least_gap(cell: Cell) -> float:
+    """Gap between the pads of the closed gripper [m]."""
+    hand = cell.gripper
+    return float(np.interp(hand.closed_position, hand.widths[:, 0], hand.widths[:, 1]))
+
+
+def _fits(width: float, cell: Cell) -> bool:
+    """Whether the gripper can hold a side of this width [m]."""
+    return least_gap(cell) - GAP_SLACK <= width <= _opening(cell)
 
 
 def _standing(
@@ -149,12 +167,19 @@ def _standing(
     return shape, at, size, vertical, level
 
 
-def _equal_turns(geometry: Geometry, vertical: int, *, fits_across: bool) -> list[float]:
-    """Turns about the vertical after which a grasp is as good as before, least first [rad]."""
+def _equal_turns(geometry: Geometry, vertical: int, fits: Sequence[bool]) -> list[float]:
+    """Turns about the vertical after which a grasp is as good as before, least first [rad].
+
+    Args:
+        geometry: The shape to grasp.
+        vertical: Which of its axes points up.
+        fits: Whether its narrow level side fits between the pads, then its wide one.
+    """
     upright = isinstance(geometry, Cylinder | Capsule) and vertical == 2
     if upright or isinstance(geometry, Sphere):
         return EIGHTHS
-    quarters = [0, 2, 1, -1] if fits_across else [0, 2]
+    narrow, wide = fits
+    quarters = [0, 2] * narrow + [1, -1] * wide
     return [quarter * math.pi / 2 for quarter in quarters]
 
 

@@ -39,6 +39,7 @@ class Problems:
         self._lines = lines
         self._missing = missing
         self._found: dict[Loc, Problem] = {}
+        self._unusable: set[str] = set()
 
     def add(
         self, loc: Loc, message: str, hint: str = "", *, needs: tuple[Part, ...] = EVERYTHING
@@ -46,6 +47,10 @@ class Problems:
         """Note a problem at a place of the file; others at the same place follow from the first."""
         if not self._missing.intersection(needs):
             self._found.setdefault(loc, self._lines.problem(loc, message, hint))
+
+    def add_unusable(self, name: str) -> None:
+        """Note that an object's own problem is reported: uses of its name follow from that."""
+        self._unusable.add(name)
 
     def unknown(
         self,
@@ -69,7 +74,7 @@ class Problems:
             start: The name is a part of the text there and begins at this character, from 0.
             needs: What must be loaded to know the names.
         """
-        if self._missing.intersection(needs):
+        if self._missing.intersection(needs) or name in self._unusable:
             return
         names = list(dict.fromkeys(known))
         near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from harness.cell.cell import Cell
+from harness.cell.grasping import least_gap
 from harness.core.errors import StepFailed
 
 
@@ -24,8 +25,9 @@ def advice(failure: StepFailed, cell: Cell) -> str:
 def _about_contacts(facts: Mapping[str, Any], cell: Cell) -> str:
     if "joint" not in facts:  # a grasp: `contacts` are those of the finger sides
         return (
-            "bring the TCP to the object first (a `move_to` above it, then `lin`), or let `pick` do"
-            " both; `gripper` closes on nothing without complaint"
+            "bring the TCP to the object first (a `move_to` above it, then `lin`), or give `pick`"
+            f" another `grasp_pose`; the pads of the closed gripper are {1e3 * least_gap(cell):.1f}"
+            " mm apart, and hold nothing thinner"
         )
     touched = list(_touched_objects(facts, cell))
     unknown = [name for name in touched if not cell.presence[name].obj.in_planning]

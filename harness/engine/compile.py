@@ -167,6 +167,7 @@ class _Compiler:
                 resolved[spec.name] = self._object(spec, spec.pose.se3(), self.sources.world_dir)
             except ObjectUnusableError as unusable:
                 problems.append(f"object '{spec.name}': {unusable}")
+                self.problems.add_unusable(spec.name)
         if problems:
             self.problems.add(
                 ("world",), f"world '{world.world}': " + "; ".join(problems), needs=("world",)
@@ -205,6 +206,7 @@ class _Compiler:
             return self._object(spec, pose, self.sources.base_dir)
         except ObjectUnusableError as unusable:
             self.problems.add(loc, f"object '{spec.name}': {unusable}", needs=())
+            self.problems.add_unusable(spec.name)
             return None
 
     def _object(self, spec: ObjectSpec, pose: SE3, folder: Path) -> WorldObject:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from harness.core.errors import RobotError
 from harness.core.geometry import (
     Box,
     Capsule,
@@ -24,6 +26,7 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import Light, World, WorldObject
 from harness.engine.markers import plate, printed
+from harness.robot.mesh_file import hull_solid
 from harness.spec.world import GEOMETRIES, FrictionSpec, ObjectSpec, ShapeSpec, WorldSpec
 
 DEFAULT_DENSITY = 1000.0  # [kg/m^3]
@@ -43,8 +46,8 @@ def resolve_object(spec: ObjectSpec, pose: SE3, base_dir: Path) -> WorldObject:
         base_dir: Folder that mesh files are relative to.
 
     Raises:
-        ObjectUnusableError: A dynamic object of meshes or planes without mass and inertia, or a
-            mesh file that is not there.
+        ObjectUnusableError: A dynamic object of planes, one without shapes, mass and inertia, or
+            a mesh file that is not there or cannot be used.
     """
     parts = spec.shapes or ((spec,) if _has_geometry(spec) else ())
     shapes = tuple(_shape(part, spec.color, base_dir) for part in parts)
@@ -139,15 +142,12 @@ def _mass_properties(
     """Mass [kg], centre of mass [m] and inertia about it [kg m^2], from the file or from solids."""
     if any(isinstance(shape.geometry, Plane) for shape in shapes):
         raise ObjectUnusableError("a plane has no mass: say `static: true`")
-    solids = [solid_of(shape.geometry) for shape in shapes]
     if not shapes and (spec.mass is None or spec.inertia is None):
         raise ObjectUnusableError(
             "what moves and has no shape needs `mass` and `inertia`, or `static: true`"
         )
-    if any(solid is None for solid in solids) and (spec.mass is None or spec.inertia is None):
-        raise ObjectUnusableError("a mesh that moves needs `mass` and `inertia`, or `static: true`")
-    known = [solid for solid in solids if solid is not None]
-    volume = sum(volume for volume, _ in known)
+    solids = [] if spec.inertia is not None and spec.mass is not None else _solids(shapes)
+    volume = sum(solid.volume for solid in solids)
     mass = spec.mass if spec.mass is not None else DEFAULT_DENSITY * volume
     given_center = np.array(spec.center_of_mass, dtype=float)
     if spec.inertia is not None:
@@ -156,17 +156,43 @@ def _mass_properties(
         _check_inertia(tensor)
         return mass, given_center, tensor
     density = mass / volume
-    centroid = np.zeros(3)
-    for shape, (part, _) in zip(shapes, known, strict=True):
-        centroid += part / volume * shape.pose.translation
+    centroid = np.sum([solid.volume / volume * solid.centroid for solid in solids], axis=0)
     center = given_center if np.any(given_center) else centroid
     inertia = np.zeros((3, 3))
-    for shape, (part, unit) in zip(shapes, known, strict=True):
-        offset = shape.pose.translation - center
-        rotation = shape.pose.rotation
-        inertia += density * (rotation @ unit @ rotation.T)
-        inertia += density * part * (offset @ offset * np.eye(3) - np.outer(offset, offset))
+    for solid in solids:
+        offset = solid.centroid - center
+        inertia += density * solid.inertia
+        inertia += density * solid.volume * (offset @ offset * np.eye(3) - np.outer(offset, offset))
     return mass, center, inertia
+
+
+@dataclass(frozen=True, eq=False)
+class _Solid:
+    """A shape's volume [m^3], centroid [m] and inertia at density 1 about it [m^5]."""
+
+    volume: float
+    centroid: FloatArray
+    inertia: FloatArray
+
+
+def _solids(shapes: Sequence[Shape]) -> list[_Solid]:
+    """Each shape in the object's axes; of a mesh its convex hull, which is what touches."""
+    found: list[_Solid] = []
+    for shape in shapes:
+        centroid = np.zeros(3)
+        solid = solid_of(shape.geometry)
+        if isinstance(shape.geometry, Mesh):
+            try:
+                volume, centroid, unit = hull_solid(shape.geometry)
+            except RobotError as error:
+                raise ObjectUnusableError(str(error)) from error
+        elif solid is not None:
+            volume, unit = solid
+        else:
+            continue
+        rotation = shape.pose.rotation
+        found.append(_Solid(volume, shape.pose.apply(centroid), rotation @ unit @ rotation.T))
+    return found
 
 
 def _check_inertia(tensor: FloatArray) -> None:

@@ -131,3 +131,14 @@ def unit_of(geometry: Mesh) -> float:
     found = UNIT.search(header)
     unit = float(found[1]) if found else 1.0
     return unit if unit > 0 else 1.0
+
+
+def hull_solid(geometry: Mesh) -> tuple[float, FloatArray, FloatArray]:
+    """Volume [m^3], centroid [m] and inertia at density 1 about it [m^5] of a mesh's convex hull.
+
+    Raises:
+        RobotError: As `convex_hull`.
+    """
+    hull = convex_hull(geometry)
+    inertia = np.array(hull.computeMomentofInertiaRelatedToCOM(), dtype=float)
+    return float(hull.computeVolume()), np.array(hull.computeCOM()), (inertia + inertia.T) / 2

@@ -17,6 +17,8 @@ SEARCH_VARIABLE = "HARNESS_PACKAGE_PATH"
 
 MANIFEST = "package.xml"
 DEEPEST = 4
+HIGHEST = 3
+"""Levels above a robot's file at which a folder of a package's name is taken as the package."""
 MOST_FOLDERS = 5_000
 LARGEST_MANIFEST = 200_000
 NAME = re.compile(rb"<name>\s*([\w.-]+)\s*</name>")
@@ -113,9 +115,23 @@ class PackagePath:
                 yield folder
         for folder in (*self.given, *self._around()):
             yield from _inside(folder, name)
+        yield from (each for each in self._above() if each.name == name)
         yield from _installed(name)
         for folder in self.given:
             yield from (each for each in _packages_below(folder) if _is_package(each, name))
+
+    def _above(self) -> Iterator[Path]:
+        """Folders around the file of a robot without a package.xml, which its package may be.
+
+        Wheels and archives often carry a ROS package without it. A user's home folder and what
+        holds it are none.
+        """
+        if (self.home / MANIFEST).is_file():
+            return
+        for folder in (self.home, *self.home.parents)[: HIGHEST + 1]:
+            if Path.home().is_relative_to(folder) or folder == Path(folder.anchor):
+                return
+            yield folder
 
     def _around(self) -> Iterator[Path]:
         """Folders of adjacent packages: the parent folder, and install folders next to its own."""

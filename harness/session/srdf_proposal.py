@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from harness.planning.pair_statistics import SelfTouches
-from harness.robot.import_robot import ROOT_CALLED_WORLD
+from harness.robot.import_robot import RENAMED_ROOT
 from harness.robot.srdf import Srdf, link_pair, parse_srdf, write_srdf
 
 WORLD = "world"
@@ -29,7 +29,7 @@ def proposed_srdf(touches: SelfTouches, name: str) -> str:
 
 def _own(link: str) -> str:
     """A link as the robot's file calls it: a root called as our world has another name here."""
-    return WORLD if link == ROOT_CALLED_WORLD else link
+    return WORLD if link == RENAMED_ROOT else link
 
 
 def _with_own_root(srdf: Srdf) -> Srdf:

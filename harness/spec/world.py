@@ -153,12 +153,13 @@ class ObjectSpec(SpecModel):
         default=(), description="What pictures show in place of the shapes."
     )
     mass: Mass | None = Field(
-        default=None, description="[kg]; default from the volume at 1000 kg/m^3."
+        default=None,
+        description="[kg]; default from the volume at 1000 kg/m^3, of a mesh that of its hull.",
     )
     center_of_mass: Xyz = Field(
         default=(0.0, 0.0, 0.0), description="From the object's origin [m]."
     )
-    inertia: InertiaSpec | None = Field(default=None, description="Default: of the solid shape.")
+    inertia: InertiaSpec | None = Field(default=None, description="Default: of the solid shapes.")
     friction: SurfaceFriction | None = Field(
         default=None, description="Sliding friction alone, or all three."
     )

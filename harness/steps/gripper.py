@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from harness.cell.cell import Cell
+from harness.cell.grasping import GAP_SLACK
 from harness.cell.scope import At
 from harness.core.errors import StepFailed
 from harness.ports import GripperResult
@@ -60,6 +61,7 @@ class Gripper(Step):
         if hand is not None and self.named_target is not None:
             at.scope.check_state(hand.group, self.named_target, at.key("named_target"))
         check_gripper_position(self.position, at)
+        _check_gripper_width(self.width, at)
 
     def execute(self, cell: Cell) -> None:
         """Drive the gripper's joint until it arrives or stalls; a stall is no failure, as in ROS.
@@ -101,6 +103,20 @@ def check_gripper_position(position: float | None, at: At) -> None:
         at.scope.problems.add(
             at.key("position"),
             f"'{joint.name}' goes from {joint.lower:g} to {joint.upper:g}, not to {position:g}",
+        )
+
+
+def _check_gripper_width(width: float | None, at: At) -> None:
+    """Report a gap that the gripper's table of widths does not reach."""
+    hand = at.scope.description.gripper
+    if width is None or hand is None:
+        return
+    narrowest, widest = hand.widths[:, 1].min(), hand.widths[:, 1].max()
+    if not narrowest - GAP_SLACK <= width <= widest + GAP_SLACK:
+        at.scope.problems.add(
+            at.key("width"),
+            f"the gap between the pads goes from {1e3 * narrowest:.1f} to {1e3 * widest:.1f} mm,"
+            f" not to {1e3 * width:.1f} mm",
         )
 
 

@@ -20,8 +20,9 @@ robot:
 
 `package://name/path` is looked up in the robot's own package (the folder with its `package.xml`),
 the folders of `packages`, of the option `--package-path` and of HARNESS_PACKAGE_PATH and what lies
-in them, beside the robot's package, and among installed Python packages. Nothing outside of these
-folders is read.
+in them, beside the robot's package, and among installed Python packages. A robot whose file has no
+`package.xml` around it may lie in a folder of that name, at most three levels up. Nothing outside
+of these folders is read.
 
 Below: what of each file is *read*, *ignored* or *refused* (an error at its line and column, exit
 code 2). *Told* means that `harness check` and every run say so. Each row is a test

@@ -60,6 +60,18 @@ def test_every_name_that_robot_and_world_do_not_have_is_told_with_its_line(tmp_p
         ("- detach_object: red_box", "'red_box' is not attached at this step"),
         ("- add_object: {name: red_box, box: {size: [1, 1, 1]}}", "another object is called"),
         ("- gripper: {position: 3}", "'rh_r1_joint' goes from -0.1 to 1.1, not to 3"),
+        (
+            "- gripper: {width: 20 cm}",
+            "the gap between the pads goes from 13.6 to 106.9 mm, not to 200.0 mm",
+        ),
+        (
+            "- gripper: {width: 109 mm}",
+            "the gap between the pads goes from 13.6 to 106.9 mm, not to 109.0 mm",
+        ),
+        (
+            "- gripper: {width: 6 mm}",
+            "the gap between the pads goes from 13.6 to 106.9 mm, not to 6.0 mm",
+        ),
         ("- attach_object: {object: red_box, represents: cup}", "there is no object 'cup'"),
         (
             "- allow_collisions: {pairs: [[robot, Tabel]], during: [wait: 1]}",

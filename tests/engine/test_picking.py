@@ -187,6 +187,41 @@ def test_an_object_that_is_too_wide_is_compared_with_the_gripper(
     assert words in advice(record)
 
 
+@pytest.mark.parametrize(
+    ("robot", "shape", "least", "words"),
+    [
+        (UR5E, "box: {size: [20 cm, 6 mm, 10 cm]}", "13.6 mm", "its height of 100.0 mm fits"),
+        (UR5E, "cylinder: {radius: 4 mm, length: 12 cm}", "13.6 mm", "no side of it fits"),
+        (OM, "box: {size: [9 cm, 2 cm, 2 cm]}", "22.0 mm", "no side of it fits"),
+    ],
+)
+def test_an_object_that_is_too_thin_is_compared_with_the_closed_gripper(
+    tmp_path, robot, shape, least, words
+):
+    result, record = run(
+        tmp_path,
+        "- pick: thin\n  expect_error: GOAL_STATE_INVALID",
+        robot=robot,
+        rest=objects(f"- {{name: thin, {shape}, pose: {{xyz: [0.3, 0, 0.1]}}}}"),
+    )
+    assert result.outcome == "passed"
+    assert "is too thin for the gripper: " in record.steps[0].message
+    assert least in record.steps[0].message
+    assert words in advice(record)
+
+
+@pytest.mark.parametrize("turn", ["0", "30 deg", "90 deg"])
+def test_a_plate_too_thin_to_hold_across_is_taken_across_its_wide_side(tmp_path, turn):
+    pose = f"{{xyz: [0.5, 0.1, 0.05], rpy: [0, 0, {turn}]}}"
+    result, _ = run(
+        tmp_path,
+        "- pick: plate\n  expect: [lifted: plate, grasped: plate]",
+        robot=UR5E,
+        rest=objects(f"- {{name: plate, box: {{size: [8 cm, 10 mm, 10 cm]}}, pose: {pose}}}"),
+    )
+    assert result.outcome == "passed", failures(result)
+
+
 def test_a_load_too_heavy_to_hold_still_is_reported_with_torques(tmp_path):
     result, record = run(
         tmp_path,

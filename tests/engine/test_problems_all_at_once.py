@@ -125,3 +125,30 @@ def test_the_path_of_no_step_is_told_before_anything_runs(expected, tmp_path):
     step = f"{text}    expect:\n      - {expected}\n"
     (tmp_path / "step.scenario.yaml").write_text(step)
     assert prepare(tmp_path / "step.scenario.yaml").program.expectations
+
+
+@pytest.mark.parametrize(
+    "unusable",
+    [
+        "mesh: {file: nowhere.stl}, static: true",
+        "plane: {}",
+        "visuals: [{box: {size: [1, 1, 1]}}]",
+    ],
+)
+def test_an_object_that_cannot_be_used_is_reported_once_and_not_at_each_use(tmp_path, unusable):
+    text = f"""\
+scenario: Once
+robot: {{model: ur3e, gripper: rh_p12_rn_a}}
+objects:
+  - {{name: part, {unusable}}}
+steps:
+  - pick: part
+    expect: [lifted: part]
+  - move_to: {{pose: {{frame: part, xyz: [0, 0, 0.1]}}}}
+expect:
+  - never: {{collision: {{between: [robot, part]}}}}
+  - upright: other
+"""
+    found = problems(tmp_path, text)
+    assert [problem.line for problem in found] == [4, 11]
+    assert found[0].message.startswith("object 'part': ")

@@ -87,6 +87,33 @@ def test_the_robots_own_package_is_known_by_its_manifest(tmp_path):
     assert mesh(tmp_path, urdf) == folder / "meshes" / "part.obj"
 
 
+@pytest.mark.parametrize("inside", ["urdf", ".", "robots/urdf"])
+def test_a_folder_of_the_packages_name_around_the_robots_file_is_the_package(tmp_path, inside):
+    folder = looks(tmp_path / "looks", manifest=False)
+    urdf = folder / inside / "bare.urdf"
+    urdf.parent.mkdir(parents=True, exist_ok=True)
+    urdf.write_text(URDF.replace(SHAPE, SHAPE + LOOK))
+    assert mesh(tmp_path, urdf) == folder / "meshes" / "part.obj"
+
+
+@pytest.mark.parametrize(
+    ("place", "home"),
+    [
+        ("looks/a/b/c/d", "home"),
+        ("looks/user/urdf", "looks/user"),
+        ("looks/urdf", "looks"),
+    ],
+)
+def test_a_folder_far_above_or_a_users_home_is_no_package(tmp_path, monkeypatch, place, home):
+    looks(tmp_path / "looks", manifest=False)
+    urdf = tmp_path / place / "bare.urdf"
+    urdf.parent.mkdir(parents=True)
+    urdf.write_text(URDF.replace(SHAPE, SHAPE + LOOK))
+    monkeypatch.setenv("HOME", str(tmp_path / home))
+    with pytest.raises(SpecError, match="the package 'looks' is not found"):
+        mesh(tmp_path, urdf)
+
+
 def test_an_installed_python_package_is_found(tmp_path):
     found = load_robot(RobotSpec(urdf="package://airo_models/arms/ur5e/ur5e.urdf"), tmp_path)
     assert found.groups["arm"].tip_link == "tool0"
