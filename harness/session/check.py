@@ -16,6 +16,7 @@ from harness.reporting.explanation import explanation_lines
 from harness.session.physics import overlap_note, start_physics
 from harness.session.prepare import prepare
 from harness.spec.load import LoadedScenario
+from harness.spec.steps import Grasp, Pick
 from harness.spec.varied_paths import as_json, choices
 
 MOST_CHOICES = 20
@@ -57,7 +58,14 @@ def check_file(
     touches = touches_at_start(program, prepared.scene)
     records = predict(program, prepared.scene, prepared.kinematics, prepared.planner)
     predicted: dict[Problem, tuple[str, ...]] = {}
+    specs = {step.path: step.spec for step in program.all_steps()}
+    not_taken: set[str] = set()
     for record in unexpected(records):
+        spec = specs.get(record.path)
+        if isinstance(spec, Pick | Grasp):
+            not_taken.add(spec.object)
+        if record.explanation.get("not_held") in not_taken:
+            continue  # it follows from the pick that is reported
         said = f"{record.error_code}: {record.message}"
         problem = prepared.loaded.lines.problem(_loc(program, record.path), said)
         predicted.setdefault(problem, explanation_lines(record.explanation, record.message))

@@ -43,7 +43,12 @@ def place(step: Place, cell: Cell) -> None:
     name = step.object or (cell.held[-1] if cell.held else None)
     if name is None or name not in cell.scene.attached():
         what = f"'{name}' is not held" if name else "nothing is held"
-        raise StepFailed("INVALID_OBJECT_NAME", f"{what}, so nothing can be placed")
+        picked = name or "..."
+        raise StepFailed(
+            "INVALID_OBJECT_NAME",
+            f"{what}, so nothing can be placed",
+            {"not_held": name, "advice": f"put a step that takes it before: `- pick: {picked}`"},
+        )
     backwards = _retreat_direction(cell)
     children = [
         *_lowering(name, step, cell),
@@ -130,6 +135,8 @@ def _no_room(name: str, touch: Touch) -> StepFailed:
 
 def place_advice(name: str, step: Place, failure: PlanningFailed, cell: Cell) -> str:
     """What to do in the keys of a place."""
+    if failure.code.startswith("START_STATE"):
+        return ""  # the planner's advice is about the start
     if failure.facts.get("is_start_of_approach"):
         return (
             "the place can be reached, the start of the approach cannot: give `approach` a shorter"
