@@ -294,6 +294,10 @@ class PlanningScene(Protocol):
         """Apply no padding to these pairs of a link and an object, and to no others."""
         ...
 
+    def is_ground(self, name: str) -> bool:
+        """Whether an object is solid without end below a plane."""
+        ...
+
     def object_names(self) -> tuple[str, ...]:
         """Objects in the scene, attached ones included, in order of adding."""
         ...

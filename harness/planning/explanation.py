@@ -62,12 +62,16 @@ def explanation_of(request: StageRequest) -> dict[str, Any]:
     """Explain a failed call as plain data.
 
     `stages` follow the order of `recording.explanation.STAGES`. `nearest` is a robot state to draw
-    and `advice` is what to do; both belong to the first stage that has them.
+    and `advice` is what to do; both belong to the first stage that has them. A start that no
+    motion can leave comes before the goal: no other goal helps.
     """
     findings: list[Finding] = goal_findings(request)
-    findings += [start_finding(request), path_finding(request, target_positions(request))]
+    start = start_finding(request)
+    findings += [start, path_finding(request, target_positions(request))]
     findings.append(timing_finding(request))
     facts: dict[str, Any] = {"stages": [finding.stage.plain() for finding in findings]}
+    if request.failure.code.startswith("START_STATE"):
+        findings.insert(0, start)
     nearest = next((finding.nearest for finding in findings if finding.nearest), None)
     if nearest is not None:
         facts["nearest"] = dict(nearest)

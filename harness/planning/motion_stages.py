@@ -11,7 +11,7 @@ from harness.core.types import FloatArray
 from harness.planning.checker import touch_facts
 from harness.planning.stage_request import Finding, StageRequest
 from harness.planning.verify import FINAL_RESOLUTION
-from harness.planning.wording import count, padding_advice, touch, touches
+from harness.planning.wording import count, padding_advice, touch, touches, way_out
 from harness.recording.explanation import Stage
 
 RESOLUTION = FINAL_RESOLUTION
@@ -61,8 +61,9 @@ def start_finding(request: StageRequest) -> Finding:
         "touches": touch_facts(deep),
     }
     advice = (
-        f"move {second} away, or start elsewhere (`robot: {{start_state: ...}}`); where the "
-        f"contact is intended, plan inside `allow_collisions` with the pair [{first}, {second}]"
+        f"{way_out(deep[0], request.scene)}, or start elsewhere (`robot: {{start_state: ...}}`); "
+        "where the contact is intended, plan inside `allow_collisions` with the pair "
+        f"[{first}, {second}]"
     )
     return Finding(stage, nearest_state, advice)
 

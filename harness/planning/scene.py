@@ -11,7 +11,7 @@ import numpy as np
 import pinocchio as pin
 
 from harness.core.errors import StepFailed
-from harness.core.geometry import Shape
+from harness.core.geometry import Plane, Shape
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
@@ -202,6 +202,10 @@ class CoalScene:
     def object_names(self) -> tuple[str, ...]:
         """Objects in the scene, attached ones included, in order of adding."""
         return tuple(self._objects)
+
+    def is_ground(self, name: str) -> bool:
+        """Whether an object is solid without end below a plane."""
+        return any(isinstance(shape.geometry, Plane) for shape in self._find(name).shapes)
 
     def attached(self) -> Mapping[str, str]:
         """Link of each attached object."""

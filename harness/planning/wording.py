@@ -9,6 +9,7 @@ import numpy as np
 from harness.core.quantity import distinct
 from harness.core.types import FloatArray
 from harness.planning.robot_model import GroupSpace
+from harness.planning.scene import CoalScene
 from harness.ports import Touch
 
 MOST_TOUCHES = 3
@@ -68,6 +69,17 @@ def padding_advice(distance: float, padding: float) -> str:
         f"nothing touches, only the `padding` of {stated} is not kept: give `planning` a `padding`"
         f" of less than {smaller}"
     )
+
+
+def way_out(item: Touch, scene: CoalScene) -> str:
+    """What to change so that the robot, or what it holds, comes apart from the body it is in."""
+    objects = set(scene.object_names()) - set(scene.attached())
+    blocker = next((name for name in (item.second, item.first) if name in objects), None)
+    if blocker is None:
+        return "move the joints so that the links come apart"
+    if scene.is_ground(blocker):
+        return f"raise the robot's `base`: it reaches {length(-item.distance)} into '{blocker}'"
+    return f"move '{blocker}' out of the way: it is {length(-item.distance)} too near"
 
 
 def count(things: Sized | int, noun: str) -> str:

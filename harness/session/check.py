@@ -18,6 +18,8 @@ from harness.session.prepare import prepare
 from harness.spec.load import LoadedScenario
 from harness.spec.source import Loc
 from harness.spec.varied_paths import as_json, choices
+from harness.steps.grasp import Grasp
+from harness.steps.pick import Pick
 
 MOST_CHOICES = 20
 """Words that `randomize` chooses among which are tried in turn; each takes half a second."""
@@ -58,7 +60,14 @@ def check_file(
     touches = touches_at_start(program, prepared.scene)
     records = predict(program, prepared.scene, prepared.kinematics, prepared.planner)
     predicted: dict[Problem, tuple[str, ...]] = {}
+    specs = {step.path: step.spec for step in program.all_steps()}
+    not_taken: set[str] = set()
     for record in unexpected(records):
+        spec = specs.get(record.path)
+        if isinstance(spec, Pick | Grasp):
+            not_taken.add(spec.object)
+        if record.explanation.get("not_held") in not_taken:
+            continue  # it follows from the pick that is reported
         said = f"{record.error_code}: {record.message}"
         problem = prepared.loaded.lines.problem(_loc(program, record.path), said)
         predicted.setdefault(problem, explanation_lines(record.explanation, record.message))

@@ -6,6 +6,25 @@ import difflib
 from collections.abc import Iterable
 from typing import Any
 
+SYNONYMS = {
+    "mass": ("weight",),
+    "size": ("dimensions", "extents"),
+    "xyz": ("position", "translation", "point"),
+    "quat_xyzw": ("orientation", "quaternion", "quat"),
+    "rpy": ("rotation", "euler", "angles"),
+    "pose": ("location", "origin"),
+    "frame": ("frame_id", "reference_frame", "parent"),
+    "static": ("fixed", "immovable"),
+    "length": ("height",),
+    "move_to": ("move", "goto", "go_to", "movej", "set_named_target", "set_pose_target"),
+    "lin": ("movel", "move_linear", "line"),
+    "circ": ("movec", "arc"),
+    "wait": ("sleep", "delay", "pause"),
+    "gripper": ("open_gripper", "close_gripper", "hand"),
+    "capture": ("photo", "take_picture", "snapshot"),
+}
+"""Words of this language, and what other programs call them."""
+
 LONGEST_LIST = 40
 LONGEST_VALUE = 60  # characters of a value that are quoted
 
@@ -47,6 +66,9 @@ def nearest(word: str, valid: Iterable[str]) -> str | None:
     plain = word.lower().replace("-", "_").replace(" ", "_")
     if plain in folded:
         return folded[plain]
+    known = next((ours for ours, others in SYNONYMS.items() if plain in others), None)
+    if known in words:
+        return known
     near = difflib.get_close_matches(plain, folded, 1, 0.6)
     return folded[near[0]] if near else None
 

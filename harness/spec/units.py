@@ -131,8 +131,9 @@ def in_si(text: str, units: tuple[str, ...]) -> float:
             return number * COMMON[target][unit]
     given = _parsed(unit.replace("^", "**").replace("·", "*"))
     if given is None:
-        near = nearest(unit, SUGGESTED)
-        start = f"did you mean `{match['number']} {near}`? " if near else ""
+        near = nearest(unit, [name for name in SUGGESTED if _measures(name, units)])
+        is_guess = near is None or (len(unit) <= 2 and near.lower() != unit.lower())
+        start = "" if is_guess else f"did you mean `{match['number']} {near}`? "
         raise MistakeError(
             f"`{text}`: no unit is called `{unit}`", f"{start}units: {written(units)}"
         )
@@ -141,6 +142,14 @@ def in_si(text: str, units: tuple[str, ...]) -> float:
         if wanted is not None and given.is_compatible_with(wanted):
             return number * float(_registry().Quantity(1.0, given).to(wanted).magnitude)
     raise MistakeError(f"`{text}` is {_measured(given)}; {expected(units)} is meant", usage(units))
+
+
+def _measures(unit: str, units: tuple[str, ...]) -> bool:
+    """Whether a unit has the dimension of one of the SI units."""
+    given = _parsed(unit)
+    return given is not None and any(
+        given.is_compatible_with(wanted) for wanted in map(_parsed, units) if wanted is not None
+    )
 
 
 def _no_number(value: Any, units: tuple[str, ...]) -> str:

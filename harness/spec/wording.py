@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, cast
 
+from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from harness.core.errors import Problem
-from harness.spec.mistakes import MistakeError, describe, did_you_mean
+from harness.spec.base import SpecModel
+from harness.spec.mistakes import LONGEST_VALUE, MistakeError, describe, did_you_mean
 from harness.spec.source import Found, Loc, SourceMap
 
 Wording = Callable[[ErrorDetails, dict[str, Any], str], tuple[str, str]]
@@ -97,11 +99,15 @@ def _bound(words: str, key: str) -> Wording:
 
 
 def _length(words: str, key: str) -> Wording:
-    def word(_: ErrorDetails, context: dict[str, Any], __: str) -> tuple[str, str]:
+    def word(error: ErrorDetails, context: dict[str, Any], _: str) -> tuple[str, str]:
         count, actual = context[key], context.get("actual_length")
         noun = "item" if count == 1 else "items"
         found = f", not {actual}" if actual is not None else ""
-        return f"has {words} {count} {noun}{found}", ""
+        given: object = error["input"]
+        items = cast("list[Any]", given) if isinstance(given, list) else []
+        is_comma = key == "max_length" and items and all(isinstance(item, int) for item in items)
+        hint = "a decimal number has a point: `0.2`, not `0,2`" if is_comma else ""
+        return f"has {words} {count} {noun}{found}", hint
 
     return word
 
@@ -125,9 +131,61 @@ def _as_said(error: ErrorDetails, _: dict[str, Any], value: str) -> tuple[str, s
     return f"cannot be {value}: {said[0].lower()}{said[1:]}", ""
 
 
+def _mapping(error: ErrorDetails, context: dict[str, Any], value: str) -> tuple[str, str]:
+    """A value in place of a mapping; the keys under which this value can stand."""
+    message = f"is a mapping of keys and values, not {value}"
+    name = context.get("class_name")
+    models = [model for model in _models(SpecModel) if model.__name__ == name]
+    if len(models) != 1 or error["input"] is None:
+        return message, ""
+    keys = {field.alias or key: key for key, field in models[0].model_fields.items()}
+    fitting = [key for key in keys if _fits(models[0], {key: error["input"]})]
+    written = _flow(error["input"])
+    if fitting and written:
+        return message, "write " + " or ".join(f"`{{{key}: {written}}}`" for key in fitting[:3])
+    return message, f"keys: {', '.join(keys)}"
+
+
+def _models(base: type[SpecModel]) -> Iterator[type[SpecModel]]:
+    for model in base.__subclasses__():
+        yield model
+        yield from _models(model)
+
+
+def _fits(model: type[SpecModel], content: dict[str, Any]) -> bool:
+    try:
+        model.model_validate(content)
+    except ValidationError:
+        return False
+    return True
+
+
+def _list(error: ErrorDetails, _: dict[str, Any], value: str) -> tuple[str, str]:
+    """A value in place of a list, and how it is written as one."""
+    given: object = error["input"]
+    message = f"is a list, not {value}"
+    if isinstance(given, dict):
+        axes = cast("dict[str, object]", given)
+        if list(axes) in (["x", "y", "z"], ["x", "y", "z", "w"], ["roll", "pitch", "yaw"]):
+            return message, f"write `{_flow(list(axes.values()))}`"
+        return message, "begin every item with `- `"
+    items = re.split(r"[\s,;]+", given.strip()) if isinstance(given, str) else []
+    is_numbers = len(items) > 1 and all(re.fullmatch(r"[-+.\de]+", item) for item in items)
+    written = ", ".join(items) if is_numbers else _flow(given)
+    return message, f"write `[{written}]`" if written else ""
+
+
+def _flow(value: object) -> str:
+    """A value on one line of YAML; empty for what is long or has parts of its own."""
+    if isinstance(value, list):
+        items = [_flow(item) for item in cast("list[object]", value)]
+        text = f"[{', '.join(items)}]" if items and all(items) else ""
+    else:
+        text = str(value) if isinstance(value, str | int | float) else ""
+    return text if len(text) <= LONGEST_VALUE and text.isprintable() else ""
+
+
 BOOLEAN = "YAML 1.2: `yes`, `no`, `on`, `off` are text"
-MAPPING = _wants("a mapping of keys and values")
-LIST = _wants("a list")
 NUMBER = _wants("a number")
 
 WORDINGS: dict[str, Wording] = {
@@ -145,11 +203,11 @@ WORDINGS: dict[str, Wording] = {
     "string_type": _text,
     "string_too_short": _characters("at least", "min_length"),
     "string_too_long": _characters("at most", "max_length"),
-    "dict_type": MAPPING,
-    "model_type": MAPPING,
-    "model_attributes_type": MAPPING,
-    "tuple_type": LIST,
-    "list_type": LIST,
+    "dict_type": _mapping,
+    "model_type": _mapping,
+    "model_attributes_type": _mapping,
+    "tuple_type": _list,
+    "list_type": _list,
     "too_short": _length("at least", "min_length"),
     "too_long": _length("at most", "max_length"),
     "greater_than": _bound("more than", "gt"),

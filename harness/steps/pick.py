@@ -197,8 +197,12 @@ def _can_lift(lift: MoveRelative, state: FloatArray, cell: Cell) -> bool:
 
 def pick_advice(step: Pick, failure: PlanningFailed, grasps: int, cell: Cell) -> str:
     """What to do in the keys of a pick."""
+    if cell.held:
+        return f"the gripper still holds '{cell.held[-1]}': `place` or `release` it before this"
+    if failure.code.startswith("START_STATE"):
+        return ""  # the planner's advice is about the start
     if failure.code == "GOAL_IN_COLLISION":
-        return _collision_advice(step, failure, grasps)
+        return _collision_advice(step, failure, grasps, cell)
     if failure.facts.get("is_start_of_approach"):
         return "the grasp can be reached, the start of its approach cannot: " + (
             "give `approach` a shorter `distance`, or another `direction`"
@@ -229,22 +233,28 @@ def pick_advice(step: Pick, failure: PlanningFailed, grasps: int, cell: Cell) ->
     return "; or ".join(part for part in (moved, freer) if part)
 
 
-def _collision_advice(step: Pick, failure: PlanningFailed, grasps: int) -> str:
+def _collision_advice(step: Pick, failure: PlanningFailed, grasps: int, cell: Cell) -> str:
     nearest = failure.facts.get("nearest", {})
     touches = nearest.get("touches", [])
     if not touches or touches[0]["distance"] >= 0:
         return ""  # the padding is in the way, and the planner's advice says so
-    first, second = touches[0]["pair"]
+    pair, depth = touches[0]["pair"], millimetres(-touches[0]["distance"])
+    blockers = [name for name in pair if name in cell.presence and name != step.object]
+    can_move = bool(blockers) and not cell.scene.is_ground(blockers[0])
     tried = f"none of {grasps} grasps is free" if grasps > 1 else "the grasp is not free"
     shift = nearest.get("nearest_free", {}).get("shift")
-    moved = f"move '{second}' away from {first}"
+    moved = f"move '{step.object}' to where the gripper has {depth} more room"
+    if blockers:
+        moved = f"move '{step.object}' {depth} farther from '{blockers[0]}'"
     if shift is not None:
         axis = max(range(3), key=lambda index: abs(shift[index]))
         sign = "+" if shift[axis] > 0 else "-"
         moved = (
             f"move '{step.object}' {millimetres(abs(shift[axis]))} along {sign}{'xyz'[axis]} of the"
-            f" world, or '{second}' out of the way"
+            " world"
         )
+    if can_move:
+        moved += f", or '{blockers[0]}' out of the way"
     return f"{tried}: {moved}; or state another grasp with `grasp_pose`"
 
 

@@ -94,7 +94,14 @@ class Place(Step):
         name = self.object or (cell.held[-1] if cell.held else None)
         if name is None or name not in cell.scene.attached():
             what = f"'{name}' is not held" if name else "nothing is held"
-            raise StepFailed("INVALID_OBJECT_NAME", f"{what}, so nothing can be placed")
+            raise StepFailed(
+                "INVALID_OBJECT_NAME",
+                f"{what}, so nothing can be placed",
+                {
+                    "not_held": name,
+                    "advice": f"put a step that takes it before: `- pick: {name or '...'}`",
+                },
+            )
         backwards = _retreat_direction(cell)
         children = [
             *_lowering(name, self, cell),
@@ -183,6 +190,8 @@ def _no_room(name: str, touch: Touch) -> StepFailed:
 
 def place_advice(name: str, step: Place, failure: PlanningFailed, cell: Cell) -> str:
     """What to do in the keys of a place."""
+    if failure.code.startswith("START_STATE"):
+        return ""  # the planner's advice is about the start
     if failure.facts.get("is_start_of_approach"):
         return (
             "the place can be reached, the start of the approach cannot: give `approach` a shorter"

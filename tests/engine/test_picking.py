@@ -289,3 +289,62 @@ def test_the_first_length_of_an_approach_that_the_arm_can_follow_is_taken(tmp_pa
         ),
     )
     assert result.outcome == "passed", [step.message for step in result.steps]
+
+
+TABLE = "- {name: slab, static: true, box: {size: [0.3, 0.3, 0.2]}, pose: {xyz: [0.0, 0.0, 0.3]}}"
+
+
+@pytest.mark.parametrize(
+    "step",
+    ["- pick: cube", "- move_to: up", "- move_to: {pose: {xyz: [0.4, 0.1, 0.4], rpy: [3, 0, 0]}}"],
+)
+def test_a_robot_that_starts_in_an_object_is_advised_to_move_that_object(tmp_path, step):
+    found = check(tmp_path, step, robot=UR5E, rest=objects(cube("cube", 4, 0.5, 0.1), TABLE))
+    (problem,) = found.predicted
+    assert problem.message.startswith("START_STATE_IN_COLLISION")
+    assert "what to do: move 'slab' out of the way" in "\n".join(found.explanations[0])
+
+
+def test_a_robot_that_starts_in_the_ground_is_advised_to_raise_its_base(tmp_path):
+    robot = "{model: ur5e, gripper: rh_p12_rn_a, base: {xyz: [0, 0, -0.3]}}"
+    found = check(tmp_path, "- move_to: up", robot=robot)
+    assert "what to do: raise the robot's `base`" in "\n".join(found.explanations[0])
+
+
+@pytest.mark.parametrize("depth", [0.02, 0.05, 0.1])
+def test_the_ground_is_never_to_be_moved_away_from_what_lies_in_it(tmp_path, depth):
+    sunk = cube("cube", 3, 0.2, 0.08).replace("0.015]", f"{-depth}]")
+    found = check(tmp_path, "- pick: cube", robot=OM, rest=objects(sunk))
+    text = "\n".join(found.explanations[0])
+    assert "what to do: none of" in text
+    assert "move 'cube'" in text
+    assert "move 'ground_plane'" not in text
+    assert "'ground_plane' out of the way" not in text
+
+
+@pytest.mark.parametrize("second", ["- pick: other", "- pick: {object: other, pitch: 80 deg}"])
+def test_a_pick_with_a_full_gripper_is_advised_to_put_down_first(tmp_path, second):
+    found = check(
+        tmp_path,
+        f"- pick: cube\n{second}",
+        robot=OM,
+        rest=objects(cube("cube", 3, 0.2, 0.08), cube("other", 5, 0.2, -0.08)),
+    )
+    text = "\n".join(found.explanations[0])
+    assert "the gripper still holds 'cube': `place` or `release` it before this" in text
+
+
+@pytest.mark.parametrize("robot", [OM, UR5E])
+def test_a_place_after_a_pick_that_fails_is_no_second_problem(tmp_path, robot):
+    steps = "- pick: cube\n- place: {object: cube, pose: {xyz: [0.2, 0.1, 0.02]}}"
+    found = check(tmp_path, steps, robot=robot, rest=objects(cube("cube", 3, 3.0, 0.0)))
+    (problem,) = found.predicted
+    assert "NO_IK_SOLUTION" in problem.message
+
+
+@pytest.mark.parametrize("robot", [OM, UR5E])
+def test_a_place_before_its_pick_names_the_step_to_put_before_it(tmp_path, robot):
+    steps = "- place: {object: cube, pose: {xyz: [0.2, 0.1, 0.02]}}\n- move_to: home"
+    found = check(tmp_path, steps, robot=robot, rest=objects(cube("cube", 3, 0.3, 0.0)))
+    assert "INVALID_OBJECT_NAME" in found.predicted[0].message
+    assert "before: `- pick: cube`" in "\n".join(found.explanations[0])

@@ -143,3 +143,56 @@ def test_what_is_missing_at_the_top_is_at_the_files_start():
         (1, 1, "`robot` is missing"),
         (1, 1, "`steps` is missing"),
     ]
+
+
+@pytest.mark.parametrize(
+    ("content", "column_of", "message", "hint"),
+    [
+        ("place: {pose: [0.2, 0, 0.1]}", "[0.2", "`pose` is a mapping", "`{xyz: [0.2, 0, 0.1]}`"),
+        ("pick: {object: a, lift: 5 cm}", "5 cm", "`lift` is a mapping", "`{distance: 5 cm}`"),
+        ("pick: {object: a, lift: high}", "high", "`lift` is a mapping", "keys: direction"),
+        ("move_to: {pose: {xyz: 0.2 0 0.1}}", "0.2 0", "`xyz` is a list", "`[0.2, 0, 0.1]`"),
+        ('move_to: {pose: {xyz: "0.2, 0, 1"}}', '"0.2', "`xyz` is a list", "`[0.2, 0, 1]`"),
+        ("move_to: {pose: {xyz: {x: 1, y: 0, z: 2}}}", "{x:", "`xyz` is a list", "`[1, 0, 2]`"),
+        ("cartesian_path: {waypoints: {xyz: [0, 0, 1]}}", "{xyz", "is a list", "item with `- `"),
+        ("move_to: {pose: {xyz: [0,2, 0,1, 0,3]}}", "[0,2", "at most 3 items", "has a point"),
+    ],
+)
+def test_a_value_of_the_wrong_shape_is_written_out_in_the_right_one(
+    content, column_of, message, hint
+):
+    (problem,) = problems(f"{HEAD}  - {content}\n")
+    assert message in problem.message
+    assert hint in problem.hint
+    assert problem.column == 5 + content.index(column_of)
+
+
+@pytest.mark.parametrize(
+    ("content", "meant"),
+    [
+        ("set_named_target: up", "move_to"),
+        ("sleep: 1 s", "wait"),
+        ("move_to: {pose: {translation: [0, 0, 1]}}", "xyz"),
+        ("move_to: {pose: {orientation: [0, 0, 0, 1]}}", "quat_xyzw"),
+        ("add_object: {name: a, sphere: {radius: 1 cm}, weight: 5 g}", "mass"),
+        ("add_object: {name: a, box: {dimensions: [1 cm, 1 cm, 1 cm]}}", "size"),
+    ],
+)
+def test_a_word_of_another_program_is_answered_with_the_word_of_this_one(content, meant):
+    (problem,) = problems(f"{HEAD}  - {content}\n")
+    assert problem.hint.startswith(f"did you mean `{meant}`? ")
+
+
+@pytest.mark.parametrize(
+    ("given", "advised"),
+    [
+        ("[0.2, 0, 0.1]", "{xyz: [0.2, 0, 0.1]}"),
+        ("{position: {x: 1, y: 0, z: 2}}", "[1, 0, 2]"),
+        ("{xyz: 0.2 0 0.1}", "[0.2, 0, 0.1]"),
+    ],
+)
+def test_following_the_advice_on_a_value_of_the_wrong_shape_gives_a_valid_file(given, advised):
+    found = problems(f"{HEAD}  - move_to: {{pose: {given}}}\n")
+    assert any(f"`{advised}`" in problem.hint for problem in found)
+    pose = advised if advised.startswith("{") else f"{{xyz: {advised}}}"
+    parse_scenario(f"{HEAD}  - move_to: {{pose: {pose}}}\n", Path("f.yaml"))

@@ -66,3 +66,19 @@ def test_what_is_no_such_quantity_is_refused_in_plain_words(value, units, messag
         quantity(*units)(value)
     assert message in caught.value.message
     assert hint in caught.value.hint
+
+
+@pytest.mark.parametrize(
+    ("value", "units"),
+    [
+        ("50 mn", ("m",)),
+        ("5 nm2", ("m",)),
+        ("3 secnd", ("m",)),
+        ("5 kq", ("kg",)),
+        ("2 ml", ("s",)),
+    ],
+)
+def test_no_unit_of_another_dimension_is_suggested(value, units):
+    with pytest.raises(MistakeError) as caught:
+        quantity(*units)(value)
+    assert caught.value.hint.startswith("units: ")

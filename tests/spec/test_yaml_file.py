@@ -90,6 +90,50 @@ def test_what_is_not_plain_yaml_is_refused_at_its_place(text, line, column, mess
     assert (problem.line, problem.column) == (line, column)
 
 
+@pytest.mark.parametrize(
+    ("text", "line", "column", "message", "hint"),
+    [
+        ("a:\n  b 80 g\n  c: 6\n", 2, 3, "this line has none", "`b: 80 g`"),
+        ("steps\n  - wait: 1 s\n", 1, 1, "this line has none", "`steps:`"),
+        ("a: 1\nsteps\n  - wait: 1 s\nc: 1\n", 2, 1, "this line has none", "`steps:`"),
+        ("a: 1\nmass 5 # kg\nb: 2\n", 2, 1, "this line has none", "`mass: 5`"),
+        ("s:\n  - pick:box\n    id: x\n", 2, 5, "space is missing after the colon", "`pick: box`"),
+        ("a:b\nc: 1\n", 1, 1, "space is missing after the colon", "`a: b`"),
+        ("s:\n  - b\n  -c\n  - d\n", 3, 3, "space is missing after the dash", "`- c`"),
+        ("s:\n  - x: 1\n  expect: 2\n", 3, 3, "this line has none", "column 5 if"),
+        ("s:\n- x: 1\n- y: 1\n z: 2\n", 4, 2, "fits no line above", "column 3 like line 3"),
+        ("s:\n  - x: 1\n      id: 2\n", 3, 7, "further than line 2", "column 5"),
+        ("a: 1\n  b: 2\n", 2, 3, "further than line 1", "column 1"),
+        ("s:\n  x: 1\n  - b: 2\n", 2, 3, "line 3, in the same column", "put `- `"),
+        ("o:\n  t:\n    x: 1\n  - n: 2\n", 2, 3, "line 4, in the same column", "put `- `"),
+        ("s:\n  - b: 1\n- c: 2\n", 3, 1, "this list item begins in column 1", "3 like line 2"),
+        (
+            "a:\n    b: 1\n  c: 2\n",
+            3,
+            3,
+            "begins in column 3",
+            "column 1 like line 1 or in column 5",
+        ),
+        ("s: - a\n", 1, 4, "a line of its own", ""),
+        ('a: "b" c\n', 1, 8, "has ended", ""),
+    ],
+)
+def test_colons_and_indentation_are_reported_where_the_mistake_is(
+    text, line, column, message, hint
+):
+    problem = problem_of(text)
+    assert message in problem.message
+    assert hint in (problem.hint or "")
+    assert (problem.line, problem.column) == (line, column)
+
+
+@pytest.mark.parametrize("wrong", ["mass 80 g", "mass:80 g", "steps", "-x"])
+def test_following_the_advice_on_a_missing_colon_or_space_gives_yaml(wrong):
+    advice = problem_of(f"a: 1\nlist:\n{wrong}\nb: 2\n").hint
+    _, right, _ = advice.split("`")
+    parse(f"a: 1\nlist:\n{right}\nb: 2\n" if wrong != "-x" else f"a: 1\nlist:\n{right}\n")
+
+
 def test_a_duplicate_key_names_the_first_ones_line():
     assert problem_of("a: 1\nb: 2\na: 3\n").hint == "the first is in line 1"
 
