@@ -126,7 +126,7 @@ def test_what_cannot_be_held_fails_within_its_budget(cell):
     few = PlanningOptions(max_state_checks=3000, seed=1)
     error = failure(cell.planner.plan, ARM, cell.state, goal, few, PathConstraints(position=lane))
     assert error.code == "PLANNING_FAILED"
-    assert "along which the constraints hold" in error.message
+    assert "no free path that satisfies the constraints" in error.message
     assert error.facts["state_checks"] < 4000
 
 
