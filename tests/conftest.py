@@ -1,3 +1,19 @@
 """Fixtures and plugins for every test."""
 
+import signal
+
+import pytest
+
 pytest_plugins = ["pytester", "tests.reporting.browser"]
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _signals_of_a_terminal():
+    """Let commands be interrupted although the tests run in a background job.
+
+    A shell starts background jobs with SIGINT ignored, which every command that a test starts
+    would inherit and respect.
+    """
+    for number in (signal.SIGINT, signal.SIGHUP):
+        if signal.getsignal(number) is signal.SIG_IGN:
+            signal.signal(number, signal.default_int_handler)

@@ -27,16 +27,6 @@ SCRIPT = [sys.executable, "-c", "from harness.cli.main import entry; entry()"]
 SHORT = LONG.replace("500 s", "0.1 s")
 
 
-@pytest.fixture(autouse=True)
-def _signals_of_a_terminal():
-    """Let commands be interrupted although the tests run in a background job, which ignores it."""
-    numbers = (signal.SIGINT, signal.SIGHUP)
-    handlers = [signal.signal(number, signal.default_int_handler) for number in numbers]
-    yield
-    for number, handler in zip(numbers, handlers, strict=True):
-        signal.signal(number, handler)
-
-
 @pytest.fixture
 def folder(tmp_path):
     (tmp_path / "long.scenario.yaml").write_text(LONG)
