@@ -79,15 +79,15 @@ def test_a_table_name_that_is_no_text_is_no_traceback(base, tmp_path):
     bag = shutil.copytree(base / "sqlite3", tmp_path / "bag")
     [file] = bag.glob("*.db3")
     file.write_bytes(file.read_bytes().replace(b"messages", b"mess\xff\xfees"))
-    assert_refused(bag, base, "tables of topics and messages")
+    assert_refused(bag, base, "lacks the tables `topics` and `messages`")
 
 
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
         ('sensor name="eye"', 'sensor name=""', "world.sdf:"),
-        ('model name="can"', 'model name=" "', "is no name"),
-        ('link name="top"', 'link name=""', "is no name"),
+        ('model name="can"', 'model name=" "', "is not a name"),
+        ('link name="top"', 'link name=""', "is not a name"),
         ("<radius>0.03</radius>", "<radius>1e308</radius>", "1e+308 is too large"),
         ("<radius>0.03</radius>", "<radius>5e-324</radius>", "at least 1e-09"),
         ("<size>0.2 0.2 0.1</size>", "<size>0.2 1e308 0.1</size>", "1e+308 is too large"),
