@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -79,7 +79,7 @@ def path_finding(request: StageRequest, target: FloatArray | None) -> Finding:
         return Finding(Stage("path", "not reached", "there is no goal to go to"))
     details, nearest = _blocked(request, target)
     stage = Stage("path", "failed", failure.message, failure.code, tuple(details))
-    return Finding(stage, nearest, _path_advice(request))
+    return Finding(stage, nearest, _path_advice(request, nearest.get("touches", ())))
 
 
 def timing_finding(request: StageRequest) -> Finding:
@@ -156,14 +156,16 @@ def _blocked(request: StageRequest, target: FloatArray | None) -> tuple[list[str
     return details, shown
 
 
-def _path_advice(request: StageRequest) -> str:
+def _path_advice(request: StageRequest, blocking: Sequence[Mapping[str, Any]]) -> str:
+    """Advice for a path that was not found; `blocking` are the touches of the state drawn."""
     failure = request.failure
     if failure.code == "PLANNING_FAILED" and "state_checks" in failure.facts:
         return (
             "raise `max_state_checks` or `planning_attempts` in `planning`, put a `move_to` in "
             "between that leads around, or try another `planner_id` (`harness bench` compares them)"
         )
-    distances = [touch["distance"] for touch in failure.facts.get("touches", ())]
+    touching = (*failure.facts.get("touches", ()), *blocking)
+    distances = [touch["distance"] for touch in touching]
     if distances and min(distances) >= 0:
         return padding_advice(min(distances), request.options.padding)
     if failure.code == "INVALID_MOTION_PLAN":

@@ -72,7 +72,7 @@ TOLD = {
         r"what to do: begin the line in another posture",
     ],
     "through_the_plate": [
-        r"joint motion cannot be executed: at \d\.\d\d s .* plate \(\d\.\d mm apart\)",
+        r"joint motion cannot be executed: at \d\.\d\d s .* plate \(0\.\d mm apart, 2\.0 mm req",
         r"path: INVALID_MOTION_PLAN",
         r"what to do: `move_to` goes around what is in the way",
     ],
