@@ -48,7 +48,7 @@ def released_at(run: Run, record: AttachmentRecord) -> float:
 
 
 def drift_in_hand(run: Run, name: str) -> tuple[str, FloatArray, FloatArray, BoolArray]:
-    """Drift [m], turn [rad] and where they mean something, of the physical object behind a name."""
+    """Drift [m], turn [rad] and where they mean something, of the physical object with a name."""
     records = [record for record in run.attachments if name in (record.object, record.represents)]
     if not records:
         object_record(run, name)

@@ -95,7 +95,7 @@ def check_opening(obj: WorldObject, object_pose: SE3, cell: Cell) -> None:
     """Compare an object's level sides with the gaps that the gripper opens and closes to.
 
     Raises:
-        StepFailed: GOAL_STATE_INVALID, when the shape tells that neither side fits.
+        StepFailed: GOAL_STATE_INVALID, when neither side of the shape fits.
     """
     try:
         _, _, size, vertical, level = _standing(obj, object_pose)

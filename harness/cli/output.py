@@ -173,7 +173,7 @@ def say_text(text: str) -> None:
 
 def complain(text: str) -> None:
     """Write a text to stderr."""
-    with suppress(OutputError, BrokenPipeError):  # nobody can be told, and the exit code stays
+    with suppress(OutputError, BrokenPipeError):  # nothing can be printed; the exit code stays
         output().clear()
         for line in printable_lines(text).split("\n"):
             output("stderr").line(line)

@@ -42,20 +42,20 @@ def _check(arguments: argparse.Namespace) -> int:
         seed=arguments.seed,
         propose=source.has_no_srdf or srdf is not None,
     )
-    told: list[str] = []
+    extra_lines: list[str] = []
     if srdf is not None:
         _write(srdf, proposed_srdf(checked.touches, source.own_name or description.name))
-        told.append(f"wrote {srdf}")
+        extra_lines.append(f"wrote {srdf}")
     elif source.has_no_srdf:
-        told.append("no SRDF is given: --write-srdf FILE writes one with these pairs")
+        extra_lines.append("no SRDF is given: --write-srdf FILE writes one with these pairs")
     if image is not None:
-        told += _draw(description, arguments.state, image)
+        extra_lines += _draw(description, arguments.state, image)
     code = 0 if checked.report.is_good else 1
     if arguments.json:
         with only_json_on_stdout() as write_json:
             write_json({"format": FORMAT, "exit_code": code, "robot": checked.report})
         return code
-    say(*page(checked.report, Style.of(sys.stdout)), *told)
+    say(*page(checked.report, Style.of(sys.stdout)), *extra_lines)
     return code
 
 
@@ -73,7 +73,7 @@ COMMANDS = {"check": _check, "show": _show}
 
 
 def _draw(description: RobotDescription, state: str, image: Path) -> list[str]:
-    """Write a picture; what a person is told of it."""
+    """Write a picture; returns the lines to print."""
     from harness.cameras.robot_picture import save_robot_picture
     from harness.session.robot_source import positions_of
 

@@ -25,7 +25,7 @@ BRIEF_FROM = 20
 """With more runs than this a passed one is a line, without its steps."""
 
 MOST_FAILURES = 20
-"""Failures that are told in full; the rest is counted."""
+"""Failures that are shown in full; the rest is counted."""
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -168,9 +168,9 @@ def _tell(
     else:
         _tell_rates(suite, style)
     rates = missed(suite.rates)
-    told = f"; {style.outcome('failed', rates)}" if rates else ""
+    rate_text = f"; {style.outcome('failed', rates)}" if rates else ""
     if suite.results:
-        say(f"{summary(list(suite.results.values()), seconds, style)}{told}")
+        say(f"{summary(list(suite.results.values()), seconds, style)}{rate_text}")
     if suite.resumed:
         say(f"{suite.resumed} of them were known from before")
     written = [result for result in suite.results.values() if result.report_dir]
@@ -204,13 +204,13 @@ def _tell_failures(arguments: argparse.Namespace, suite: SuiteRun, style: Style)
     from harness.reporting.terminal import failure
     from harness.suite.header import source_lines
 
-    told = 0
+    shown_failures = 0
     for index, result in suite.results.items():
         is_repetition = index % arguments.repeat > 0 and result.outcome != "error"
         if result.outcome == "passed" or is_repetition:
             continue
-        told += 1
-        if told > MOST_FAILURES:
+        shown_failures += 1
+        if shown_failures > MOST_FAILURES:
             continue
         job = suite.jobs[index]
         again, source = _command(arguments, job), source_lines(job.file)
@@ -219,8 +219,8 @@ def _tell_failures(arguments: argparse.Namespace, suite: SuiteRun, style: Style)
         folder = job.report_dir
         if folder and not result.report_dir and (folder / "run.json").is_file():
             say(f"  no report was written; {folder} is of an earlier run")
-    if told > MOST_FAILURES:
-        say("", f"... and {told - MOST_FAILURES} more that did not pass")
+    if shown_failures > MOST_FAILURES:
+        say("", f"... and {shown_failures - MOST_FAILURES} more that did not pass")
 
 
 def _tell_rates(suite: SuiteRun, style: Style) -> None:

@@ -191,7 +191,7 @@ class Sees(Predicate):
         return pictures
 
     def _spoken_by(self, window: Window, pictures: Sequence[CaptureRecord]) -> IntArray:
-        """Index of the picture that speaks for each sample of the window; -1 where none does."""
+        """Index of the picture that represents each sample of the window; -1 where none does."""
         camera = next(camera for camera in window.run.cameras if camera.name == self.camera)
         samples = np.arange(window.start, window.stop)
         latest = np.searchsorted([each.sample for each in pictures], samples, side="right") - 1

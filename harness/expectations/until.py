@@ -114,7 +114,7 @@ def _could_hold(
 
 
 def _low(margins: MarginSignal, skipped: float) -> FloatArray:
-    """Margins with what nobody knows against the expectation.
+    """Margins with unknown samples counted against the expectation.
 
     Args:
         margins: Of a predicate.
