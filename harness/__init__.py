@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import Any
 
-    from harness.spec.scenario import Scenario
+    from harness.language.scenario import Scenario
     from harness.suite.api import ScenarioResult
 
 __version__ = "0.1.0"

@@ -21,10 +21,9 @@ from harness.assertions.window import NotObservable, NotReached, Window, window_
 from harness.assertions.words import Terms, decide, terms_of
 from harness.cell.scope import At
 from harness.core.errors import HarnessError
-from harness.recording.run import Measure, Run, Verdict
-from harness.spec.annotations import units_of
-from harness.spec.base import Name
-from harness.spec.expectation import (
+from harness.language.annotations import units_of
+from harness.language.base import Name
+from harness.language.expectation import (
     CHECK,
     KIND,
     ExpectationFields,
@@ -32,7 +31,8 @@ from harness.spec.expectation import (
     Quantity,
     TemporalFields,
 )
-from harness.spec.plugin_field import PluginField
+from harness.language.plugin_field import PluginField
+from harness.recording.run import Measure, Run, Verdict
 
 SPECIAL_BODIES = ("robot", "gripper", "any")
 """Words that stand for several bodies where two bodies are named."""

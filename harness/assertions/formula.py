@@ -33,9 +33,17 @@ from harness.assertions.temporal import TIME_RESOLUTION, range_min
 from harness.assertions.text import amounts
 from harness.assertions.window import NotObservable, NotReached, Window
 from harness.core.types import BoolArray, FloatArray, IntArray
+from harness.language.formula.formula import (
+    Comparison,
+    Interval,
+    Logic,
+    Node,
+    Signal,
+    Temporal,
+    signals_of,
+)
+from harness.language.formula.parser import parse_formula
 from harness.recording.run import Measure, Verdict, VerdictStatus
-from harness.spec.formula import Comparison, Interval, Logic, Node, Signal, Temporal, signals_of
-from harness.spec.formula_parser import parse_formula
 
 PLOTS = {
     "position": "position",

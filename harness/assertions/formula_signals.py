@@ -13,8 +13,8 @@ from harness.assertions.poses import UP, frame_poses, physical_poses, speeds
 from harness.assertions.window import NotObservable, Window
 from harness.core.pose_arrays import angle_between, rotate
 from harness.core.types import FloatArray
+from harness.language.formula.formula import Arithmetic, Const, Number, Signal
 from harness.recording.run import JointRecord
-from harness.spec.formula import Arithmetic, Const, Number, Signal
 
 
 @dataclass(frozen=True, eq=False)

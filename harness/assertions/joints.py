@@ -14,8 +14,8 @@ from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import amounts
 from harness.assertions.window import NotObservable, Window
 from harness.core.types import FloatArray
+from harness.language.expectation import Quantity
 from harness.recording.run import JointRecord, Measure, Run
-from harness.spec.expectation import Quantity
 
 SLIDING_TOLERANCE = 0.002
 """[m]"""

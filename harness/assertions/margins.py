@@ -11,8 +11,8 @@ import numpy as np
 
 from harness.assertions.window import Window
 from harness.core.types import BoolArray, FloatArray
+from harness.language.expectation import Quantity
 from harness.recording.run import Measure
-from harness.spec.expectation import Quantity
 
 Comparison = Literal["<=", ">=", "=="]
 Margin = FloatArray

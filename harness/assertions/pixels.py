@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.spec.markers import MarkerName
+from harness.language.markers import MarkerName
 
 
 def blob_pixels(

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from harness.assertions.expectation import Expectation
 from harness.cell.scope import At, Scope
-from harness.spec.expectation import ExpectationFields
-from harness.spec.source import Loc
+from harness.language.expectation import ExpectationFields
+from harness.language.files.source import Loc
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,8 @@ from pydantic import BaseModel
 
 from harness.assertions.expectation import Expectation, Predicate
 from harness.assertions.text import amount
-from harness.spec.annotations import units_of
-from harness.spec.expectation import ExpectationFields
+from harness.language.annotations import units_of
+from harness.language.expectation import ExpectationFields
 
 OMITTED = ("points", "name")
 

@@ -15,8 +15,8 @@ from harness.assertions.temporal import Decision, TooShort, later, longest_hold,
 from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, NotReached, Window
 from harness.core.types import FloatArray
+from harness.language.expectation import PredicateFields, TemporalFields
 from harness.recording.run import Verdict, VerdictStatus
-from harness.spec.expectation import PredicateFields, TemporalFields
 
 
 @dataclass(frozen=True)

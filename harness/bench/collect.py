@@ -14,7 +14,7 @@ from harness.core.errors import HarnessError
 from harness.core.types import FloatArray
 from harness.engine.dry_run import DryPlanner, DrySimulator
 from harness.engine.execute import execute_program
-from harness.planning.scene import CoalScene
+from harness.planning.collision.scene import CoalScene
 from harness.ports import AnyGoal, Goal, MotionPlan, PathConstraints, PlanningOptions
 from harness.recording.run import StepRecord
 from harness.session.prepare import Prepared, prepare

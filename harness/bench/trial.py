@@ -11,7 +11,7 @@ import numpy as np
 
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
-from harness.planning.scene import CoalScene
+from harness.planning.collision.scene import CoalScene
 from harness.ports import AnyGoal, Goal, MotionPlanner, PlanningOptions
 
 SPACING = 0.05

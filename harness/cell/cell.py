@@ -14,11 +14,11 @@ from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
+from harness.language.poses import Direction, Pose
+from harness.language.step import Step
 from harness.ports import Kinematics, MotionPlan, MotionPlanner, PlanningScene, Simulator
 from harness.recording.run import AttachmentRecord
 from harness.robot.description import Gripper, RobotDescription
-from harness.spec.poses import Direction, Pose
-from harness.spec.step import Step
 
 
 @dataclass

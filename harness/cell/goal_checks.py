@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from harness.cell.scope import At
-from harness.spec.goals import ArcFields, GoalFields
+from harness.language.goals import ArcFields, GoalFields
 
 
 def check_goal(goal: GoalFields, group_name: str | None, at: At) -> None:

@@ -11,6 +11,9 @@ from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.language.goals import ArcFields, CartesianLimits, GoalFields, GoalTolerance
+from harness.language.planning import PathConstraints as ConstraintsSpec
+from harness.language.poses import Pose, Position
 from harness.ports import (
     ArcPoint,
     Goal,
@@ -24,9 +27,6 @@ from harness.ports import (
 )
 from harness.ports import CartesianLimits as LinkLimits
 from harness.robot.description import RobotDescription
-from harness.spec.goals import ArcFields, CartesianLimits, GoalFields, GoalTolerance
-from harness.spec.planning import PathConstraints as ConstraintsSpec
-from harness.spec.poses import Pose, Position
 
 DEFAULT_TOLERANCE = GoalTolerance()
 

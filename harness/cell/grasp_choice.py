@@ -11,8 +11,8 @@ from harness.cell.cell import Cell
 from harness.cell.goals import TcpGoal, resolve_goal
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
+from harness.language.goals import GoalFields
 from harness.ports import JointGoal, PlanningOptions
-from harness.spec.goals import GoalFields
 
 MOST_BRANCHES = 2
 """Free solutions of inverse kinematics before the approach from which it is tried."""

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 
 from harness.core.camera import Camera
 from harness.core.world import World, WorldObject
+from harness.language.expectation import ExpectationFields
+from harness.language.files.source import Loc
+from harness.language.step import Step
 from harness.ports import PlanningOptions
 from harness.robot.description import RobotDescription
-from harness.spec.expectation import ExpectationFields
-from harness.spec.source import Loc
-from harness.spec.step import Step
 
 
 def step_seed(seed: int, path: str) -> int:

@@ -11,10 +11,10 @@ from harness.core.errors import Problem, SpecError
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
+from harness.language.files.source import Loc, SourceMap
+from harness.language.poses import Pose
 from harness.ports import LONGEST_RUN
 from harness.robot.description import RobotDescription
-from harness.spec.poses import Pose
-from harness.spec.source import Loc, SourceMap
 
 LISTED = 12  # names in a hint
 

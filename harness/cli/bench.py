@@ -17,7 +17,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    from harness.planning.planner_names import planner_names, resolve_planner_id
+    from harness.planning.search.planner_names import planner_names, resolve_planner_id
 
     planners = arguments.planners or list(planner_names())
     for planner in planners:

@@ -12,7 +12,7 @@ from harness.suite.discovery import UsageError, discover
 from harness.suite.outcome import EXIT_CODES
 
 if TYPE_CHECKING:
-    from harness.session.grade import Grade, Graded
+    from harness.grading.grade import Grade, Graded
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -24,8 +24,8 @@ def _run(arguments: argparse.Namespace) -> int:
     scenarios = discover([arguments.scenario])
     if len(scenarios) != 1:
         raise UsageError(f"'{arguments.scenario}' holds {len(scenarios)} scenarios; name one")
-    from harness.importers.bag.content import BagTopics
-    from harness.session.grade import grade_bag
+    from harness.grading.bag.content import BagTopics
+    from harness.grading.grade import grade_bag
 
     topics = BagTopics(
         arguments.joint_states, tuple(arguments.objects), dict(arguments.object_poses)

@@ -31,9 +31,9 @@ def _robot(arguments: argparse.Namespace) -> int:
     folder = folder.parent if folder.name == "robot.yaml" else folder
     if folder.suffix:
         raise UsageError(f"'{folder}' is no folder: robot.yaml, URDF and SRDF are written into one")
+    from harness.language.scenario import RobotSpec
     from harness.robot.robot_folder import robot_folder
-    from harness.session.robot_source import KINDS
-    from harness.spec.scenario import RobotSpec
+    from harness.robot_tools.robot_source import KINDS
 
     robot = source_of(argparse.Namespace(**vars(arguments), srdf=arguments.file))
     if robot.kind not in KINDS.values():
@@ -58,10 +58,10 @@ def _world(arguments: argparse.Namespace) -> int:
         raise UsageError(f"the name of a world file ends in .yaml, not '{target.name}'")
     if arguments.kind == "scene" and arguments.model_path:
         raise UsageError("--model-path is for SDF; a scene holds its meshes itself")
-    from harness.importers.scene import load_scene
-    from harness.importers.sdf_world import load_sdf
-    from harness.importers.stl import stl_bytes
-    from harness.importers.world_text import world_text
+    from harness.world.moveit_scene.scene import load_scene
+    from harness.world.sdf.world import load_sdf
+    from harness.world.stl import stl_bytes
+    from harness.world.world_text import world_text
 
     meshes: dict[Path, bytes] = {}
     if arguments.kind == "scene":

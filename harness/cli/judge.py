@@ -20,10 +20,10 @@ def _run(arguments: argparse.Namespace) -> int:
     folder = Path(arguments.folder)
     if not (folder / "run.json").is_file():
         raise UsageError(f"'{folder}' is no run's folder: it has no run.json")
+    from harness.observation.contacts import contact_records
     from harness.recording.store import blames_changes, read_run
     from harness.reporting.contacts import contact_lines
     from harness.reporting.terminal import Style, measure_text, verdict_line
-    from harness.session.contacts import contact_records
     from harness.session.rejudge import judge_stored
 
     with_file = Path(arguments.with_file) if arguments.with_file else None

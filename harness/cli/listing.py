@@ -56,7 +56,7 @@ def _expectations() -> Rows:
 def _plugins(kind: str) -> Rows:
     """Name, package and first sentence of every plug-in of a kind."""
     from harness.core.registry import broken_plugins, registry
-    from harness.spec.reference import sentence
+    from harness.language.reference import sentence
 
     for broken in broken_plugins():
         complain(f"harness: {broken}")
@@ -68,7 +68,7 @@ def _plugins(kind: str) -> Rows:
 
 
 def _planners() -> Rows:
-    from harness.planning.planner_names import DEFAULT_PLANNER, planner_names
+    from harness.planning.search.planner_names import DEFAULT_PLANNER, planner_names
 
     return [(name, "default" if name == DEFAULT_PLANNER else "") for name in planner_names()]
 

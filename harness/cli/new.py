@@ -51,7 +51,7 @@ def _content(arguments: argparse.Namespace, file: Path) -> tuple[str, str]:
             if getattr(arguments, option):
                 raise UsageError(f"--{option.replace('_', '-')} goes with --robot")
         return TEMPLATE.read_text(encoding="utf-8"), ""
-    from harness.session.first_scenario import first_scenario
+    from harness.robot_tools.first_scenario import first_scenario
 
     source = source_of(arguments)
     if source.kind == "scenario":

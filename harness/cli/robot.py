@@ -29,9 +29,9 @@ def _check(arguments: argparse.Namespace) -> int:
     srdf = _new_file(arguments.write_srdf, arguments.force) if arguments.write_srdf else None
     from harness.reporting.robot_report import page
     from harness.reporting.terminal import Style
-    from harness.session.robot_check import check_robot
-    from harness.session.robot_source import load
-    from harness.session.srdf_proposal import proposed_srdf
+    from harness.robot_tools.robot_check import check_robot
+    from harness.robot_tools.robot_source import load
+    from harness.robot_tools.srdf_proposal import proposed_srdf
 
     source = source_of(arguments)
     description = load(source)
@@ -60,7 +60,7 @@ def _check(arguments: argparse.Namespace) -> int:
 
 
 def _show(arguments: argparse.Namespace) -> int:
-    from harness.session.robot_source import load
+    from harness.robot_tools.robot_source import load
 
     name = Path(arguments.robot).name.split(".")[0] or "robot"
     image = _picture(arguments.image or f"{name}.png")
@@ -75,7 +75,7 @@ COMMANDS = {"check": _check, "show": _show}
 def _draw(description: RobotDescription, state: str, image: Path) -> list[str]:
     """Write a picture; returns the lines to print."""
     from harness.cameras.robot_picture import save_robot_picture
-    from harness.session.robot_source import positions_of
+    from harness.robot_tools.robot_source import positions_of
 
     positions = positions_of(description, state)
     try:

@@ -6,7 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from harness.session.robot_source import RobotSource
+    from harness.robot_tools.robot_source import RobotSource
 
 ROBOT = "a bundled name; a URDF, xacro or MJCF file, also as package://name/path; a robot's folder"
 
@@ -28,7 +28,7 @@ def add_robot_options(command: argparse.ArgumentParser, *, has_srdf: bool = True
 
 def source_of(arguments: argparse.Namespace) -> RobotSource:
     """Which robot the options say."""
-    from harness.session.robot_source import RobotSource
+    from harness.robot_tools.robot_source import RobotSource
 
     return RobotSource(
         arguments.robot,

@@ -15,7 +15,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run(file: str | None) -> int:
-    from harness.spec.schema import schema_text
+    from harness.language.schema import schema_text
 
     if file is None:
         output().document(schema_text())

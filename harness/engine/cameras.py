@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from harness.cell.scope import Problems, Scope
 from harness.core.camera import Camera
-from harness.spec.cameras import CameraSpec, VideoSpec
+from harness.language.cameras import CameraSpec, VideoSpec
 
 
 def all_cameras(

@@ -14,16 +14,16 @@ from harness.core.geometry import Mesh
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.engine.cameras import all_cameras, check_cameras, check_videos
-from harness.engine.objects import ObjectUnusableError, resolve_object, resolve_world
 from harness.engine.options import CheckPlanner, check_planning, merged_options
+from harness.language.expectation import ExpectationFields
+from harness.language.files.source import Loc, SourceMap
+from harness.language.planning import Planning
+from harness.language.scenario import Scenario
+from harness.language.step import Step
+from harness.language.world import ObjectSpec, WorldSpec
 from harness.ports import Kinematics, PlanningOptions
 from harness.robot.description import RobotDescription
-from harness.spec.expectation import ExpectationFields
-from harness.spec.planning import Planning
-from harness.spec.scenario import Scenario
-from harness.spec.source import Loc, SourceMap
-from harness.spec.step import Step
-from harness.spec.world import ObjectSpec, WorldSpec
+from harness.world.objects import ObjectUnusableError, resolve_object, resolve_world
 
 MOST_STEPS = 10_000  # a file of more is a mistake, and would fill the memory
 MOST_OBJECTS = 1000  # of all kinds; 300 that move already take 2 s of wall time for each simulated

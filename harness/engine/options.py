@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from harness.cell.scope import Problems
+from harness.language.files.source import Loc
+from harness.language.planning import Planning
 from harness.ports import PlanningOptions
-from harness.spec.planning import Planning
-from harness.spec.source import Loc
 
 CheckPlanner = Callable[[str, Mapping[str, float]], str]
 """Normalises a planner's name; ValueError, with what there is, for it or its parameters."""

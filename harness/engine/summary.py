@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from harness.spec.base import SpecModel
+from harness.language.base import SpecModel
 
 
 def words(models: Iterable[type], tag: str) -> list[str]:

@@ -22,7 +22,7 @@ from harness.assertions.observations import Observations, PictureRequest
 from harness.assertions.poses import frame_poses, object_poses
 from harness.assertions.window import NotObservable, NotReached, Window
 from harness.cell.scope import At
-from harness.spec.base import (
+from harness.language.base import (
     Angle,
     AngularVelocity,
     Duration,
@@ -33,7 +33,7 @@ from harness.spec.base import (
     LinearVelocity,
     Name,
 )
-from harness.spec.expectation import Quantity
+from harness.language.expectation import Quantity
 
 __all__ = [
     "Angle",

@@ -17,9 +17,9 @@ from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, NotReached, Window
 from harness.cell.scope import At
 from harness.core.types import FloatArray, IntArray
+from harness.language.base import Name, NonNegativeLength, PositiveLength
+from harness.language.expectation import Quantity
 from harness.recording.run import Run
-from harness.spec.base import Name, NonNegativeLength, PositiveLength
-from harness.spec.expectation import Quantity
 
 DISTANCE = Quantity("clearance", "m", "at least `at_least`", "clearance")
 LOSS = Quantity("clearance below plan", "m", "at most `max_below_plan`", "clearance")

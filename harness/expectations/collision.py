@@ -17,9 +17,9 @@ from harness.assertions.text import amount
 from harness.assertions.window import Window
 from harness.cell.scope import At
 from harness.core.types import FloatArray
+from harness.language.base import Flag, Name
+from harness.language.expectation import Quantity
 from harness.recording.run import Measure, Run
-from harness.spec.base import Flag, Name
-from harness.spec.expectation import Quantity
 
 LEAST_DISTANCE = 1e-6
 """A recorded distance of zero without contact is still none [m]."""

@@ -10,9 +10,9 @@ from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.poses import physical_poses, start_poses
 from harness.assertions.text import amount
 from harness.assertions.window import Window
+from harness.language.base import PositiveLength
+from harness.language.expectation import Quantity
 from harness.recording.run import Measure
-from harness.spec.base import PositiveLength
-from harness.spec.expectation import Quantity
 
 DISTANCE = Quantity("distance from the start", "m", "at least `at_least`")
 

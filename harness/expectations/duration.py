@@ -9,9 +9,9 @@ from harness.assertions.expectation import Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.window import NotReached, Window
 from harness.core.quantity import distinct
+from harness.language.base import Duration
+from harness.language.expectation import Quantity
 from harness.recording.run import Measure
-from harness.spec.base import Duration
-from harness.spec.expectation import Quantity
 
 DURATION = Quantity("duration", "s", "at most `at_most`, at least `at_least`")
 

@@ -12,9 +12,9 @@ from harness.assertions.expectation import Predicate
 from harness.assertions.joints import ROUNDING, is_measured
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.window import NotObservable, Window
+from harness.language.base import Share
+from harness.language.expectation import Quantity
 from harness.recording.run import Measure
-from harness.spec.base import Share
-from harness.spec.expectation import Quantity
 
 EFFORT = Quantity("effort", "1", "at most `max_fraction`, for each joint", "effort")
 

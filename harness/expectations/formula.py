@@ -11,9 +11,9 @@ from harness.assertions.formula import formula_verdict
 from harness.assertions.observations import CLEARANCE_ROOM, Observations
 from harness.assertions.window import window_of
 from harness.cell.scope import At
+from harness.language.formula.formula import SIGNALS, Node, constants_of, frames_of, signals_of
+from harness.language.formula.parser import parse_formula, readable
 from harness.recording.run import Run, Verdict
-from harness.spec.formula import SIGNALS, Node, constants_of, frames_of, signals_of
-from harness.spec.formula_parser import parse_formula, readable
 
 LARGEST_CUTOFF = 2.0
 """Distances are recorded up to here, however far a formula compares one [m]."""

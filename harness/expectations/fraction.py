@@ -11,9 +11,9 @@ from harness.assertions.expectation import Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import percentages
 from harness.assertions.window import NotReached, Window, refuse_unrecorded_steps
+from harness.language.base import Share
+from harness.language.expectation import Quantity
 from harness.recording.run import Measure
-from harness.spec.base import Share
-from harness.spec.expectation import Quantity
 
 FRACTION = Quantity("fraction", "1", "at least `at_least`, for each path")
 

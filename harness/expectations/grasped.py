@@ -27,9 +27,9 @@ from harness.assertions.text import amount
 from harness.assertions.window import Window, object_record
 from harness.cell.scope import At
 from harness.core.pose_arrays import conjugate, quat_product, relative, rotation_angle
+from harness.language.base import Force, NonNegativeAngle, PositiveLength
+from harness.language.expectation import Quantity
 from harness.recording.run import Measure, Run
-from harness.spec.base import Force, NonNegativeAngle, PositiveLength
-from harness.spec.expectation import Quantity
 
 FINGERS = Quantity("finger force", "N", "at least `min_force` on every side", "contact")
 BETWEEN = Quantity("between the fingers", "1", "pressed from both sides, and fits into the gap")

@@ -19,9 +19,9 @@ from harness.assertions.window import (
     refuse_unrecorded_steps,
 )
 from harness.cell.scope import At
+from harness.language.base import Flag, JointValue, Name, NonNegativeLength
+from harness.language.expectation import Quantity
 from harness.recording.run import Measure
-from harness.spec.base import Flag, JointValue, Name, NonNegativeLength
-from harness.spec.expectation import Quantity
 
 GAP = Quantity("gap error", "m", "with `width`: at most `tolerance`, 2 mm if not given")
 STALLED = Quantity("stalled", "1", "as `stalled` says")

@@ -16,9 +16,9 @@ from harness.cell.scope import At
 from harness.core.geometry import Box, Capsule, Cylinder, Shape, Sphere
 from harness.core.pose_arrays import angle_between, relative, rotate
 from harness.core.types import FloatArray
+from harness.language.base import Angle, Name
+from harness.language.expectation import Quantity
 from harness.recording.run import Measure, ObjectRecord
-from harness.spec.base import Angle, Name
-from harness.spec.expectation import Quantity
 
 DEPTH = Quantity("distance inside", "m", "at least 0, to the nearest side of the outline")
 LEAN = Quantity("lean of the container", "rad", "at most `max_lean`")

@@ -13,9 +13,9 @@ from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import amount
 from harness.assertions.window import Window
 from harness.cell.scope import At
+from harness.language.base import Force, Name
+from harness.language.expectation import Quantity
 from harness.recording.run import Measure
-from harness.spec.base import Force, Name
-from harness.spec.expectation import Quantity
 
 CONTACT = Quantity("contact force", "N", "at least `min_force`, and 0.001 N", "contact")
 

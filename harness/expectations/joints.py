@@ -11,7 +11,7 @@ from harness.assertions.joints import POSITION_ERROR, near
 from harness.assertions.margins import MarginSignal
 from harness.assertions.window import Window
 from harness.cell.scope import At
-from harness.spec.base import JointValue, Name
+from harness.language.base import JointValue, Name
 
 
 class Joints(Predicate):

@@ -21,8 +21,8 @@ from harness.assertions.support import rides_on
 from harness.assertions.text import amount, amounts
 from harness.assertions.window import Window, object_record
 from harness.cell.scope import At
-from harness.spec.base import PositiveLength
-from harness.spec.expectation import Quantity
+from harness.language.base import PositiveLength
+from harness.language.expectation import Quantity
 
 HEIGHT = Quantity(
     "height gained", "m", "at least `above`; counts for nothing where another fails", "height"

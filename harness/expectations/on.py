@@ -13,9 +13,9 @@ from harness.assertions.support import supports
 from harness.assertions.text import amounts
 from harness.assertions.window import Window, object_record
 from harness.cell.scope import At
+from harness.language.base import Name
+from harness.language.expectation import Quantity
 from harness.recording.run import Measure
-from harness.spec.base import Name
-from harness.spec.expectation import Quantity
 
 SUPPORT = Quantity("support from below", "N", "at least half of its weight")
 

@@ -9,9 +9,9 @@ from harness.assertions.expectation import Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import amounts
 from harness.assertions.window import Window
+from harness.language.base import PositiveLength
+from harness.language.expectation import Quantity
 from harness.recording.run import Measure
-from harness.spec.base import PositiveLength
-from harness.spec.expectation import Quantity
 
 LENGTH = Quantity("path length", "m", "at most `at_most`, at least `at_least`", "tcp")
 

@@ -27,10 +27,10 @@ from harness.core.pose_arrays import (
 from harness.core.spatial import rotation_from_quat_wxyz
 from harness.core.symmetry import ANY, equal_turns
 from harness.core.types import BoolArray, FloatArray
+from harness.language.base import AngularVelocity, LinearVelocity, Name
+from harness.language.expectation import Quantity
+from harness.language.poses import Pose, PoseTolerance
 from harness.recording.run import Measure, Run
-from harness.spec.base import AngularVelocity, LinearVelocity, Name
-from harness.spec.expectation import Quantity
-from harness.spec.poses import Pose, PoseTolerance
 
 PLACE_POSITION = 0.01
 """Tolerance of `placed` with a pose and no tolerance [m]."""

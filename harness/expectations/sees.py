@@ -17,11 +17,11 @@ from harness.assertions.pixels import blob_pixels, label_pixels, marker_pixels
 from harness.assertions.window import NotObservable, Window
 from harness.cell.scope import At
 from harness.core.types import FloatArray, IntArray
+from harness.language.base import Angle, Count, Fraction, Name, Share, SpecModel
+from harness.language.expectation import Quantity
+from harness.language.markers import MarkerName
 from harness.recording.looks import PictureKind
 from harness.recording.run import CaptureRecord, Measure
-from harness.spec.base import Angle, Count, Fraction, Name, Share, SpecModel
-from harness.spec.expectation import Quantity
-from harness.spec.markers import MarkerName
 
 ColorName = Literal["red", "orange", "yellow", "green", "cyan", "blue", "purple", "pink"]
 HUES: dict[ColorName, tuple[float, float]] = {

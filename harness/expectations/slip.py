@@ -12,9 +12,9 @@ from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import amount
 from harness.assertions.window import Window
 from harness.cell.scope import At
+from harness.language.base import Angle, PositiveLength
+from harness.language.expectation import Quantity
 from harness.recording.run import Measure
-from harness.spec.base import Angle, PositiveLength
-from harness.spec.expectation import Quantity
 
 SLIP = Quantity("slip against the planner", "m", "at most `max_distance`", "slip")
 TURN = Quantity("turn against the planner", "rad", "at most `max_rotation`")

@@ -13,9 +13,9 @@ from harness.assertions.poses import calm, physical_poses, present, speeds
 from harness.assertions.text import amount
 from harness.assertions.window import Window
 from harness.cell.scope import At
+from harness.language.base import AngularVelocity, LinearVelocity, Name
+from harness.language.expectation import Quantity
 from harness.recording.run import Measure, Run
-from harness.spec.base import AngularVelocity, LinearVelocity, Name
-from harness.spec.expectation import Quantity
 
 SPEED = Quantity("speed", "m/s", "at most `max_velocity`, and for 50 ms before", "displacement")
 TURNING = Quantity(

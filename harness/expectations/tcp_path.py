@@ -14,11 +14,11 @@ from harness.assertions.window import NotObservable, NotReached, Window
 from harness.cell.scope import At
 from harness.core.pose_arrays import compose
 from harness.core.types import FloatArray
+from harness.language.base import Fraction, PositiveLength, SpecModel
+from harness.language.expectation import Quantity
+from harness.language.poses import Pose
 from harness.recording.link_poses import link_poses as placed_links
 from harness.recording.run import Measure
-from harness.spec.base import Fraction, PositiveLength, SpecModel
-from harness.spec.expectation import Quantity
-from harness.spec.poses import Pose
 
 SHORTEST = 1e-6
 """Points nearer than this are one [m]."""

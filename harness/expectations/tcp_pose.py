@@ -15,10 +15,10 @@ from harness.assertions.text import amounts
 from harness.assertions.window import Window
 from harness.cell.scope import At
 from harness.core.pose_arrays import compose, conjugate, quat_product, rotation_vector
+from harness.language.base import Flag, Name
+from harness.language.expectation import Quantity
+from harness.language.poses import Pose, PoseTolerance
 from harness.recording.run import Measure
-from harness.spec.base import Flag, Name
-from harness.spec.expectation import Quantity
-from harness.spec.poses import Pose, PoseTolerance
 
 POSITION = Quantity("position error", "m", "at most the tolerance's `position`", "tcp")
 ORIENTATION = Quantity(

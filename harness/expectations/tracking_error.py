@@ -12,9 +12,9 @@ from harness.assertions.joints import gripper_joints, unit_of
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, Window
+from harness.language.base import JointValue
+from harness.language.expectation import Quantity
 from harness.recording.run import Measure
-from harness.spec.base import JointValue
-from harness.spec.expectation import Quantity
 
 ERROR = Quantity("tracking error", "rad or m", "at most `max`, for each joint", "tracking")
 

@@ -12,9 +12,9 @@ from harness.assertions.poses import UP, physical_poses
 from harness.assertions.text import amount
 from harness.assertions.window import Window
 from harness.core.pose_arrays import angle_between, rotate
+from harness.language.base import Angle
+from harness.language.expectation import Quantity
 from harness.recording.run import Measure
-from harness.spec.base import Angle
-from harness.spec.expectation import Quantity
 
 LEAN = Quantity("lean", "rad", "at most `tolerance`")
 

@@ -20,9 +20,9 @@ from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import amounts
 from harness.assertions.window import NotObservable, Window
 from harness.core.types import FloatArray
+from harness.language.base import Flag
+from harness.language.expectation import Quantity
 from harness.recording.run import JointRecord, Measure
-from harness.spec.base import Flag
-from harness.spec.expectation import Quantity
 
 STOP_SOFTNESS = 0.02
 """Share of its range by which a joint that rests on its stop may sink into it."""

@@ -21,7 +21,7 @@ from harness.iktest.solver import InProcess, Isolated, Solver
 from harness.iktest.text import report_lines
 from harness.iktest.trial import HANGS, Flaw, Trial
 from harness.robot.chain import Chain
-from harness.session.robot_source import RobotSource, load
+from harness.robot_tools.robot_source import RobotSource, load
 from harness.strategies.poses import Target
 from harness.strategies.tasks import ROWS
 

@@ -15,7 +15,7 @@ from harness.iktest.calls import Outcome, call
 from harness.iktest.contract import UnusableSolver, Value, parameter_words
 from harness.iktest.find_function import OWN
 from harness.iktest.worker import serve
-from harness.session.robot_source import RobotSource
+from harness.robot_tools.robot_source import RobotSource
 from harness.suite.warm import Ended, WarmServer
 
 IMPORT_SECONDS = 60.0
@@ -90,7 +90,9 @@ class Isolated:
         self._socket.listen()
         self._socket.settimeout(POLL_SECONDS)
         modules = ["harness.iktest.worker"]
-        self._server = WarmServer([*modules, "harness.session.own_ik"] if name == OWN else modules)
+        self._server = WarmServer(
+            [*modules, "harness.robot_tools.builtin_ik"] if name == OWN else modules
+        )
         self._connection: Connection | None = None
         try:
             self.words = self._start()

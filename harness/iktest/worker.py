@@ -10,7 +10,7 @@ from typing import Any
 from harness.iktest.calls import call
 from harness.iktest.contract import UnusableSolver, parameter_words
 from harness.iktest.find_function import OWN, find_function
-from harness.session.robot_source import RobotSource
+from harness.robot_tools.robot_source import RobotSource
 
 
 def serve(name: str, robot: RobotSource, tip: str, dof: int, address: str, _notify: object) -> bool:
@@ -48,6 +48,6 @@ def load(name: str, robot: RobotSource, tip: str) -> Callable[..., Any]:
     """The function of a name; this program's own solver for `own`."""
     if name != OWN:
         return find_function(name)
-    from harness.session.own_ik import own_solver
+    from harness.robot_tools.builtin_ik import own_solver
 
     return own_solver(robot, tip)

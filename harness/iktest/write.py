@@ -37,7 +37,7 @@ def write_report(report: IkReport, chain: Chain, folder: Path) -> IkReport:
 
 
 def _with_picture(finding: Finding, chain: Chain, folder: Path) -> Finding:
-    from harness.session.ik_pictures import draw_ik_example
+    from harness.robot_tools.ik_pictures import draw_ik_example
 
     target, answer = finding.target, finding.answer
     reached = answer if answer is not None and np.all(np.isfinite(answer)) else None

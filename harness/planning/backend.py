@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from harness.planning.kinematics import PinocchioKinematics
+from harness.planning.collision.scene import CoalScene
+from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.motion_planner import VerifiedPlanner
-from harness.planning.scene import CoalScene
 from harness.robot.description import RobotDescription
 
 

@@ -12,14 +12,14 @@ import numpy as np
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.planning.curve_timing import RatedCurve, time_curve
-from harness.planning.ik_numeric import random_positions
-from harness.planning.joint_spline import JointSpline
-from harness.planning.limits import TimingError
-from harness.planning.path_constraints import HeldConstraints
+from harness.planning.cartesian.curve_timing import RatedCurve, time_curve
+from harness.planning.ik.numeric import random_positions
 from harness.planning.task import PlanningTask
-from harness.planning.timing import time_stopping, time_straight
-from harness.planning.verify import FINAL_RESOLUTION, Defect
+from harness.planning.timing.joint_spline import JointSpline
+from harness.planning.timing.limits import TimingError
+from harness.planning.timing.timing import time_stopping, time_straight
+from harness.planning.verification.path_constraints import HeldConstraints
+from harness.planning.verification.verify import FINAL_RESOLUTION, Defect
 from harness.ports import MotionPlan
 
 PLANNER_ID = "RRTConnect, projected"

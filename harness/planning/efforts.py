@@ -13,8 +13,8 @@ import pinocchio as pin
 
 from harness.core.quantity import distinct
 from harness.core.types import FloatArray
-from harness.planning.robot_model import GroupSpace, pin_from_se3
-from harness.planning.scene import Payload
+from harness.planning.collision.scene import Payload
+from harness.planning.model.robot_model import GroupSpace, pin_from_se3
 
 
 @dataclass(frozen=True, eq=False)

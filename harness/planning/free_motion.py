@@ -12,13 +12,13 @@ import numpy as np
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.planning import wording
-from harness.planning.checker import touch_facts
-from harness.planning.path_search import Effort, FoundPath, verified_paths
-from harness.planning.shortening import shorten
+from harness.planning.collision import wording
+from harness.planning.collision.checker import touch_facts
+from harness.planning.search.path_search import Effort, FoundPath, verified_paths
+from harness.planning.search.shortening import shorten
 from harness.planning.task import PlanningTask
-from harness.planning.timing import TimingError, time_blended, time_stopping, time_straight
-from harness.planning.verify import (
+from harness.planning.timing.timing import TimingError, time_blended, time_stopping, time_straight
+from harness.planning.verification.verify import (
     FINAL_RESOLUTION,
     Defect,
     distances_to_path,

@@ -11,20 +11,20 @@ import numpy as np
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.planning.cartesian_path import plan_waypoints
+from harness.planning.cartesian.cartesian_path import plan_waypoints
+from harness.planning.cartesian.link_motion import LinkMotions
+from harness.planning.cartesian.motion_sequence import plan_items
+from harness.planning.collision.scene import CoalScene
 from harness.planning.constrained_motion import find_constrained_motion
-from harness.planning.explanation import explained
+from harness.planning.diagnosis.explanation import explained
 from harness.planning.free_motion import find_motion
-from harness.planning.goal_choice import choose_goals
-from harness.planning.goals import find_goals
-from harness.planning.kinematics import PinocchioKinematics
-from harness.planning.limits import Limits, TimingError
-from harness.planning.link_motion import LinkMotions
-from harness.planning.motion_sequence import plan_items
-from harness.planning.profiles import cubic_curve, on_grid, quintic_curve, sample
-from harness.planning.scene import CoalScene
+from harness.planning.goals.goal_choice import choose_goals
+from harness.planning.goals.goals import find_goals
+from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.task import PlanningTask, make_task
-from harness.planning.timing import time_straight
+from harness.planning.timing.limits import Limits, TimingError
+from harness.planning.timing.profiles import cubic_curve, on_grid, quintic_curve, sample
+from harness.planning.timing.timing import time_straight
 from harness.ports import (
     AnyGoal,
     ArcPoint,

@@ -11,14 +11,14 @@ import numpy as np
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.planning.checker import MotionChecker
+from harness.planning.collision.checker import MotionChecker
+from harness.planning.collision.scene import CoalScene
 from harness.planning.efforts import InverseDynamics
-from harness.planning.limits import Limits
-from harness.planning.path_constraints import HeldConstraints
-from harness.planning.profiles import SAMPLE_PERIOD
-from harness.planning.robot_model import GroupSpace, RobotModel
-from harness.planning.scene import CoalScene
-from harness.planning.verify import Defect, find_defect
+from harness.planning.model.robot_model import GroupSpace, RobotModel
+from harness.planning.timing.limits import Limits
+from harness.planning.timing.profiles import SAMPLE_PERIOD
+from harness.planning.verification.path_constraints import HeldConstraints
+from harness.planning.verification.verify import Defect, find_defect
 from harness.ports import MotionPlan, PathConstraints, PlanningOptions
 
 START_SLACK = 0.01

@@ -15,7 +15,7 @@ from harness.suite.api import ScenarioResult, run_in_process, run_scenario
 from harness.suite.cases import CaseJob, run_isolated
 
 if TYPE_CHECKING:
-    from harness.spec.scenario import Scenario
+    from harness.language.scenario import Scenario
 
 
 def runner_of(request: pytest.FixtureRequest) -> Callable[..., ScenarioResult]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from harness.core.types import FloatArray
 from harness.robot.description import Joint, RobotDescription
-from harness.robot.write_urdf import write_urdf
+from harness.robot.urdf.write import write_urdf
 
 SAMPLES = 60
 """Number of random configurations, the same in every run, in which efforts are evaluated."""

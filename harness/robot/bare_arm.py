@@ -9,7 +9,7 @@ import numpy as np
 from harness.core.spatial import SE3
 from harness.robot.compose import Part
 from harness.robot.description import Joint, Link
-from harness.robot.srdf import Srdf
+from harness.robot.srdf.srdf import Srdf
 
 FLANGE = "flange"
 

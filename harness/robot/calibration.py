@@ -7,9 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from harness.core.spatial import SE3
+from harness.language.files.source import Located
 from harness.robot.description import Joint
 from harness.robot.yaml_data import number, read_data, refuse
-from harness.spec.source import Located
 
 JOINTS = {
     "shoulder": "shoulder_pan_joint",

@@ -13,7 +13,6 @@ import numpy as np
 from harness.core.camera import Camera
 from harness.core.errors import RobotError
 from harness.core.spatial import SE3
-from harness.robot.default_pairs import adjacent_pairs
 from harness.robot.description import (
     Gripper,
     Joint,
@@ -24,10 +23,11 @@ from harness.robot.description import (
 )
 from harness.robot.groups import planning_groups
 from harness.robot.robot_yaml import GripperFacts, Mount, RobotYaml
-from harness.robot.srdf import EndEffector, Srdf, write_srdf
+from harness.robot.srdf.default_pairs import adjacent_pairs
+from harness.robot.srdf.srdf import EndEffector, Srdf, write_srdf
 from harness.robot.tree import in_tree_order
-from harness.robot.urdf import Urdf
-from harness.robot.write_urdf import write_urdf
+from harness.robot.urdf.urdf import Urdf
+from harness.robot.urdf.write import write_urdf
 
 WORLD = "world"
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import difflib
 from collections.abc import Collection, Iterator
 
+from harness.language.files.source import Loc
 from harness.robot.robot_yaml import RobotYaml
-from harness.robot.srdf import Srdf
-from harness.robot.urdf import Urdf
-from harness.spec.source import Loc
+from harness.robot.srdf.srdf import Srdf
+from harness.robot.urdf.urdf import Urdf
 
 Unknown = tuple[Loc, str]
 """Key in robot.yaml, and the mistake there."""

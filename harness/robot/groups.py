@@ -8,7 +8,7 @@ from typing import NoReturn
 
 from harness.core.errors import RobotError
 from harness.robot.description import Joint, PlanningGroup
-from harness.robot.srdf import Srdf, SrdfGroup
+from harness.robot.srdf.srdf import Srdf, SrdfGroup
 
 LEAST_ARM = 3
 """Fewest joints of a group without a chain that has a tip; groups of fewer joints are fingers."""

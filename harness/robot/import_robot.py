@@ -7,20 +7,20 @@ from dataclasses import replace
 from pathlib import Path
 
 from harness.core.errors import RobotError
+from harness.language.files.xml_file import read_bounded
+from harness.language.scenario import RobotSpec
 from harness.robot.compose import WORLD, Part
-from harness.robot.default_group import DEFAULT_GROUP, default_srdf
 from harness.robot.description import NamedState
 from harness.robot.find_file import find_file, find_folder
 from harness.robot.imported_part import imported_part
-from harness.robot.mjcf import read_mjcf
+from harness.robot.mjcf.mjcf import read_mjcf
 from harness.robot.packages import PackagePath
-from harness.robot.srdf import Srdf, parse_srdf
-from harness.robot.srdf_check import checked_srdf
+from harness.robot.srdf.check import checked_srdf
+from harness.robot.srdf.default_group import DEFAULT_GROUP, default_srdf
+from harness.robot.srdf.srdf import Srdf, parse_srdf
 from harness.robot.tree import carriers
-from harness.robot.urdf import Urdf, parse_urdf
-from harness.robot.xacro_file import render
-from harness.spec.scenario import RobotSpec
-from harness.spec.xml_file import read_bounded
+from harness.robot.urdf.urdf import Urdf, parse_urdf
+from harness.robot.xacro.file import render
 
 RENAMED_ROOT = "robot_world"
 """New name of a robot's root link that is named `world`, like the root of every composed robot."""

@@ -10,16 +10,16 @@ from pathlib import Path
 import numpy as np
 
 from harness.core.errors import RobotError
+from harness.language.scenario import RobotSpec, StartState
 from harness.robot.compose import Part
-from harness.robot.default_pairs import touching_pairs
 from harness.robot.description import Joint, Link, PlanningGroup
+from harness.robot.gripper.inferred_gripper import NoGripperError, recognise
+from harness.robot.gripper.inferred_tcp import with_own_gripper
 from harness.robot.groups import planning_groups
-from harness.robot.own_gripper import NoGripperError, recognise
-from harness.robot.own_tcp import with_own_gripper
 from harness.robot.robot_yaml import RobotYaml
-from harness.robot.srdf import Srdf
-from harness.robot.urdf import Urdf
-from harness.spec.scenario import RobotSpec, StartState
+from harness.robot.srdf.default_pairs import touching_pairs
+from harness.robot.srdf.srdf import Srdf
+from harness.robot.urdf.urdf import Urdf
 
 ACCELERATION = {"prismatic": 1.0}
 """Acceleration limit of prismatic joints, which URDF lacks [m/s^2]."""

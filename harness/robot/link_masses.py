@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.core.solids import TRIANGLE_SLACK
 from harness.robot.description import Inertial, Link, RobotDescription
-from harness.robot.urdf_links import NO_BODY
+from harness.robot.urdf.links import NO_BODY
 
 LONGEST_GYRATION = 2.0
 """Radius of gyration that no link of an arm exceeds [m]."""

@@ -12,6 +12,9 @@ from typing import Any
 
 from harness.core.errors import RobotError
 from harness.core.resources import data_folder
+from harness.language.files.xml_file import LARGEST_FILE, read_xml
+from harness.language.files.yaml_file import read_text
+from harness.language.scenario import RobotSpec
 from harness.robot.acceleration import with_possible_accelerations
 from harness.robot.bare_arm import without_gripper
 from harness.robot.calibration import calibrated
@@ -24,12 +27,9 @@ from harness.robot.imported_part import names_own_gripper
 from harness.robot.options import with_moveit_files, with_options
 from harness.robot.packages import PackagePath
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml, robot_yaml_error
-from harness.robot.srdf import parse_srdf
-from harness.robot.urdf import parse_urdf
-from harness.robot.xacro_file import arguments_of, render, render_bundled
-from harness.spec.scenario import RobotSpec
-from harness.spec.xml_file import LARGEST_FILE, read_xml
-from harness.spec.yaml_file import read_text
+from harness.robot.srdf.srdf import parse_srdf
+from harness.robot.urdf.urdf import parse_urdf
+from harness.robot.xacro.file import arguments_of, render, render_bundled
 
 OF_FILES = ("srdf", "packages", "group", "tcp_link", "flange_link")
 

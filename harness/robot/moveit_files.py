@@ -6,9 +6,9 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from harness.language.files.source import Located
 from harness.robot.description import Joint
 from harness.robot.yaml_data import known_entry, number, read_data, refuse
-from harness.spec.source import Located
 
 SOLVER_KEYS = ("kinematics_solver", "position_only_ik")
 WRAPPERS = ("/**", "ros__parameters", "robot_description_planning", "robot_description_kinematics")

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from harness.core.errors import RobotError
+from harness.language.scenario import JointLimits, MoveItFiles, RobotSpec, StartState
 from harness.robot.description import Joint, NamedState, RobotDescription
 from harness.robot.find_file import find_file
 from harness.robot.moveit_files import position_only_groups, with_joint_limits
-from harness.robot.srdf import parse_srdf, write_srdf
-from harness.robot.write_urdf import write_urdf
-from harness.spec.scenario import JointLimits, MoveItFiles, RobotSpec, StartState
+from harness.robot.srdf.srdf import parse_srdf, write_srdf
+from harness.robot.urdf.write import write_urdf
 
 
 def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescription:

@@ -12,14 +12,14 @@ import yaml
 
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh
+from harness.language.scenario import RobotSpec
 from harness.robot.compose import Part
 from harness.robot.description import Joint
 from harness.robot.import_robot import read_robot
 from harness.robot.imported_part import names_own_gripper
 from harness.robot.load import load_robot
-from harness.robot.srdf import write_srdf
-from harness.robot.write_urdf import package_name, write_urdf
-from harness.spec.scenario import RobotSpec
+from harness.robot.srdf.srdf import write_srdf
+from harness.robot.urdf.write import package_name, write_urdf
 
 WIDTH = 100  # characters of a line
 DIGITS = 10

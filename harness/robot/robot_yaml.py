@@ -10,12 +10,12 @@ import yaml
 from pydantic import Field, ValidationError, model_validator
 
 from harness.core.errors import Problem, SpecError
+from harness.language.base import Length, Name, Rpy, SpecModel, Xyz
+from harness.language.cameras import CameraFields
+from harness.language.files.source import Loc, Source, SourceMap
+from harness.language.files.yaml_file import LOADER, parse_yaml, read_text
+from harness.language.scenario import JointLimits, StartState
 from harness.robot.description import IkSolver
-from harness.spec.base import Length, Name, Rpy, SpecModel, Xyz
-from harness.spec.cameras import CameraFields
-from harness.spec.scenario import JointLimits, StartState
-from harness.spec.source import Loc, Source, SourceMap
-from harness.spec.yaml_file import LOADER, parse_yaml, read_text
 
 FILE = "robot.yaml"
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from harness.core.errors import Problem, RobotError, SpecError
+from harness.language.files.xml_file import XmlElement
 from harness.robot.description import Joint, Link
-from harness.spec.xml_file import XmlElement
 
 Elements = Mapping[tuple[str, str], XmlElement]
 """Elements of links and joints, by kind (`link`, `joint`) and name."""

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import NoReturn
 
 from harness.core.errors import SpecError
-from harness.spec.source import Entry, Located, Source
-from harness.spec.yaml_file import parse_yaml, read_text, require_key
+from harness.language.files.source import Entry, Located, Source
+from harness.language.files.yaml_file import parse_yaml, read_text, require_key
 
 
 def read_data(path: Path, keys: Sequence[str], kind: str) -> Located:

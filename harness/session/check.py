@@ -11,13 +11,13 @@ from harness.cell.program import Program
 from harness.core.errors import Problem, SpecError
 from harness.engine.explain import explain
 from harness.engine.predict import predict, predict_with_poses, touches_at_start, unexpected
+from harness.language.files.source import Loc
+from harness.language.reading.load import LoadedScenario
+from harness.language.reading.varied_paths import as_json, choices
 from harness.ports import Touch
 from harness.reporting.explanation import explanation_lines
 from harness.session.physics import overlap_note, start_physics
 from harness.session.prepare import prepare
-from harness.spec.load import LoadedScenario
-from harness.spec.source import Loc
-from harness.spec.varied_paths import as_json, choices
 from harness.steps.grasp import Grasp
 from harness.steps.pick import Pick
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from harness.core.errors import ModelRefused, Problem, RobotError, SpecError
+from harness.observation.findings import overlap_text
 from harness.ports import Touch
-from harness.session.findings import overlap_text
 from harness.session.prepare import Prepared
 from harness.session.timing import Clock
 

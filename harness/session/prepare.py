@@ -12,16 +12,8 @@ from harness.cell.scope import Part
 from harness.core.errors import Problem, RobotError, SpecError
 from harness.core.geometry import Mesh
 from harness.engine.compile import Sources, compile_scenario
-from harness.importers.imported import ImportedWorld
-from harness.planning.backend import make_planning
-from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
-from harness.planning.planner_names import check_planner
-from harness.ports import Kinematics, MotionPlanner, PlanningScene
-from harness.recording.run import Finding
-from harness.robot.description import RobotDescription
-from harness.robot.load import load_robot
-from harness.session.findings import about_file
-from harness.spec.load import (
+from harness.language.files.source import Loc
+from harness.language.reading.load import (
     SDF_SUFFIXES,
     LoadedScenario,
     Reading,
@@ -30,9 +22,17 @@ from harness.spec.load import (
     read_scenario,
     world_path,
 )
-from harness.spec.mending import STAND_IN_ROBOT
-from harness.spec.scenario import RobotSpec
-from harness.spec.source import Loc
+from harness.language.reading.repair import STAND_IN_ROBOT
+from harness.language.scenario import RobotSpec
+from harness.observation.findings import about_file
+from harness.planning.backend import make_planning
+from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
+from harness.planning.search.planner_names import check_planner
+from harness.ports import Kinematics, MotionPlanner, PlanningScene
+from harness.recording.run import Finding
+from harness.robot.description import RobotDescription
+from harness.robot.load import load_robot
+from harness.world.imported import ImportedWorld
 
 ROBOT: frozenset[Part] = frozenset({"robot"})
 WORLD: frozenset[Part] = frozenset({"world"})
@@ -163,7 +163,7 @@ def _world(loaded: LoadedScenario) -> ImportedWorld:
     choice, folder = loaded.scenario.world, loaded.path.parent
     try:
         if Path(choice.name).suffix.lower() in SDF_SUFFIXES:
-            from harness.importers.sdf_world import load_sdf  # few scenarios have such a world
+            from harness.world.sdf.world import load_sdf  # few scenarios have such a world
 
             searched = [file_path(each, folder) for each in choice.model_path]
             return load_sdf(world_path(choice.name, folder), searched)

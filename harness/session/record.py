@@ -8,6 +8,8 @@ from importlib.metadata import version
 
 from harness.cell.program import Program
 from harness.engine.execute import Execution
+from harness.observation.fault_effects import with_receipts
+from harness.observation.findings import findings_of, overlap_findings, told
 from harness.ports import Kinematics, Touch
 from harness.recording.run import (
     Finding,
@@ -19,8 +21,6 @@ from harness.recording.run import (
     Signals,
 )
 from harness.robot.description import RobotDescription
-from harness.session.findings import findings_of, overlap_findings, told
-from harness.session.receipts import with_receipts
 
 LIBRARIES = ("armharness", "mujoco", "pin", "coal", "ompl", "toppra", "numpy")
 

@@ -9,10 +9,10 @@ from pathlib import Path
 from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
 from harness.assertions.wording import describe
+from harness.language.reading.load import LoadedScenario, load_scenario
+from harness.language.step import Block
 from harness.recording.run import Verdict
 from harness.recording.store import RESOLVED, StoredRun, read_run
-from harness.spec.load import LoadedScenario, load_scenario
-from harness.spec.step import Block
 
 
 def judge_run(run_dir: Path, with_file: Path | None = None) -> tuple[Verdict, ...]:

@@ -16,22 +16,22 @@ from harness.core.activity import Activity
 from harness.core.errors import HarnessError, Problem, SpecError
 from harness.core.types import FloatArray
 from harness.engine.execute import Execution, execute_program
+from harness.language.reading.resolve import resolved_text
+from harness.observation.beliefs import believed_poses
+from harness.observation.contacts import contact_records
+from harness.observation.tracking import as_commanded, plan_against_physics
 from harness.ports import Touch
 from harness.recording.digest import digest
 from harness.recording.run import Outcome, Run, Signals, StepRecord, Verdict
 from harness.recording.store import PAGE, StoredRun, write_run
 from harness.reporting.explanation import explanation_lines
 from harness.reporting.result import CaseResult, ProgressEvent, StepLine
-from harness.session.agreement import as_commanded, plan_against_physics
-from harness.session.beliefs import believed_poses
 from harness.session.camera_pictures import with_camera_pictures
-from harness.session.contacts import contact_records
 from harness.session.failure_pictures import draw_pictures, with_pictures
 from harness.session.physics import overlap_note, start_physics
 from harness.session.prepare import Prepared, prepare
 from harness.session.record import run_record
 from harness.session.timing import Clock
-from harness.spec.resolve import resolved_text
 
 if TYPE_CHECKING:
     from harness.session.timed_simulator import TimedSimulator
@@ -269,7 +269,7 @@ def _execute(
 
 def _compared_with_plan(prepared: Prepared, run: Run, *, is_recorded: bool) -> Run:
     """The run with what planner and physics disagreed on; distances as planned where asked for."""
-    from harness.planning.clearance import CoalClearance
+    from harness.observation.clearance import CoalClearance
 
     observer = CoalClearance(prepared.program.description)
     cutoff = run.signals.clearance_cutoff
@@ -292,7 +292,7 @@ def _compared_with_plan(prepared: Prepared, run: Run, *, is_recorded: bool) -> R
 
 
 def _observe(prepared: Prepared, signals: Signals, execution: Execution, cutoff: float) -> Signals:
-    from harness.planning.clearance import CoalClearance
+    from harness.observation.clearance import CoalClearance
 
     observer = CoalClearance(prepared.program.description)
     return observer.observe(signals, execution.objects, execution.attachments, cutoff)
@@ -351,7 +351,7 @@ def _write(
     activity: Activity,
 ) -> tuple[str, ...]:
     """Write the report folder; what a person should know of it comes back as notes."""
-    from harness.session.visuals import mesh_records
+    from harness.observation.visuals import mesh_records
 
     run = replace(run, meshes=mesh_records(run))
     stored = StoredRun(run, verdicts, outcome, fingerprint, dict(clock.seconds))

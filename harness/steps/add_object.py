@@ -10,9 +10,9 @@ from pydantic import Field
 from harness.cell.cell import Cell
 from harness.cell.scope import At
 from harness.core.errors import StepFailed
-from harness.spec.source import Loc
-from harness.spec.step import Step
-from harness.spec.world import ObjectSpec
+from harness.language.files.source import Loc
+from harness.language.step import Step
+from harness.language.world import ObjectSpec
 
 
 class AddObject(Step):

@@ -9,9 +9,9 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
-from harness.spec.base import Name
-from harness.spec.source import Loc
-from harness.spec.step import AnyStep, Block, Step
+from harness.language.base import Name
+from harness.language.files.source import Loc
+from harness.language.step import AnyStep, Block, Step
 
 SPECIAL_BODIES = ("robot",)
 

@@ -9,10 +9,10 @@ from pydantic import Discriminator, Field, Tag
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
-from harness.spec.base import Name, kind_of
-from harness.spec.source import Loc
-from harness.spec.step import Step
-from harness.spec.world import ObjectSpec
+from harness.language.base import Name, kind_of
+from harness.language.files.source import Loc
+from harness.language.step import Step
+from harness.language.world import ObjectSpec
 
 
 class AttachObject(Step):

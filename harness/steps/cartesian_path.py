@@ -11,12 +11,12 @@ from harness.cell.cell import Cell
 from harness.cell.goals import group_of, link_limits, resolve_goal
 from harness.cell.scope import At
 from harness.core.errors import PlanningFailed
+from harness.language.base import Angle, Fraction, Length, Name, PositiveLength, SpecModel
+from harness.language.goals import CartesianLimits, GoalFields
+from harness.language.poses import Pose, Position
+from harness.language.step import Step
 from harness.ports import CartesianPathOptions, JointGoal, PoseGoal, PositionGoal
 from harness.ports import JumpThreshold as PlannedJumpThreshold
-from harness.spec.base import Angle, Fraction, Length, Name, PositiveLength, SpecModel
-from harness.spec.goals import CartesianLimits, GoalFields
-from harness.spec.poses import Pose, Position
-from harness.spec.step import Step
 
 REPORTED = ("fraction", "largest_joint_step", "deviation")
 

@@ -9,8 +9,8 @@ from pydantic import Field
 from harness.cell.cell import Cell
 from harness.cell.scope import At
 from harness.core.errors import StepFailed
-from harness.spec.base import JointEffort, JointValue, Name
-from harness.spec.step import Step
+from harness.language.base import JointEffort, JointValue, Name
+from harness.language.step import Step
 from harness.steps.gripper import DEFAULT_TIMEOUT, check_gripper_position, note_result
 
 GripperAction = Literal["friction", "weld"]

@@ -11,10 +11,10 @@ from harness.cell.cell import Cell
 from harness.cell.grasping import GAP_SLACK
 from harness.cell.scope import At
 from harness.core.errors import StepFailed
+from harness.language.base import JointEffort, JointValue, Name, NonNegativeLength
+from harness.language.step import Step
 from harness.ports import GripperResult
 from harness.robot.description import Gripper as GripperDescription
-from harness.spec.base import JointEffort, JointValue, Name, NonNegativeLength
-from harness.spec.step import Step
 
 DEFAULT_TIMEOUT = 10.0  # [s] of simulation
 

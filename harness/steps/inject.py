@@ -9,8 +9,8 @@ from pydantic import Field, model_validator
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
-from harness.spec.base import Angle, Duration, Force, Fraction, Name, Number, PositiveDuration
-from harness.spec.step import Step
+from harness.language.base import Angle, Duration, Force, Fraction, Name, Number, PositiveDuration
+from harness.language.step import Step
 
 PushForce = tuple[Force, Force, Force]
 

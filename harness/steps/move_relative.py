@@ -11,10 +11,10 @@ from harness.cell.cell import Cell
 from harness.cell.goals import group_of
 from harness.cell.scope import At
 from harness.core.types import FloatArray
+from harness.language.base import Angle, Length, Name, PositiveLength
+from harness.language.poses import Direction
+from harness.language.step import Step
 from harness.ports import MotionPlan, PlanningOptions
-from harness.spec.base import Angle, Length, Name, PositiveLength
-from harness.spec.poses import Direction
-from harness.spec.step import Step
 
 
 class MoveRelative(Step):

@@ -10,10 +10,10 @@ from harness.cell.cell import Cell
 from harness.cell.goal_checks import check_goal
 from harness.cell.goals import group_of, path_constraints, resolve_goal
 from harness.cell.scope import At
+from harness.language.goals import GOAL_KEYS, GoalFields
+from harness.language.planning import PathConstraints
+from harness.language.step import Step
 from harness.ports import AnyGoal
-from harness.spec.goals import GOAL_KEYS, GoalFields
-from harness.spec.planning import PathConstraints
-from harness.spec.step import Step
 
 
 class MoveTo(GoalFields, Step):

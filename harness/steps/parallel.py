@@ -9,8 +9,8 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
-from harness.spec.source import Loc
-from harness.spec.step import STEPS, AnyStep, Block, Step
+from harness.language.files.source import Loc
+from harness.language.step import STEPS, AnyStep, Block, Step
 from harness.steps.gripper import Gripper
 
 

@@ -24,9 +24,9 @@ from harness.cell.scope import At
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.spec.base import Angle, JointEffort, Name, PositiveLength, SpecModel
-from harness.spec.poses import Direction, Pose, Position
-from harness.spec.step import Step
+from harness.language.base import Angle, JointEffort, Name, PositiveLength, SpecModel
+from harness.language.poses import Direction, Pose, Position
+from harness.language.step import Step
 from harness.steps.grasp import Grasp, GripperAction, check_graspable
 from harness.steps.gripper import Gripper
 from harness.steps.lin import Lin

@@ -19,10 +19,10 @@ from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.spatial import SE3
 from harness.core.symmetry import equal_turns
 from harness.core.types import FloatArray
+from harness.language.base import Name
+from harness.language.poses import Direction, Pose, Position
+from harness.language.step import Step
 from harness.ports import PositionGoal, Touch
-from harness.spec.base import Name
-from harness.spec.poses import Direction, Pose, Position
-from harness.spec.step import Step
 from harness.steps.lin import Lin
 from harness.steps.move_to import MoveTo
 from harness.steps.pick import (

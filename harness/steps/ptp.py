@@ -11,10 +11,10 @@ from harness.cell.goal_checks import check_goal
 from harness.cell.goals import group_of, resolve_goal
 from harness.cell.scope import At
 from harness.core.errors import PlanningFailed
+from harness.language.base import PositiveDuration
+from harness.language.goals import GoalFields
+from harness.language.step import Step
 from harness.ports import JointGoal
-from harness.spec.base import PositiveDuration
-from harness.spec.goals import GoalFields
-from harness.spec.step import Step
 
 
 class Ptp(GoalFields, Step):

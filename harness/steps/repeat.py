@@ -8,9 +8,9 @@ from typing import Annotated, ClassVar
 from pydantic import Field
 
 from harness.cell.cell import Cell
-from harness.spec.base import Count
-from harness.spec.source import Loc
-from harness.spec.step import AnyStep, Block, Step
+from harness.language.base import Count
+from harness.language.files.source import Loc
+from harness.language.step import AnyStep, Block, Step
 
 
 class Repeat(Step):

@@ -13,10 +13,10 @@ from harness.cell.goal_checks import check_arc, check_goal
 from harness.cell.goals import arc_point, group_of, link_limits, resolve_goal
 from harness.cell.scope import At, Scope
 from harness.core.types import FloatArray
+from harness.language.base import NonNegativeLength, SpecModel
+from harness.language.goals import ArcFields, GoalFields, LineFields
+from harness.language.step import Step
 from harness.ports import SequenceItem as PlannedItem
-from harness.spec.base import NonNegativeLength, SpecModel
-from harness.spec.goals import ArcFields, GoalFields, LineFields
-from harness.spec.step import Step
 
 Place = tuple[str, str, FloatArray]
 """A link, a frame, and the link's position in it."""

@@ -9,9 +9,9 @@ import numpy as np
 from hypothesis import strategies as st
 
 from harness.core.types import FloatArray
+from harness.language.scenario import RobotSpec
 from harness.robot.chain import Chain
 from harness.robot.load import load_robot
-from harness.spec.scenario import RobotSpec
 from harness.strategies.tasks import Task, manipulability, natural_task
 
 Positions = st.SearchStrategy[FloatArray]

@@ -20,7 +20,7 @@ from harness.suite.header import source_lines
 from harness.suite.variation import Case, Variation
 
 if TYPE_CHECKING:
-    from harness.spec.scenario import Scenario
+    from harness.language.scenario import Scenario
 
 MODEL = "<Scenario model>"
 """What messages call a scenario that is a model in Python, and no file."""
@@ -151,7 +151,7 @@ def _job(
 
         file, text, variation = Path(scenario), None, read_header(Path(scenario)).variation
     else:
-        from harness.spec.written import scenario_text, written
+        from harness.language.reading.written import scenario_text, written
 
         text = scenario_text(scenario)
         file, variation = Path.cwd() / MODEL, Variation.of(written(scenario))

@@ -198,7 +198,7 @@ def run_isolated(
 
 def _words(jobs: Sequence[CaseJob]) -> frozenset[str]:
     """Every word in the scenarios, names of robots among them."""
-    from harness.spec.yaml_file import read_text
+    from harness.language.files.yaml_file import read_text
 
     texts = {job.text for job in jobs if job.text is not None}
     texts.update(value for job in jobs for value in job.overrides.values())

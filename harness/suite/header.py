@@ -11,7 +11,7 @@ from harness.suite.discovery import SUFFIX
 from harness.suite.variation import ONE_CASE, Variation
 
 if TYPE_CHECKING:
-    from harness.spec.source import Located
+    from harness.language.files.source import Located
 
 VARIED = ("parametrize", "randomize", "samples", "redraw_overlaps", "expect_rate", "seed")
 
@@ -45,8 +45,8 @@ def source_lines(file: Path) -> list[str]:
 
 def read_header(file: Path) -> Header:
     """Read a file's header; for a broken file, whose run reports the problems, only the name."""
-    from harness.spec.source import Source
-    from harness.spec.yaml_file import parse_yaml, read_text
+    from harness.language.files.source import Source
+    from harness.language.files.yaml_file import parse_yaml, read_text
 
     nameless = Header(file.name.removesuffix(SUFFIX))
     try:

@@ -101,7 +101,7 @@ def planned_cases(files: Sequence[Path], request: RunRequest) -> list[PlannedCas
 
 def _refuse_samples(files: Sequence[Path], request: RunRequest) -> NoReturn:
     """Say that nothing is sampled; mistakes in a file, which may hide its samples, come first."""
-    from harness.spec.load import load_scenario
+    from harness.language.reading.load import load_scenario
 
     for file in files:
         load_scenario(file, request.overrides)

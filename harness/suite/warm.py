@@ -25,7 +25,7 @@ from harness.suite.server import receive, send
 RUN_MODULES = (
     "harness.session.run_case",
     "harness.session.timed_simulator",
-    "harness.planning.clearance",
+    "harness.observation.clearance",
     "harness.cameras.stills",
     "mujoco",
     "pinocchio",

@@ -32,7 +32,7 @@ from harness.expectations.tracking_error import TrackingError
 from harness.expectations.until import Until
 from harness.expectations.upright import Upright
 from harness.expectations.within_limits import WithinLimits
-from harness.spec.poses import Pose
+from harness.language.poses import Pose
 from tests.assertions.synthetic_run import (
     BOX,
     ROBOT,

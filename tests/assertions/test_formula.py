@@ -11,9 +11,9 @@ from harness.assertions.formula import TINY, Evaluation, formula_verdict
 from harness.assertions.temporal import TooShort, always, eventually, never, until
 from harness.assertions.window import NotObservable, NotReached, Window
 from harness.expectations.formula import Formula
-from harness.spec.formula import Comparison, Const, Interval, Logic, Signal, Temporal
-from harness.spec.formula_parser import parse_formula
-from harness.spec.formula_text import FormulaError
+from harness.language.formula.formula import Comparison, Const, Interval, Logic, Signal, Temporal
+from harness.language.formula.parser import parse_formula
+from harness.language.formula.text import FormulaError
 from tests.assertions.synthetic_run import at, force, heights, lift_run, make_run, verdict
 
 EPS = 1e-9

@@ -24,7 +24,7 @@ from harness.expectations.tcp_path import TcpPath
 from harness.expectations.tcp_pose import TcpPose
 from harness.expectations.until import Until
 from harness.expectations.within_limits import WithinLimits
-from harness.spec.poses import Pose
+from harness.language.poses import Pose
 from tests.assertions.synthetic_run import lift_run
 
 

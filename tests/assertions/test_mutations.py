@@ -32,8 +32,8 @@ from harness.expectations.duration import DurationCheck
 from harness.expectations.fraction import FractionCheck
 from harness.expectations.lifted import Lifted
 from harness.expectations.until import Until
+from harness.language.language import PREDICATES
 from harness.recording.run import Signals
-from harness.spec.language import PREDICATES
 from tests.assertions.free_shifts import AT_ONCE, COURSES, FREE, free_shifts
 from tests.assertions.mutation_cases import CASES, N
 from tests.assertions.picture_mutants import SUBJECTS, seen_run, spoilt

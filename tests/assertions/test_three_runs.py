@@ -37,9 +37,9 @@ from harness.expectations.tcp_pose import TcpPose
 from harness.expectations.tracking_error import TrackingError
 from harness.expectations.upright import Upright
 from harness.expectations.within_limits import WithinLimits
+from harness.language.language import PREDICATES
+from harness.language.poses import Pose
 from harness.recording.run import Run
-from harness.spec.language import PREDICATES
-from harness.spec.poses import Pose
 from tests.assertions.picture_mutants import SUBJECTS, seen_run
 from tests.assertions.synthetic_run import (
     BOX,

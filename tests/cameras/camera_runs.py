@@ -13,12 +13,12 @@ from harness.cameras.captures import take_pictures
 from harness.core.camera import Camera
 from harness.core.geometry import Shape, Sphere
 from harness.core.spatial import SE3
-from harness.engine.markers import plate, printed
+from harness.language.cameras import looking_at
+from harness.language.markers import MarkerSpec
+from harness.language.scenario import RobotSpec
 from harness.recording.looks import Look, merged
 from harness.robot.load import load_robot
-from harness.spec.cameras import looking_at
-from harness.spec.markers import MarkerSpec
-from harness.spec.scenario import RobotSpec
+from harness.world.markers import plate, printed
 from tests.assertions.synthetic_run import make_run
 from tests.cameras.recorded_runs import GROUND, an_object
 

@@ -2,8 +2,8 @@
 
 import pytest
 
+from harness.language.scenario import RobotSpec
 from harness.robot.load import load_robot
-from harness.spec.scenario import RobotSpec
 
 
 @pytest.fixture(scope="session")

@@ -100,7 +100,7 @@ import sys
 from pathlib import Path
 from harness.cameras.stills import save_stills
 from harness.robot.load import load_robot
-from harness.spec.scenario import RobotSpec
+from harness.language.scenario import RobotSpec
 from tests.cameras.recorded_runs import OBJECTS, a_run
 robot = load_robot(RobotSpec(model="open_manipulator_x"))
 report = save_stills(robot, OBJECTS, a_run(robot), Path(sys.argv[1]))

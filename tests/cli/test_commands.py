@@ -10,9 +10,9 @@ import pytest
 from harness import __version__
 from harness.cli.main import main
 from harness.core.spatial import xyzw_from_wxyz
+from harness.language.step import STEPS
 from harness.recording.store import read_run
 from harness.session.run_case import run_case
-from harness.spec.step import STEPS
 
 HEAVY = (
     "pydantic",

@@ -5,15 +5,15 @@ from pathlib import Path
 import pytest
 
 from harness.cli.main import main
-from harness.importers.scene import load_scene
-from harness.importers.sdf_world import load_sdf
+from harness.language.reading.load import load_world
 from harness.robot.mesh_file import read_triangles
 from harness.session.prepare import prepare
-from harness.spec.load import load_world
-from tests.importers.sdf_files import TETRAHEDRON, text_with, write
-from tests.importers.test_scene import NEW, OLD
+from harness.world.moveit_scene.scene import load_scene
+from harness.world.sdf.world import load_sdf
+from tests.world.sdf_files import TETRAHEDRON, text_with, write
+from tests.world.test_scene import NEW, OLD
 
-FRAMES = Path(__file__).parents[1] / "importers" / "files" / "frames.sdf"
+FRAMES = Path(__file__).parents[1] / "world" / "files" / "frames.sdf"
 MESHED = """meshed
 * part
 0 0 1

@@ -7,10 +7,10 @@ import pytest
 import yaml
 
 from harness.cli.main import main
-from harness.planning.kinematics import PinocchioKinematics
-from harness.planning.pair_statistics import random_positions
+from harness.language.scenario import RobotSpec
+from harness.planning.collision.pair_statistics import random_positions
+from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.load import load_robot
-from harness.spec.scenario import RobotSpec
 from tests.robot.arm_files import load_arm
 from tests.robot.test_mesh_file import STL
 from tests.robot.test_own_gripper import HAND, LEFT, PALM, RIGHT, write

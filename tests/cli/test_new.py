@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from harness.cli.main import main
-from harness.spec.load import load_scenario
+from harness.language.reading.load import load_scenario
 from tests.robot.arm_files import write_arm
 
 FILE = Path("sub/first.scenario.yaml")

@@ -8,7 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from harness.assertions.text import amount, amounts, percentages
-from harness.planning import wording
+from harness.planning.collision import wording
 from harness.ports import Touch
 from harness.recording.run import Measure
 

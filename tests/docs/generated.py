@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from harness.importers.reference import formats_page
-from harness.spec.expectations_reference import expectations_reference
-from harness.spec.reference import scenario_reference, steps_reference
-from harness.spec.schema import schema_text, world_schema_text
+from harness.language.expectations_reference import expectations_reference
+from harness.language.reference import scenario_reference, steps_reference
+from harness.language.schema import schema_text, world_schema_text
+from harness.world.sdf.reference import formats_page
 from tests.docs.readme_samples import with_samples
 from tests.docs.robot_formats import robot_formats_page
 

@@ -15,10 +15,10 @@ from matplotlib.figure import Figure
 from harness.assertions.contacts import debounced
 from harness.assertions.temporal import episodes
 from harness.assertions.window import window_of
+from harness.language.reading.load import load_scenario
 from harness.recording.store import read_run
 from harness.session.rejudge import expectations_of
 from harness.session.run_case import run_case
-from harness.spec.load import load_scenario
 from tests.docs.picture_scenes import PICTURES, SCENES, expectation, scenario
 from tests.docs.picture_scenes import expectations_of as texts_of
 

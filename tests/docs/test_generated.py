@@ -8,8 +8,8 @@ import pytest
 
 from harness.cli.main import main
 from harness.core.resources import data_folder
-from harness.spec.source import Source
-from harness.spec.yaml_file import parse_yaml
+from harness.language.files.source import Source
+from harness.language.files.yaml_file import parse_yaml
 from tests.docs.generated import RENEW, ROOT, generated
 
 FILES = [

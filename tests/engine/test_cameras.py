@@ -5,11 +5,11 @@ import pytest
 from harness.core.errors import RobotError
 from harness.core.resources import data_folder
 from harness.core.spatial import SE3
-from harness.engine.markers import plate, printed
+from harness.language.markers import MarkerSpec
+from harness.language.scenario import RobotSpec
 from harness.robot.load import load_robot
 from harness.session.prepare import prepare
-from harness.spec.markers import MarkerSpec
-from harness.spec.scenario import RobotSpec
+from harness.world.markers import plate, printed
 from tests.engine.front_door import problems
 
 OM = "open_manipulator_x"

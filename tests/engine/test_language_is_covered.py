@@ -2,7 +2,7 @@
 
 from harness.assertions.expectation import Expectation, Predicate
 from harness.core.registry import registry
-from harness.spec.step import STEPS, Step
+from harness.language.step import STEPS, Step
 
 EXPECTATIONS = registry("expectation")
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from harness.core.spatial import SE3
-from harness.engine.objects import resolve_object
-from harness.spec.world import ObjectSpec
+from harness.language.world import ObjectSpec
+from harness.world.objects import resolve_object
 
 
 def box_file(folder: Path, low, high) -> str:

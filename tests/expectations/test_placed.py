@@ -7,7 +7,7 @@ from harness.core.geometry import Box, Cylinder
 from harness.core.spatial import SE3
 from harness.expectations.placed import Placed
 from harness.expectations.static import Static
-from harness.spec.poses import Pose, PoseTolerance
+from harness.language.poses import Pose, PoseTolerance
 from tests.assertions.synthetic_run import (
     BOX,
     DT,

@@ -7,7 +7,7 @@ import pytest
 
 from harness.core.spatial import SE3
 from harness.expectations.slip import Slip
-from harness.session.agreement import held_finding as finding_of_hold
+from harness.observation.tracking import held_finding as finding_of_hold
 from tests.assertions.synthetic_run import (
     BOX,
     CYLINDER,

@@ -7,7 +7,7 @@ import pytest
 
 from harness.core.spatial import SE3
 from harness.expectations.tcp_pose import TcpPose
-from harness.spec.poses import Pose
+from harness.language.poses import Pose
 from tests.assertions.synthetic_run import BOX, TABLE, at, heights, make_run, verdict
 
 ABSENT = np.full((200, 7), np.nan)

@@ -12,7 +12,7 @@ from harness.core.errors import RobotError
 from harness.iktest import IkTest, check_ik, run_ik_test
 from harness.iktest.contract import UnusableSolver
 from harness.iktest.text import report_lines
-from harness.session.robot_source import RobotSource
+from harness.robot_tools.robot_source import RobotSource
 from harness.strategies import load_chain
 from tests.iktest.arms import OM, correct
 

@@ -6,11 +6,11 @@ import pytest
 
 from harness.core.spatial import SE3
 from harness.iktest import IkTest, check_ik, run_ik_test
-from harness.planning.kinematics import PinocchioKinematics
+from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.ports import PoseGoal
 from harness.robot.chain import Chain
-from harness.session.own_ik import own_solver
-from harness.session.robot_source import RobotSource, load
+from harness.robot_tools.builtin_ik import own_solver
+from harness.robot_tools.robot_source import RobotSource, load
 
 
 @pytest.mark.parametrize("robot", ["open_manipulator_x", "ur3e", "ur5e"])

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from harness.cli.main import main
-from harness.planning.pair_statistics import random_positions, self_touches
+from harness.language.reading.load import load_scenario
+from harness.language.scenario import RobotSpec
+from harness.planning.collision.pair_statistics import random_positions, self_touches
 from harness.recording.store import read_run
 from harness.robot.load import load_robot
-from harness.session.robot_source import RobotSource, load
-from harness.spec.load import load_scenario
-from harness.spec.scenario import RobotSpec
+from harness.robot_tools.robot_source import RobotSource, load
 from tests.docs.generated import ROOT
 
 pytestmark = pytest.mark.packages

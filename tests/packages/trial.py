@@ -11,13 +11,13 @@ import numpy as np
 import pinocchio as pin
 
 from harness.core.errors import HarnessError, SpecError
+from harness.language.scenario import RobotSpec
 from harness.planning.backend import make_planning
 from harness.robot.description import RobotDescription
 from harness.robot.find_file import find_file
 from harness.robot.load import load_robot
 from harness.session.run_case import run_case
 from harness.simulation.servo import bare_robot
-from harness.spec.scenario import RobotSpec
 from tests.packages.arms import PackageArm
 
 MOST_STATES = 10

@@ -6,18 +6,18 @@ from pathlib import Path
 
 import numpy as np
 
-from harness.planning.ik_numeric import (
+from harness.language.scenario import RobotSpec
+from harness.planning.ik.numeric import (
     MOST_RESTARTS,
     RESTARTS,
     LinkTask,
     pitch_of,
     random_positions,
 )
-from harness.planning.ik_numeric import solve_numeric as solve
-from harness.planning.robot_model import GroupSpace, RobotModel
+from harness.planning.ik.numeric import solve_numeric as solve
+from harness.planning.model.robot_model import GroupSpace, RobotModel
 from harness.ports import PoseGoal, PositionGoal
 from harness.robot.load import gripper_names, load_robot, robot_names
-from harness.spec.scenario import RobotSpec
 
 PAGE = Path(__file__).parents[2] / "robots" / "INVERSE_KINEMATICS.md"
 RENEW = "python -m tests.planning.ik_success"

@@ -7,11 +7,11 @@ import numpy as np
 from harness.core.geometry import Box, Cylinder, Plane, Shape
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
+from harness.language.scenario import RobotSpec
 from harness.planning.backend import make_planning
 from harness.ports import PoseGoal
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
-from harness.spec.scenario import RobotSpec
 
 GRASP_QUAT_WXYZ = (0.0, 0.924, -0.383, 0.0)
 ARM = "ur_manipulator"

@@ -1,8 +1,8 @@
 """One search of the lesson's first motion past its boxes, as tests of the planners share it."""
 
-from harness.planning.checker import MotionChecker
-from harness.planning.robot_model import GroupSpace
-from harness.planning.search import Search, search
+from harness.planning.collision.checker import MotionChecker
+from harness.planning.model.robot_model import GroupSpace
+from harness.planning.search.search import Search, search
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, boxes, ur
 
 RESOLUTION = 1 / 16

@@ -9,8 +9,8 @@ import pinocchio as pin
 from harness.core.errors import PlanningFailed
 from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3
-from harness.planning.checker import MARGIN_SLACK, TOUCHING
-from harness.planning.verify import EFFORT_TOLERANCE, FINAL_RESOLUTION, LIMIT_TOLERANCE
+from harness.planning.collision.checker import MARGIN_SLACK, TOUCHING
+from harness.planning.verification.verify import EFFORT_TOLERANCE, FINAL_RESOLUTION, LIMIT_TOLERANCE
 from harness.ports import MotionPlan, PlanningOptions, PoseGoal
 from tests.planning.lesson import Cell, at, open_manipulator, thing, ur
 

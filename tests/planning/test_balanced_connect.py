@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from harness.planning.balanced_connect import (
+from harness.planning.model.robot_model import GroupSpace
+from harness.planning.search.balanced_connect import (
     RANGE,
     _Tree,  # pyright: ignore[reportPrivateUsage]
     sampling_bounds,
 )
-from harness.planning.robot_model import GroupSpace
 from tests.planning.lesson import ARM, Cell, ur
 
 

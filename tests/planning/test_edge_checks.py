@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Shape, Sphere
-from harness.planning.checker import MotionChecker
-from harness.planning.compiled import use_compiled
-from harness.planning.covering import cover, cover_shapes, signed_distance
-from harness.planning.robot_model import GroupSpace
+from harness.planning.collision.checker import MotionChecker
+from harness.planning.collision.compiled import use_compiled
+from harness.planning.collision.sphere_cover import cover, cover_shapes, signed_distance
+from harness.planning.model.robot_model import GroupSpace
 from harness.ports import JointGoal, PlanningOptions
 from harness.robot.mesh_file import convex_hull
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, at, boxes, open_manipulator, thing, ur

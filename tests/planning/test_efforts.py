@@ -10,8 +10,8 @@ from harness.core.errors import PlanningFailed
 from harness.core.geometry import Box, Shape
 from harness.core.world import WorldObject
 from harness.planning.efforts import InverseDynamics
-from harness.planning.robot_model import GroupSpace
-from harness.planning.timing import Limits, time_blended, time_straight
+from harness.planning.model.robot_model import GroupSpace
+from harness.planning.timing.timing import Limits, time_blended, time_straight
 from harness.ports import JointGoal, PlanningOptions
 from tests.planning.lesson import ARM, TCP, Cell, ur
 

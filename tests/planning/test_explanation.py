@@ -9,14 +9,14 @@ import pytest
 from harness.core.errors import PlanningFailed
 from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3, wxyz_from_xyzw
-from harness.planning.branches import branch_name
-from harness.planning.nearest_pose import (
+from harness.planning.goals.branches import branch_name
+from harness.planning.ik.nearest_pose import (
     EVEN,
     KEEP_TURN,
     distance_to_goal,
     nearest_pose,
 )
-from harness.planning.robot_model import GroupSpace
+from harness.planning.model.robot_model import GroupSpace
 from harness.ports import JointGoal, PlanningOptions, PoseGoal, PositionGoal
 from harness.recording.explanation import stages_of
 from tests.planning.lesson import (

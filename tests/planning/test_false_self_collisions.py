@@ -7,9 +7,9 @@ import pinocchio as pin
 import pytest
 
 from harness.core.geometry import Mesh
-from harness.planning.scene import CoalScene
+from harness.language.scenario import RobotSpec
+from harness.planning.collision.scene import CoalScene
 from harness.robot.load import load_robot
-from harness.spec.scenario import RobotSpec
 
 SAMPLES = 600
 STATED = {"ur3e": 0.063, "ur5e": 0.020}

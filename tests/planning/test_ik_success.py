@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.planning.kinematics import PinocchioKinematics, pitch_of
+from harness.language.scenario import RobotSpec
+from harness.planning.ik.kinematics import PinocchioKinematics, pitch_of
 from harness.ports import PoseGoal, PositionGoal
 from harness.robot.load import load_robot
-from harness.spec.scenario import RobotSpec
 from tests.planning.ik_success import ARMS, ATTEMPTS, KINDS, PAGE, POSES, measure
 
 ROW = re.compile(r"(?m)^\| `(\w+)` \| \d \| ([\w ]+) \| (.*) \| 1e-(\d\d) \|$")

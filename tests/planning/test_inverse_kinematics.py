@@ -7,10 +7,10 @@ import pytest
 from eaik.IK_HP import HPRobot
 
 from harness.core.spatial import SE3
-from harness.planning.kinematics import PinocchioKinematics
+from harness.language.scenario import RobotSpec
+from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.ports import PoseGoal, PositionGoal
 from harness.robot.load import load_robot
-from harness.spec.scenario import RobotSpec
 from tests.planning.lesson import ARM, TCP, grasp_goal, open_manipulator, ur
 
 # Numeric inverse kinematics, 300 random starts, of ur_description 4.3.1 (the lesson's steps).

@@ -8,8 +8,8 @@ import pytest
 from harness.core.errors import PlanningFailed
 from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3
-from harness.planning.line_goals import pitched
-from harness.planning.splines import uniform_spline
+from harness.planning.cartesian.line_goals import pitched
+from harness.planning.cartesian.splines import uniform_spline
 from harness.ports import PlanningOptions, PoseGoal, PositionGoal
 from tests.planning.lesson import ARM, TCP, Cell, at, grasp_goal, open_manipulator, thing, ur
 

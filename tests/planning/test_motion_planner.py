@@ -8,8 +8,8 @@ import pytest
 
 from harness.core.errors import PlanningFailed
 from harness.core.geometry import Box, Cylinder, Shape, Sphere
-from harness.planning.checker import MotionChecker
-from harness.planning.robot_model import GroupSpace
+from harness.planning.collision.checker import MotionChecker
+from harness.planning.model.robot_model import GroupSpace
 from harness.ports import JointGoal, PlanningOptions, PoseGoal, PositionGoal
 from tests.planning.lesson import (
     ARM,

@@ -13,8 +13,8 @@ import ompl.base
 import ompl.geometric
 import pytest
 
-from harness.planning.compiled import use_compiled
-from harness.planning.planner_names import planner_names, resolve_planner_id
+from harness.planning.collision.compiled import use_compiled
+from harness.planning.search.planner_names import planner_names, resolve_planner_id
 from tests.planning.planner_trial import Trial, signature
 
 
@@ -69,7 +69,7 @@ def test_every_planner_repeats_itself_in_a_fresh_process(trial):
     here = {name: list(signature(trial.search(name, seed=8))) for name in planner_names()}
     assert sum(path != "" for *_, path in here.values()) >= 8
     code = (
-        "import json; from harness.planning.planner_names import planner_names;"
+        "import json; from harness.planning.search.planner_names import planner_names;"
         "from tests.planning.planner_trial import Trial, signature; trial = Trial();"
         "print(json.dumps({n: signature(trial.search(n, seed=8)) for n in planner_names()}))"
     )

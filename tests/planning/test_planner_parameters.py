@@ -3,8 +3,8 @@
 import ompl.geometric
 import pytest
 
-from harness.planning.ompl_problem import make_problem
-from harness.planning.planner_parameters import parameter_names, set_parameters
+from harness.planning.search.ompl_problem import make_problem
+from harness.planning.search.planner_parameters import parameter_names, set_parameters
 from tests.planning.planner_trial import RESOLUTION, Trial, signature
 
 

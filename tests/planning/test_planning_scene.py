@@ -5,9 +5,9 @@ import pytest
 
 from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.geometry import Box, Capsule, Cylinder, Shape, Sphere
-from harness.planning.checker import MotionChecker
-from harness.planning.robot_model import GroupSpace
-from harness.planning.stretches import coarse_to_fine
+from harness.planning.collision.checker import MotionChecker
+from harness.planning.collision.free_stretches import coarse_to_fine
+from harness.planning.model.robot_model import GroupSpace
 from harness.ports import PoseGoal
 from tests.planning.lesson import ARM, TCP, Cell, at, thing, ur
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from harness.core.geometry import Box, Shape
-from harness.planning.checker import MotionChecker
-from harness.planning.compiled import use_compiled
-from harness.planning.nearing import nearing_rates
-from harness.planning.robot_model import GroupSpace
+from harness.planning.collision.checker import MotionChecker
+from harness.planning.collision.compiled import use_compiled
+from harness.planning.collision.motion_bound import nearing_rates
+from harness.planning.model.robot_model import GroupSpace
 from tests.planning.lesson import FIRST_BOXES, Cell, at, boxes, thing
 from tests.planning.problem import HOMES, description_of
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.planning.blended_path import BlendedPath
-from harness.planning.profiles import (
+from harness.planning.timing.blended_path import BlendedPath
+from harness.planning.timing.profiles import (
     GRID,
     Trapezoid,
     cubic_curve,
@@ -14,7 +14,7 @@ from harness.planning.profiles import (
     smoothed,
     straight_curve,
 )
-from harness.planning.timing import Limits, time_blended, time_stopping, time_straight
+from harness.planning.timing.timing import Limits, time_blended, time_stopping, time_straight
 
 NAMES = tuple("abcdef")
 LIMITS = Limits.scaled(np.full(6, np.pi), np.full(6, 5.0), 0.3, 0.3)

@@ -7,10 +7,10 @@ import pytest
 
 from harness.core.geometry import Box, Shape
 from harness.core.trajectory import JointTrajectory
-from harness.planning.path_constraints import HeldConstraints
 from harness.planning.task import make_task
-from harness.planning.timing import time_blended, time_straight
-from harness.planning.verify import find_defect, find_departure
+from harness.planning.timing.timing import time_blended, time_straight
+from harness.planning.verification.path_constraints import HeldConstraints
+from harness.planning.verification.verify import find_defect, find_departure
 from harness.ports import JointBand, PathConstraints, PlanningOptions
 from tests.planning.lesson import ARM, Cell, thing, ur
 

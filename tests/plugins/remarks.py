@@ -7,8 +7,8 @@ from pydantic import Field
 from harness.cell.cell import Cell
 from harness.cell.goals import group_of
 from harness.cell.scope import At
-from harness.spec.base import Angle, Name, PositiveDuration
-from harness.spec.step import Step
+from harness.language.base import Angle, Name, PositiveDuration
+from harness.language.step import Step
 
 
 class Remark(Step):

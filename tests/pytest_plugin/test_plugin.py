@@ -7,9 +7,9 @@ from xml.etree import ElementTree
 
 import pytest
 
+import harness.language.files.yaml_file  # noqa: F401
+
 # pytester forgets modules that are new in its runs, and native ones come once only
-import harness.pytest_plugin.running
-import harness.spec.yaml_file  # noqa: F401
 
 HOLDS = """\
 # a comment before the title

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from harness.planning.kinematics import PinocchioKinematics
+from harness.language.scenario import RobotSpec
+from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.recording.link_poses import link_poses
 from harness.robot.load import load_robot
 from harness.session.record import robot_record
-from harness.spec.scenario import RobotSpec
 
 
 @pytest.mark.parametrize(

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
+from harness.language.scenario import RobotSpec
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
-from harness.spec.scenario import RobotSpec
 
 INERTIAL = (
     '<inertial><origin xyz="0 0 0.1"/><mass value="1"/>'

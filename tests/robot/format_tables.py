@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from tests.importers.sdf_files import ASCII_STL, COLLADA, TETRAHEDRON
 from tests.robot.arm_files import SRDF, URDF
 from tests.robot.format_rows import (
     END,
@@ -20,6 +19,7 @@ from tests.robot.format_rows import (
 from tests.robot.mjcf_arm import MJCF, TIP
 from tests.robot.more_format_rows import CALIBRATION_ROWS, MJCF_ROWS, PARTS, XACRO, XACRO_ROWS
 from tests.robot.ur_calibration import calibration_text
+from tests.world.sdf_files import ASCII_STL, COLLADA, TETRAHEDRON
 
 FILES = {
     "arm.urdf": URDF.replace(END, HAND + END),

@@ -7,9 +7,9 @@ import numpy as np
 import pinocchio as pin
 
 from harness.core.geometry import Box, Capsule, Cylinder, Shape, Sphere
+from harness.language.scenario import RobotSpec
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot, robot_names
-from harness.spec.scenario import RobotSpec
 
 UR_TYPES = tuple(name for name in robot_names() if name.startswith("ur"))
 

@@ -1,6 +1,6 @@
 """Files that are broken, hostile or huge, as `harness check` tells of them: place, exit code 2.
 
-Each in seconds and in bounded memory. (SDF: tests/importers/test_sdf_bad_input.py.)
+Each in seconds and in bounded memory. (SDF: tests/world/test_sdf_bad_input.py.)
 """
 
 import subprocess

@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 
 from harness.core.errors import RobotError, SpecError
-from harness.planning.kinematics import PinocchioKinematics
+from harness.language.scenario import RobotSpec
+from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.ports import PoseGoal
 from harness.robot.load import load_robot
 from harness.simulation.servo import bare_robot
-from harness.spec.scenario import RobotSpec
 from tests.robot.models import robot
 from tests.robot.ur_calibration import SECTIONS, calibration_text
 

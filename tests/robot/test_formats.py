@@ -3,8 +3,8 @@
 import pytest
 
 from harness.core.errors import SpecError
+from harness.language.scenario import RobotSpec
 from harness.robot.load import load_robot
-from harness.spec.scenario import RobotSpec
 from tests.robot.format_rows import Row
 from tests.robot.format_tables import BESIDE, FILES, TABLES, words
 

@@ -5,8 +5,8 @@ import pinocchio as pin
 import pytest
 
 from harness.core.errors import RobotError, SpecError
-from harness.planning.kinematics import PinocchioKinematics
-from harness.robot.urdf import parse_urdf
+from harness.planning.ik.kinematics import PinocchioKinematics
+from harness.robot.urdf.urdf import parse_urdf
 from tests.engine.front_door import run
 from tests.robot.arm_files import INERTIAL, SHAPE, SRDF, URDF, load_arm, write_arm
 

@@ -9,8 +9,8 @@ import pytest
 
 from harness.core.errors import RobotError, SpecError
 from harness.core.resources import data_folder
+from harness.language.scenario import RobotSpec
 from harness.robot.load import load_robot
-from harness.spec.scenario import RobotSpec
 from tests.robot.models import robot
 
 
@@ -177,7 +177,7 @@ def test_the_urdf_names_no_folder_of_this_machine():
 def test_loading_a_robot_imports_no_solver():
     code = (
         "import sys; from harness.robot.load import load_robot; "
-        "from harness.spec.scenario import RobotSpec; load_robot(RobotSpec(model='ur3e')); "
+        "from harness.language.scenario import RobotSpec; load_robot(RobotSpec(model='ur3e')); "
         "print([m for m in ('pinocchio', 'mujoco', 'coal', 'ompl', 'toppra') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

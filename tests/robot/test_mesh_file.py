@@ -7,7 +7,7 @@ import pytest
 
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh, Shape
-from harness.planning.collision_geometry import coal_geometry
+from harness.planning.collision.geometry import coal_geometry
 from harness.robot.mesh_file import hull_points, read_triangles
 from harness.simulation.geoms import add_mesh
 

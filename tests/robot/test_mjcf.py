@@ -6,10 +6,10 @@ import pinocchio as pin
 import pytest
 
 from harness.core.errors import SpecError
-from harness.planning.kinematics import PinocchioKinematics
+from harness.language.scenario import RobotSpec
+from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.load import load_robot
 from harness.simulation.servo import bare_robot
-from harness.spec.scenario import RobotSpec
 from tests.engine.front_door import run
 from tests.robot.mjcf_arm import MJCF, TIP
 

@@ -5,10 +5,10 @@ import pytest
 
 from harness.core.errors import RobotError, SpecError
 from harness.core.spatial import SE3
-from harness.planning.kinematics import PinocchioKinematics
+from harness.language.scenario import RobotSpec
+from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.ports import PoseGoal
 from harness.robot.load import load_robot
-from harness.spec.scenario import RobotSpec
 
 LIMITS = """\
 default_velocity_scaling_factor: 0.1

@@ -7,10 +7,10 @@ import pytest
 from harness.cli.main import main
 from harness.core.errors import RobotError, SpecError
 from harness.core.geometry import Mesh
+from harness.language.scenario import RobotSpec
 from harness.robot.load import load_robot
-from harness.spec.scenario import RobotSpec
-from tests.importers.sdf_files import TETRAHEDRON
 from tests.robot.arm_files import SHAPE, SRDF, URDF
+from tests.world.sdf_files import TETRAHEDRON
 
 LOOK = '<visual><geometry><mesh filename="package://looks/meshes/part.obj"/></geometry></visual>'
 

@@ -11,9 +11,9 @@ from harness.core.errors import SpecError
 from harness.core.geometry import Capsule, Cylinder, Sphere
 from harness.core.spatial import rotation_from_rpy
 from harness.robot.groups import planning_groups
-from harness.robot.srdf import parse_srdf, write_srdf
-from harness.robot.urdf import parse_urdf
-from harness.robot.write_urdf import rpy_from_rotation, write_urdf
+from harness.robot.srdf.srdf import parse_srdf, write_srdf
+from harness.robot.urdf.urdf import parse_urdf
+from harness.robot.urdf.write import rpy_from_rotation, write_urdf
 from tests.robot.models import robot
 
 LIMIT = '<limit lower="-1" upper="1" velocity="1" effort="1"/>'

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from harness.spec.load import bundled_worlds, load_world
+from harness.language.reading.load import bundled_worlds, load_world
 
 TABLE_TOP = 1.015
 

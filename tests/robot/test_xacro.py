@@ -5,7 +5,7 @@ import time
 import pytest
 
 from harness.core.errors import RobotError, SpecError
-from harness.robot import xacro_file
+from harness.robot.xacro import file
 from tests.robot.arm_files import INERTIAL, load_arm, write_arm
 
 HEAD = '<?xml version="1.0"?>\n<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="arm">\n'
@@ -91,7 +91,7 @@ def test_what_cannot_be_rendered_is_refused_at_its_place(
     tmp_path, monkeypatch, old, new, place, words
 ):
     assert old in ARM
-    monkeypatch.setattr(xacro_file, "PROCESSOR_TIME", 2)  # an arm of ours takes a tenth of one
+    monkeypatch.setattr(file, "PROCESSOR_TIME", 2)  # an arm of ours takes a tenth of one
     write(tmp_path, ARM.replace(old, new))
     began = time.process_time()
     with pytest.raises(SpecError) as caught:

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from harness.language.scenario import RobotSpec
 from harness.robot.load import load_robot
-from harness.spec.scenario import RobotSpec
 
 
 @pytest.fixture(scope="session")

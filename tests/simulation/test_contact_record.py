@@ -7,11 +7,11 @@ import pytest
 from harness.core.geometry import Box, Capsule, Cylinder, Plane, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
+from harness.language.scenario import RobotSpec
 from harness.robot.load import load_robot
 from harness.simulation.contact_record import ContactRecord
 from harness.simulation.model import build_model
 from harness.simulation.mujoco_simulator import MujocoSimulator
-from harness.spec.scenario import RobotSpec
 from tests.simulation.physics_scenes import a_box
 
 RESTING = {

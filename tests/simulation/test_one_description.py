@@ -5,9 +5,9 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from harness.language.scenario import RobotSpec
 from harness.robot.load import load_robot, robot_names
 from harness.simulation.model import build_model
-from harness.spec.scenario import RobotSpec
 
 ROBOTS = [{"model": name} for name in robot_names()] + [
     {"model": "ur3e", "gripper": "rh_p12_rn_a", "base": {"xyz": [0.1, -0.2, 1.02]}},

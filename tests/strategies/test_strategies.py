@@ -5,7 +5,7 @@ import pytest
 import yaml
 from hypothesis import HealthCheck, Phase, find, given, settings
 
-from harness.planning.kinematics import PinocchioKinematics
+from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.session.check import check_file
 from harness.strategies import (
     joint_paths,

@@ -15,9 +15,9 @@ from harness.expectations.always import Always
 from harness.expectations.duration import DurationCheck
 from harness.expectations.named_target import NamedTarget
 from harness.expectations.within_limits import WithinLimits
-from harness.spec.load import load_scenario, parse_scenario
-from harness.spec.scenario import Scenario
-from harness.spec.written import scenario_text
+from harness.language.reading.load import load_scenario, parse_scenario
+from harness.language.reading.written import scenario_text
+from harness.language.scenario import Scenario
 from harness.steps.move_to import MoveTo
 from harness.steps.wait import Wait
 from harness.suite.discovery import UsageError

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from harness.core.errors import SpecError
-from harness.spec.load import load_scenario
+from harness.language.reading.load import load_scenario
 from harness.suite.header import read_header
 from harness.suite.variation import Variation
 

@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from harness.spec.language import PREDICATES
+from harness.language.language import PREDICATES
 from tests.docs.pictures import FOLDER, RENEW, pictures, said_in, title_of
 
 

@@ -61,8 +61,8 @@ def test_a_real_pick_passes_both(tmp_path):
 )
 def test_a_pick_that_does_not_hold_fails_both(tmp_path, what, changes):
     if "WEAK" in changes.get("close", ""):
+        from harness.language.scenario import RobotSpec
         from harness.robot.load import load_robot
-        from harness.spec.scenario import RobotSpec
 
         gripper = load_robot(RobotSpec(gripper="rh_p12_rn_a")).gripper
         changes = {"close": changes["close"].replace("WEAK", f"{0.02 * gripper.grip_effort}")}

@@ -11,9 +11,9 @@ import numpy as np
 
 from harness.core.geometry import Mesh, Shape
 from harness.core.spatial import SE3
+from harness.language.scenario import RobotSpec
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
-from harness.spec.scenario import RobotSpec
 
 HAND = "tool0"
 """The link that the gripper's meshes are put on."""

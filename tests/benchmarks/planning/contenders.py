@@ -10,10 +10,10 @@ import ompl.base as ob
 import ompl.geometric as og
 import ompl.util as ou
 
-from harness.planning.compiled import When, use_compiled
-from harness.planning.path_search import Effort, verified_paths
-from harness.planning.shortening import shorten
-from harness.planning.verify import FINAL_RESOLUTION, verified_resolution
+from harness.planning.collision.compiled import When, use_compiled
+from harness.planning.search.path_search import Effort, verified_paths
+from harness.planning.search.shortening import shorten
+from harness.planning.verification.verify import FINAL_RESOLUTION, verified_resolution
 from harness.ports import PlanningOptions
 from tests.benchmarks.planning.problems import EveryPair, Problem
 

@@ -12,9 +12,9 @@ from harness.core.geometry import Plane, Shape
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.planning.backend import make_planning
-from harness.planning.checker import MotionChecker
-from harness.planning.robot_model import GroupSpace
-from harness.planning.scene import CoalScene
+from harness.planning.collision.checker import MotionChecker
+from harness.planning.collision.scene import CoalScene
+from harness.planning.model.robot_model import GroupSpace
 from harness.ports import PoseGoal
 from tests.benchmarks.planning.arms import HAND, arm
 from tests.benchmarks.planning.layouts import FAMILIES, Layout

@@ -8,8 +8,8 @@ import roboplan.core as core
 import roboplan.rrt as rrt
 
 from harness.core.geometry import Box, Cylinder
-from harness.planning.verify import FINAL_RESOLUTION, UNPADDED_RESOLUTION
-from harness.robot.write_urdf import write_urdf
+from harness.planning.verification.verify import FINAL_RESOLUTION, UNPADDED_RESOLUTION
+from harness.robot.urdf.write import write_urdf
 from tests.benchmarks.planning.arms import arm, folder
 from tests.benchmarks.planning.contenders import PATIENCE, RANGE, SPACING, Outcome
 from tests.benchmarks.planning.problems import GROUND_HEIGHT, GROUP, Problem

@@ -7,12 +7,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from harness.planning.checker import MotionChecker
-from harness.planning.compiled import use_compiled
-from harness.planning.path_search import Effort, verified_paths
-from harness.planning.robot_model import GroupSpace
-from harness.planning.shortening import shorten
-from harness.planning.verify import FINAL_RESOLUTION
+from harness.planning.collision.checker import MotionChecker
+from harness.planning.collision.compiled import use_compiled
+from harness.planning.model.robot_model import GroupSpace
+from harness.planning.search.path_search import Effort, verified_paths
+from harness.planning.search.shortening import shorten
+from harness.planning.verification.verify import FINAL_RESOLUTION
 from harness.ports import PlanningOptions
 from tests.planning.lesson import FIRST_BOXES, Cell, boxes
 from tests.planning.problem import HOMES, description_of

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from eaik.IK_HP import HPRobot
 
-from harness.planning.ik_ur import UrGeometry, solve_ur
-from harness.planning.kinematics import PinocchioKinematics
+from harness.language.scenario import RobotSpec
+from harness.planning.ik.kinematics import PinocchioKinematics
+from harness.planning.ik.ur import UrGeometry, solve_ur
 from harness.ports import PoseGoal
 from harness.robot.load import load_robot
-from harness.spec.scenario import RobotSpec
 from tests.benchmarks.planning.problems import GROUP, SCALE
 
 POSES = 1000

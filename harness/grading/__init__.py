@@ -1,0 +1,1 @@
+"""Points for a recorded bag or run that another program produced."""

@@ -1,0 +1,76 @@
+"""Object poses from the frames of a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from harness.core.pose_arrays import IDENTITY, compose
+from harness.core.types import FloatArray
+from harness.grading.bag.clocks import Timeline
+from harness.grading.bag.content import BagContent, Track
+from harness.grading.bag.sampling import poses_at
+
+WORLD = "world"
+
+
+class Frames:
+    """World poses of frames, composed along their parents.
+
+    Poses of the robot's links result from the joints. A frame without a parent counts as the world,
+    with a note.
+
+    Attributes:
+        notes: Assumptions about frames.
+    """
+
+    def __init__(
+        self,
+        content: BagContent,
+        links: Mapping[str, FloatArray],
+        timeline: Timeline,
+        times: FloatArray,
+    ) -> None:
+        self.notes: list[str] = []
+        self._links, self._timeline, self._times = links, timeline, times
+        self._parents: dict[str, tuple[str, Track]] = {}
+        # topics that the user named have precedence
+        for edges in (content.edges, content.static_edges, content.objects):
+            for (parent, child), track in edges.items():
+                self._parents[child] = (parent, track)
+        self._static = {id(track) for track in content.static_edges.values()}
+
+    def knows(self, frame: str) -> bool:
+        """Whether the recording has a pose of a frame."""
+        return frame in self._parents
+
+    def pose(self, frame: str) -> FloatArray:
+        """T_world_frame, NaN where it is unknown, shape (N, 7)."""
+        chain: list[Track] = []
+        passed: set[str] = set()
+        while frame not in self._links and frame != WORLD and frame in self._parents:
+            if frame in passed:
+                self.notes.append(f"the parents of the frame {frame} form a cycle")
+                return np.full((len(self._times), 7), np.nan)
+            passed.add(frame)
+            frame, track = self._parents[frame]
+            chain.append(track)
+        root = self._links.get(frame)
+        if root is None and frame != WORLD:
+            note = f"frame '{frame}' has no parent; it counts as the world"
+            if note not in self.notes:
+                self.notes.append(note)
+        pose = np.broadcast_to(IDENTITY if root is None else root, (len(self._times), 7))
+        for track in reversed(chain):
+            pose = compose(pose, self._sampled(track))
+        return pose
+
+    def _sampled(self, track: Track) -> FloatArray:
+        rows = track.rows()
+        if id(track) in self._static:
+            return np.tile(rows[-1], (len(self._times), 1))
+        seconds, is_judged = self._timeline.rows(track, "the topic of frames or objects")
+        if not is_judged.any():
+            return np.full((len(self._times), 7), np.nan)
+        return poses_at(seconds[is_judged], rows[is_judged], self._times)

@@ -1,0 +1,245 @@
+"""Converts a recording to a run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from harness.core.types import BoolArray, FloatArray
+from harness.core.world import WorldObject
+from harness.grading.bag.clocks import Timeline
+from harness.grading.bag.content import BagContent, BagTopics
+from harness.grading.bag.events import (
+    Interval,
+    Timed,
+    attachments_of,
+    is_present,
+    presence_of,
+    steps_of,
+    timed_events,
+)
+from harness.grading.bag.frames import Frames
+from harness.grading.bag.joints import (
+    foreign_links,
+    joint_rows,
+    joints_of_frames,
+    reference_track,
+    sample_times,
+)
+from harness.grading.bag.raw import bag_error
+from harness.grading.bag.reader import read_bag
+from harness.recording.link_poses import link_poses
+from harness.recording.run import (
+    Finding,
+    ObjectRecord,
+    RobotRecord,
+    Run,
+    Signals,
+)
+from harness.robot.description import RobotDescription
+
+NEVER_THERE = (
+    *("contact_forces", "presses", "support_forces"),
+    *("clearances", "planned_clearances"),
+)
+"""Signals that no recording contains."""
+JOINT_SIGNALS = (
+    "joint_velocities",
+    "joint_efforts",
+    "joint_commands",
+    "joint_command_velocities",
+)
+FINDING = "recording"
+
+
+@dataclass(frozen=True, eq=False)
+class Recorded:
+    """The scenario's knowledge about a recording.
+
+    Attributes:
+        robot: The robot's record.
+        description: The robot's description.
+        objects: Objects of the world, then those that steps add.
+        at_start: Names of the world's objects.
+        frames: Links whose poses expectations need.
+        steps: Line and summary of each step, by id and by path.
+        title: Title of the scenario.
+        gravity: Gravity in world axes [m/s^2].
+    """
+
+    robot: RobotRecord
+    description: RobotDescription
+    objects: Sequence[WorldObject]
+    at_start: frozenset[str]
+    frames: Sequence[str]
+    steps: Mapping[str, tuple[int, str]]
+    title: str
+    gravity: tuple[float, float, float]
+
+
+def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
+    """Read a recording as a run; `unrecorded` and findings name the missing signals.
+
+    Raises:
+        SpecError: It cannot be read, or has no joints of this robot.
+    """
+    content = read_bag(path, topics)
+    reference = reference_track(content, known.description, known.robot.arm_joints)
+    if reference is None:
+        raise _no_joints(path, topics, content, known)
+    timeline = Timeline(reference)
+    times = sample_times(reference, timeline)
+    if len(times) < 2:
+        raise bag_error(path, "has joints at a single time; at least two samples are needed")
+    placements = {placement.link: placement for placement in known.robot.placements}
+    if content.joints:
+        measured = joint_rows(
+            content.joints, known.description, timeline, times, topics.joint_states
+        )
+    else:
+        content.notes.append("there are no joint states; the joints are read from /tf")
+        measured = joints_of_frames(content, placements, known.description, timeline, times)
+    commanded = joint_rows(content.commands, known.description, timeline, times, "/joint_commands")
+    links = link_poses(known.robot, measured.positions, _links_needed(known, content))
+    frames = Frames(content, links, timeline, times)
+    events = timed_events(content, timeline)
+    present = {obj.name: presence_of(events, obj.name, times) for obj in known.objects}
+    poses = {
+        obj.name: np.where(
+            is_present(present[obj.name], times)[:, None], frames.pose(obj.name), np.nan
+        )
+        for obj in known.objects
+        if frames.knows(obj.name)
+    }
+    signals = Signals(
+        times=times,
+        joint_positions=measured.positions,
+        joint_velocities=measured.velocities,
+        joint_efforts=measured.efforts,
+        joint_commands=commanded.positions,
+        joint_command_velocities=commanded.velocities,
+        tcp_pose=_whole(links[known.robot.tcp_link], times),
+        frames={name: _whole(links[name], times) for name in known.frames if name in links},
+        object_poses=poses,
+    )
+    steps, attachments = steps_of(events, times, known.steps), attachments_of(events)
+    notes = [
+        *content.notes,
+        *timeline.notes,
+        *frames.notes,
+        *foreign_links(content, placements),
+        *_gaps(known, signals, present),
+    ]
+    return Run(
+        scenario=known.title,
+        file=str(path),
+        case="",
+        seed=0,
+        robot=known.robot,
+        objects=tuple(
+            _object_record(obj, known, poses, present[obj.name]) for obj in known.objects
+        ),
+        attachments=attachments,
+        steps=steps,
+        signals=signals,
+        gravity=known.gravity,
+        timestep=float(np.median(np.diff(times))),
+        findings=tuple(Finding(FINDING, note) for note in notes),
+        unrecorded=_unrecorded(signals, events, has_steps=bool(steps)),
+    )
+
+
+def _links_needed(known: Recorded, content: BagContent) -> set[str]:
+    """Links that expectations use, or that other frames are attached to."""
+    robot = set(known.robot.link_names)
+    edges = [*content.edges, *content.static_edges, *content.objects]
+    carriers = {parent for parent, child in edges if child not in robot}
+    return {known.robot.tcp_link, *known.frames, *(carriers & robot)}
+
+
+def _unrecorded(signals: Signals, events: list[Timed], *, has_steps: bool) -> tuple[str, ...]:
+    """Signals that are missing; events of other programs than this one may have steps alone."""
+    names = [name for name in JOINT_SIGNALS if np.isnan(getattr(signals, name)).all()]
+    if not any(event.get("event") == "run_started" for _, event in events):
+        names += ["attachments"] if has_steps else ["attachments", "steps"]
+    return (*names, *NEVER_THERE)
+
+
+def _object_record(
+    obj: WorldObject,
+    known: Recorded,
+    poses: Mapping[str, FloatArray],
+    present: tuple[Interval, ...],
+) -> ObjectRecord:
+    """An object's record, with the scenario's pose if the object is static and not recorded."""
+    is_known = obj.name not in poses and obj.is_static and obj.name in known.at_start
+    return ObjectRecord(
+        name=obj.name,
+        is_static=obj.is_static,
+        in_planning=obj.in_planning,
+        in_simulation=obj.in_simulation,
+        shapes=obj.visuals or obj.shapes,
+        present=present,
+        pose=tuple(float(value) for value in obj.pose.as_vector()) if is_known else (),
+        mass=obj.mass,
+    )
+
+
+def _gaps(
+    known: Recorded, signals: Signals, present: Mapping[str, tuple[Interval, ...]]
+) -> list[str]:
+    """Messages about gaps in joints and objects."""
+    messages: list[str] = []
+    unknown: BoolArray = np.isnan(signals.joint_positions)
+    names = [joint.name for joint in known.robot.joints]
+    without = [
+        name for name, gone in zip(names, np.all(unknown, axis=0).tolist(), strict=True) if gone
+    ]
+    if without:
+        messages.append(f"the recording lacks the joints {', '.join(without)}")
+    for column, name in enumerate(names):
+        gone = unknown[:, column]
+        if gone.any() and name not in without:
+            messages.append(f"{name} has a gap that begins at t={signals.times[gone][0]:.3f} s")
+    for name, poses in sorted(signals.object_poses.items()):
+        there = is_present(present[name], signals.times)
+        gone = np.isnan(poses[:, 0]) & there
+        if gone.any():
+            share = 100 * float(gone.sum() / there.sum())
+            first = signals.times[gone][0]
+            messages.append(
+                f"{name}: no pose for {share:.0f} % of the time, first at t={first:.3f} s"
+            )
+    dynamic = [obj.name for obj in known.objects if not obj.is_static]
+    lost = [name for name in dynamic if name not in signals.object_poses]
+    if lost:
+        messages.append(f"the recording lacks poses of {', '.join(lost)}")
+    return messages
+
+
+def _whole(poses: FloatArray, times: FloatArray) -> FloatArray:
+    return np.array(np.broadcast_to(poses, (len(times), 7)))
+
+
+def _no_joints(path: Path, topics: BagTopics, content: BagContent, known: Recorded) -> Exception:
+    expected = known.robot.arm_joints
+    if content.joints:
+        seen = sorted({name for names in content.joints for name in names})
+        return bag_error(
+            path,
+            f"{topics.joint_states} names none of the robot's joints, but {', '.join(seen[:12])}",
+            f"expected: {', '.join(expected)}",
+        )
+    others = [n for n, (kind, _) in sorted(content.topics.items()) if kind.endswith("/JointState")]
+    if others:
+        hint = f"topics of joint states: {', '.join(others)} (--joint-states TOPIC)"
+    else:
+        hint = (
+            f"its topics: {', '.join(sorted(content.topics)[:20])}"
+            if content.topics
+            else "it has no messages"
+        )
+    return bag_error(path, f"has no {topics.joint_states} and no frames of this robot in /tf", hint)

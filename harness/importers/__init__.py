@@ -1,1 +1,0 @@
-"""Importers of other programs' files: SDF worlds, MoveIt scenes, recordings."""

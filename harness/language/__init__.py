@@ -1,0 +1,1 @@
+"""The scenario language: files with positions, models, units, parameters and located mistakes."""

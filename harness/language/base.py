@@ -1,0 +1,130 @@
+"""The base of every model of a scenario file, and the numbers that may carry a unit."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, cast
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    Strict,
+    field_validator,
+    model_validator,
+)
+
+from harness.language.colors import color_of_name
+from harness.language.files.mistakes import MistakeError
+from harness.language.units import quantity
+
+LARGEST_NUMBER = 1e9
+"""No number with a fraction is larger in its SI unit: beyond it, squares and distances overflow."""
+
+
+SMALLEST_SIZE = 1e-9
+"""Of a length or mass that has to be above zero [m or kg]."""
+
+
+def refuse_beyond(value: Any) -> None:
+    """Refuse a field's value with a number beyond `LARGEST_NUMBER`.
+
+    Raises:
+        MistakeError: It has one.
+    """
+    match value:
+        case float() if abs(value) > LARGEST_NUMBER:
+            raise MistakeError(f"{value:g} is too large", f"at most {LARGEST_NUMBER:g} in SI units")
+        case tuple() | list():
+            for item in cast("list[Any]", value):
+                refuse_beyond(item)
+        case dict():
+            for item in cast("dict[Any, Any]", value).values():
+                refuse_beyond(item)
+        case _:
+            pass
+
+
+def refuse_tiny(value: float) -> float:
+    """A length or mass above zero that physics can work with.
+
+    Raises:
+        MistakeError: It is so small that volumes and inertias become zero.
+    """
+    if 0 < value < SMALLEST_SIZE:
+        raise MistakeError(f"{value:g} is too small", f"at least {SMALLEST_SIZE:g} m or kg")
+    return value
+
+
+class SpecModel(BaseModel):
+    """A part of a file: unknown keys refused, immutable, numbers finite and bounded.
+
+    Attributes:
+        short: The field that a bare value stands for: `- gripper: open` is short for
+            `- gripper: {named_target: open}`; empty where there is none.
+        short_is_list: Whether that field is a list, and one value alone a list of one.
+    """
+
+    short: ClassVar[str] = ""
+    short_is_list: ClassVar[bool] = False
+
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True
+    )
+
+    @field_validator("*")
+    @classmethod
+    def _bounded(cls, value: Any) -> Any:
+        refuse_beyond(value)
+        return value
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_short_form(cls, value: Any) -> Any:
+        given: object = value
+        if not cls.short or isinstance(given, dict | BaseModel):
+            return value
+        is_one = cls.short_is_list and not isinstance(given, list | tuple)
+        return {cls.short: [value] if is_one else value}
+
+
+Number = Annotated[float, Strict()]
+Count = Annotated[int, Strict()]
+Flag = Annotated[bool, Strict()]
+
+Share = Annotated[float, BeforeValidator(quantity("1"))]
+Rate = Annotated[float, BeforeValidator(quantity("Hz"))]
+Length = Annotated[float, BeforeValidator(quantity("m"))]
+Angle = Annotated[float, BeforeValidator(quantity("rad"))]
+Duration = Annotated[float, BeforeValidator(quantity("s")), Field(ge=0)]
+Force = Annotated[float, BeforeValidator(quantity("N"))]
+Mass = Annotated[float, BeforeValidator(quantity("kg")), Field(gt=0), AfterValidator(refuse_tiny)]
+LinearVelocity = Annotated[float, BeforeValidator(quantity("m/s"))]
+AngularVelocity = Annotated[float, BeforeValidator(quantity("rad/s"))]
+JointVelocity = Annotated[float, BeforeValidator(quantity("rad/s", "m/s"))]
+JointAcceleration = Annotated[float, BeforeValidator(quantity("rad/s**2", "m/s**2"))]
+JointJerk = Annotated[float, BeforeValidator(quantity("rad/s**3", "m/s**3"))]
+LinearAcceleration = Annotated[float, BeforeValidator(quantity("m/s**2"))]
+JointValue = Annotated[float, BeforeValidator(quantity("rad", "m"))]
+JointEffort = Annotated[float, BeforeValidator(quantity("N*m", "N"))]
+
+PositiveLength = Annotated[Length, Field(gt=0), AfterValidator(refuse_tiny)]
+NonNegativeLength = Annotated[Length, Field(ge=0)]
+NonNegativeAngle = Annotated[Angle, Field(ge=0)]
+PositiveDuration = Annotated[Duration, Field(gt=0)]
+Fraction = Annotated[Share, Field(gt=0, le=1)]
+
+Xyz = tuple[Length, Length, Length]
+Rpy = tuple[Angle, Angle, Angle]
+Quaternion = tuple[Number, Number, Number, Number]
+ColorPart = Annotated[Number, Field(ge=0, le=1)]
+Color = Annotated[tuple[ColorPart, ColorPart, ColorPart, ColorPart], BeforeValidator(color_of_name)]
+
+
+def kind_of(value: Any) -> str:
+    """`many` for a mapping, list or model, `one` for anything else: tells a union's branch."""
+    return "many" if isinstance(value, dict | list | tuple | BaseModel) else "one"
+
+
+Name = Annotated[str, Field(min_length=1, max_length=100)]

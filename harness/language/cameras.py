@@ -1,0 +1,147 @@
+"""Cameras as files say them, in the words of SDF's camera sensor."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from harness.language.base import Angle, Count, Name, Number, PositiveLength, Rate, SpecModel, Xyz
+from harness.language.poses import Pose
+
+if TYPE_CHECKING:
+    from harness.core.camera import Camera
+    from harness.core.spatial import SE3
+
+Pixels = Annotated[Count, Field(ge=8, le=2048)]
+
+
+class ImageSpec(SpecModel):
+    """The picture's size and channels."""
+
+    width: Pixels = Field(default=640, description="In pixels.")
+    height: Pixels = Field(default=480, description="In pixels.")
+    format: Literal["R8G8B8", "L8"] = Field(default="R8G8B8", description="Colour, or grey.")
+
+
+class ClipSpec(SpecModel):
+    """What is nearer or farther along the optical axis is not seen."""
+
+    near: PositiveLength = Field(default=0.01, description="[m]")
+    far: PositiveLength = Field(default=15.0, description="[m]")
+
+    @model_validator(mode="after")
+    def _near_before_far(self) -> ClipSpec:
+        if self.near >= self.far:
+            raise ValueError(f"`near` ({self.near:g} m) is less than `far` ({self.far:g} m)")
+        return self
+
+
+class NoiseSpec(SpecModel):
+    """Added to every channel of every pixel, from the run's seed."""
+
+    type: Literal["gaussian", "none"] = Field(default="gaussian", description="Its distribution.")
+    mean: Annotated[Number, Field(ge=-1, le=1)] = Field(
+        default=0.0, description="As a share of full white."
+    )
+    stddev: Annotated[Number, Field(ge=0, le=1)] = Field(
+        default=0.0, description="As a share of full white."
+    )
+
+
+class CameraFields(SpecModel):
+    """Words of any camera."""
+
+    horizontal_fov: Annotated[Angle, Field(ge=0.01, le=2.9)] = Field(
+        default=1.0471975511965976, description="Between the left and right edge of the picture."
+    )
+    image: ImageSpec = Field(default=ImageSpec(), description="Size and format.")
+    clip: ClipSpec = Field(default=ClipSpec(), description="Nearest and farthest.")
+    noise: NoiseSpec = Field(default=NoiseSpec(), description="Of every pixel.")
+    update_rate: Annotated[Rate, Field(gt=0, le=120)] = Field(
+        default=20.0, description="Pictures a second of simulated time."
+    )
+    optical_frame_id: str = Field(
+        default="", description="In message headers; default: `<camera>_optical_frame`."
+    )
+    jpeg_quality: Annotated[Count, Field(ge=1, le=100)] = Field(
+        default=80, description="Of compressed pictures."
+    )
+
+    def camera(self, name: str, frame: str, pose: SE3) -> Camera:
+        """The camera on a frame, at T_frame_camera."""
+        from harness.core.camera import Camera
+
+        noise = self.noise if self.noise.type == "gaussian" else NoiseSpec()
+        return Camera(
+            name=name,
+            frame=frame,
+            pose=pose,
+            horizontal_fov=self.horizontal_fov,
+            width=self.image.width,
+            height=self.image.height,
+            is_grey=self.image.format == "L8",
+            clip_near=self.clip.near,
+            clip_far=self.clip.far,
+            noise_mean=noise.mean,
+            noise_stddev=noise.stddev,
+            update_rate=self.update_rate,
+            optical_frame_id=self.optical_frame_id or f"{name}_optical_frame",
+            jpeg_quality=self.jpeg_quality,
+        )
+
+
+class CameraSpec(CameraFields):
+    """A camera in the world, on an object or on a robot link; looks along +x of its pose."""
+
+    name: Name = Field(description="Unique, the robot's cameras included.")
+    pose: Pose = Field(
+        default=Pose(), description="Where it is; `frame` is `world`, a link or an object."
+    )
+    look_at: Xyz | None = Field(
+        default=None, description="Turns it to this point of the same frame, instead of a rotation."
+    )
+
+    @model_validator(mode="after")
+    def _one_direction(self) -> CameraSpec:
+        if self.look_at is None:
+            return self
+        if self.pose.has_rotation:
+            raise ValueError("`look_at`, or a rotation in `pose`: not both")
+        if sum((a - b) ** 2 for a, b in zip(self.look_at, self.pose.xyz, strict=True)) < 1e-12:
+            raise ValueError("`look_at` is where the camera is")
+        return self
+
+    def resolved(self) -> Camera:
+        """The camera with every number known."""
+        pose = self.pose.se3()
+        if self.look_at is not None:
+            pose = looking_at(self.pose.xyz, self.look_at)
+        return self.camera(self.name, self.pose.frame, pose)
+
+
+class VideoSpec(SpecModel):
+    """A camera that is recorded all through the run, as a video of its own size."""
+
+    short = "camera"
+
+    camera: Name = Field(description="Its name.")
+    rate: Annotated[Rate, Field(gt=0, le=120)] | None = Field(
+        default=None, description="Frames a second; default: the camera's `update_rate`."
+    )
+
+
+def looking_at(xyz: Xyz, target: Xyz) -> SE3:
+    """A pose whose x axis points at a target, with z as far up as can be."""
+    import numpy as np
+
+    from harness.core.spatial import SE3
+
+    forward = np.subtract(target, xyz)
+    forward /= np.linalg.norm(forward)
+    left = np.cross([0.0, 0.0, 1.0], forward)
+    if np.linalg.norm(left) < 1e-6:  # straight up or down: the picture's right is the world's -y
+        left = np.array([0.0, 1.0, 0.0])
+    left /= np.linalg.norm(left)
+    rotation = np.stack([forward, left, np.cross(forward, left)], axis=1)
+    return SE3(rotation, np.array(xyz, dtype=float))

@@ -1,0 +1,1 @@
+"""YAML and XML files whose values know their line and column."""

@@ -1,0 +1,253 @@
+"""XML files as elements that know their places: data only, bounded, no DOCTYPE, no entities."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NoReturn
+from xml.parsers import expat
+
+from harness.core.errors import Problem, SpecError
+from harness.language.files.source import Place, Source
+
+LARGEST_FILE = 16_000_000
+"""Bytes of an XML file at most; the largest robot descriptions are under 1 MB."""
+
+MOST_ELEMENTS = 200_000
+MOST_ATTRIBUTES = 200
+"""Of one element; MuJoCo's reader takes hours for a million."""
+
+DEEPEST = 200
+QUOTED_ROOTS = ("robot", "mujoco", "mujocoinclude", "sdf", "world", "model")
+"""Root elements of robots and worlds. A scenario can name any file of the machine, so messages
+quote only files that are of these kinds."""
+
+PLACE_ATTRIBUTE = "harness-place"
+"""`file:line:column` of the file that a rendered element comes from; see `mark_places`."""
+
+
+@dataclass(eq=False)
+class XmlElement:
+    """An element.
+
+    Attributes:
+        tag: With its prefix as written; namespaces are not resolved.
+        attributes: By name as written.
+        place: Of its start tag.
+        text: All of its own character data.
+    """
+
+    tag: str
+    attributes: dict[str, str]
+    place: Place
+    children: list[XmlElement] = field(default_factory=list["XmlElement"])
+    text: str = ""
+
+    def find(self, tag: str) -> XmlElement | None:
+        """The first child of a tag."""
+        return next((child for child in self.children if child.tag == tag), None)
+
+    def findall(self, tag: str) -> list[XmlElement]:
+        """All children of a tag."""
+        return [child for child in self.children if child.tag == tag]
+
+    def walk(self) -> Iterator[XmlElement]:
+        """The element and everything in it, in file order."""
+        yield self
+        for child in self.children:
+            yield from child.walk()
+
+    def get(self, name: str, default: str = "") -> str:
+        """An attribute, or a default."""
+        return self.attributes.get(name, default)
+
+    def need(self, name: str) -> str:
+        """An attribute that must be there.
+
+        Raises:
+            SpecError: It is not.
+        """
+        if name not in self.attributes:
+            self.refuse(f"<{self.tag}> lacks its attribute '{name}'")
+        return self.attributes[name]
+
+    def problem(self, message: str, hint: str = "", *, at: str = "") -> Problem:
+        """A mistake at the element, or at the value of its attribute `at`."""
+        return (self._place_of(at) if at else self.place).problem(message, hint)
+
+    def refuse(self, message: str, hint: str = "", *, at: str = "") -> NoReturn:
+        """Raise a mistake at the element, or at the value of its attribute `at`."""
+        raise SpecError([self.problem(message, hint, at=at)])
+
+    def _place_of(self, name: str) -> Place:
+        """Where an attribute's value stands; the element's place where that cannot be told."""
+        source, line = self.place.source, self.place.line
+        pattern = re.compile(rf"(?<![\w:.-]){re.escape(name)}\s*=\s*[\"']")
+        begin = self.place.column - 1
+        while 0 < line <= len(source.lines) and line < self.place.line + 40:
+            text = source.line(line)
+            found = pattern.search(text, begin)
+            if found:
+                length = len(self.attributes.get(name, "")) or 1
+                return Place(source, line, found.end() + 1, length)
+            if ">" in text[begin:]:
+                break
+            line, begin = line + 1, 0
+        return self.place
+
+
+def read_xml(path: Path, named: str = "") -> XmlElement:
+    """The root element of a file.
+
+    Args:
+        path: The file.
+        named: What messages call it; its path by default.
+
+    Raises:
+        SpecError: It cannot be read, is too large, is not well-formed, or declares a document
+            type; with line and column.
+    """
+    return parse_xml(read_bounded(path, named), named or str(path))
+
+
+def read_bounded(path: Path, named: str = "") -> bytes:
+    """A file's bytes.
+
+    Raises:
+        SpecError: It cannot be read, or has more than LARGEST_FILE bytes.
+    """
+    name = named or str(path)
+    try:
+        if not path.is_file():
+            reason = "is no file" if path.exists() else "does not exist"
+            raise SpecError([Problem(name, 0, 0, reason)])
+        size = path.stat().st_size
+        if size <= LARGEST_FILE:
+            return path.read_bytes()
+    except OSError as error:
+        raise SpecError([Problem(name, 0, 0, f"cannot be read: {error.strerror}")]) from error
+    message = f"is too large: {size / 1e6:.0f} MB, and at most {LARGEST_FILE / 1e6:.0f} are read"
+    raise SpecError([Problem(name, 1, 1, message)])
+
+
+def parse_xml(content: str | bytes, named: str) -> XmlElement:
+    """The root element of a document; see `read_xml`."""
+    return _Reader(content, named).root()
+
+
+def mark_places(content: bytes, named: str, *, skip: str) -> str:
+    """The document with each element's place in an attribute, for a preprocessor that keeps it.
+
+    Args:
+        content: A well-formed document without a document type.
+        named: The file, as places are to say it.
+        skip: Prefix of tags that get none.
+
+    Raises:
+        SpecError: As `read_xml`.
+    """
+    root = parse_xml(content, named)
+    lines = [list(line) for line in root.place.source.lines]
+    for element in root.walk():
+        if element.tag.startswith(skip):
+            continue
+        place = element.place
+        name = named.replace("&", "&amp;").replace('"', "&quot;").replace("<", "&lt;")
+        mark = f' {PLACE_ATTRIBUTE}="{place.line}:{place.column}:{name}"'
+        lines[place.line - 1][place.column - 2 + len(element.tag)] += mark
+    return "\n".join("".join(line) for line in lines)
+
+
+class _Reader:
+    """Builds elements from expat's events."""
+
+    def __init__(self, content: str | bytes, named: str) -> None:
+        self._content = content
+        text = content if isinstance(content, str) else content.decode("utf-8", errors="replace")
+        self._source = Source(named, tuple(re.split("\r\n|\r|\n", text)))
+        self._others: dict[str, Source] = {}
+        self._open: list[XmlElement] = []
+        self._root: XmlElement | None = None
+        self._count = 0
+        self._parser = expat.ParserCreate()
+        self._parser.StartElementHandler = self._start
+        self._parser.EndElementHandler = self._end
+        self._parser.CharacterDataHandler = self._text
+        self._parser.StartDoctypeDeclHandler = self._doctype
+
+    def root(self) -> XmlElement:
+        try:
+            self._parser.Parse(self._content, True)
+        except expat.ExpatError as error:
+            place = Place(self._quoted(), error.lineno, error.offset + 1)
+            reason = expat.errors.messages.get(error.code, "")
+            told = f"not well-formed XML: {reason or expat.ErrorString(error.code)}"
+            raise SpecError([place.problem(told, self._still_open())]) from error
+        assert self._root is not None
+        return self._root
+
+    def _still_open(self) -> str:
+        if not self._open or not self._quoted().lines:
+            return ""
+        last = self._open[-1]
+        return f"<{last.tag}> of line {last.place.line} is not closed before this"
+
+    def _quoted(self, tag: str = "") -> Source:
+        """The file; without its text, which messages quote, unless it is of a kind that is read."""
+        root = self._root.tag if self._root is not None else tag
+        return self._source if root in QUOTED_ROOTS else Source(self._source.path)
+
+    def _here(self, tag: str = "") -> Place:
+        parser = self._parser
+        return Place(self._quoted(tag), parser.CurrentLineNumber, parser.CurrentColumnNumber + 1)
+
+    def _start(self, tag: str, attributes: dict[str, str]) -> None:
+        self._count += 1
+        if self._count > MOST_ELEMENTS:
+            self._refuse(f"more than {MOST_ELEMENTS} elements")
+        if len(attributes) > MOST_ATTRIBUTES:
+            self._refuse(f"<{tag}> has more than {MOST_ATTRIBUTES} attributes")
+        if len(self._open) >= DEEPEST:
+            self._refuse(f"elements are nested more than {DEEPEST} deep")
+        here = self._here(tag)
+        place = Place(here.source, here.line, here.column + 1, len(tag))  # behind the bracket
+        mark = attributes.pop(PLACE_ATTRIBUTE, "")
+        if mark:
+            place = self._marked(mark, len(tag))
+        elif self._others and self._open:
+            place = self._open[-1].place  # made by the preprocessor: stands where its parent does
+        element = XmlElement(tag, attributes, place)
+        if self._open:
+            self._open[-1].children.append(element)
+        else:
+            self._root = element
+        self._open.append(element)
+
+    def _marked(self, mark: str, length: int) -> Place:
+        line, column, name = mark.split(":", 2)
+        if name not in self._others:
+            text = Path(name).read_text(encoding="utf-8", errors="replace")
+            self._others[name] = Source(name, tuple(re.split("\r\n|\r|\n", text)))
+        return Place(self._others[name], int(line), int(column), length)
+
+    def _end(self, _tag: str) -> None:
+        self._open.pop()
+
+    def _text(self, data: str) -> None:
+        if self._open:
+            self._open[-1].text += data
+
+    def _doctype(self, *_declaration: object) -> None:
+        """Refuse it; what it declares is not quoted, as the kind of file is not known yet."""
+        here = self._here()
+        shown = "<!DOCTYPE".ljust(here.column - 1) + "..."
+        lines = ("",) * (here.line - 1) + (shown,)
+        place = Place(Source(here.source.path, lines), here.line, here.column, 3)
+        raise SpecError(
+            [place.problem("a DOCTYPE, and with it entities, is not read", "remove it")]
+        )
+
+    def _refuse(self, message: str, hint: str = "") -> NoReturn:
+        raise SpecError([self._here().problem(message, hint)])

@@ -1,0 +1,1 @@
+"""Formulas over recorded signals: the parser, the meaning, the text."""

@@ -1,0 +1,107 @@
+"""Poses, positions and directions as a file writes them."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from pydantic import Field, field_validator, model_validator
+
+from harness.language.base import (
+    Name,
+    NonNegativeAngle,
+    Number,
+    PositiveLength,
+    Quaternion,
+    Rpy,
+    SpecModel,
+    Xyz,
+)
+
+if TYPE_CHECKING:
+    from harness.core.spatial import SE3
+
+QUATERNION_NORM_TOLERANCE = 1e-2
+
+
+class Pose(SpecModel):
+    """A position and at most one of `rpy`, `quat_xyzw`, `quat_wxyz`, in a frame."""
+
+    xyz: Xyz = Field(default=(0.0, 0.0, 0.0), description="Position [m].")
+    rpy: Rpy | None = Field(
+        default=None, description="Fixed-axis roll, pitch, yaw [rad], as in URDF."
+    )
+    quat_xyzw: Quaternion | None = Field(default=None, description="Quaternion in ROS order.")
+    quat_wxyz: Quaternion | None = Field(default=None, description="Quaternion in MuJoCo's order.")
+    frame: Name = Field(default="world", description="`world`, a robot link, or an object's name.")
+
+    @field_validator("quat_xyzw", "quat_wxyz")
+    @classmethod
+    def _norm(cls, value: Quaternion | None) -> Quaternion | None:
+        if value is None:
+            return None
+        norm = math.sqrt(sum(part * part for part in value))
+        if abs(norm - 1) > QUATERNION_NORM_TOLERANCE:
+            hint = "no rotation is (0, 0, 0, 1) in xyzw order"
+            if norm > 0:
+                hint = (
+                    "normalised it is [" + ", ".join(f"{part / norm:.6g}" for part in value) + "]"
+                )
+            raise ValueError(f"a quaternion has norm 1, this one {norm:.4g}; {hint}")
+        return value
+
+    @model_validator(mode="after")
+    def _one_rotation(self) -> Pose:
+        given = [key for key in ("rpy", "quat_xyzw", "quat_wxyz") if getattr(self, key) is not None]
+        if len(given) > 1:
+            raise ValueError(f"a pose has one rotation; this one has {' and '.join(given)}")
+        return self
+
+    @property
+    def has_rotation(self) -> bool:
+        """Whether the file gives one."""
+        return any(part is not None for part in (self.rpy, self.quat_xyzw, self.quat_wxyz))
+
+    def se3(self) -> SE3:
+        """The pose in its frame: T_frame_this, quaternion normalised."""
+        from harness.core.spatial import SE3, wxyz_from_xyzw  # NumPy: 0.1 s, not needed to load
+
+        if self.rpy is not None:
+            return SE3.from_xyz_rpy(self.xyz, self.rpy)
+        if self.quat_xyzw is not None:
+            return SE3.from_xyz_quat(self.xyz, wxyz_from_xyzw(self.quat_xyzw))
+        if self.quat_wxyz is not None:
+            return SE3.from_xyz_quat(self.xyz, self.quat_wxyz)
+        return SE3.from_xyz_rpy(self.xyz)
+
+
+class Position(SpecModel):
+    """A point in a frame."""
+
+    short = "xyz"
+
+    xyz: Xyz = Field(description="Position [m].")
+    frame: Name = Field(default="world", description="`world`, a robot link, or an object's name.")
+
+
+class Direction(SpecModel):
+    """A direction of travel, or an axis to turn about; its length does not matter."""
+
+    xyz: tuple[Number, Number, Number] = Field(description="Along x, y, z of the frame.")
+    frame: Name = Field(default="world", description="`world`, a robot link, or an object's name.")
+
+    @field_validator("xyz")
+    @classmethod
+    def _not_zero(cls, value: tuple[float, float, float]) -> tuple[float, float, float]:
+        if math.sqrt(sum(part * part for part in value)) < 1e-9:
+            raise ValueError("a direction has some length; this one is (0, 0, 0)")
+        return value
+
+
+class PoseTolerance(SpecModel):
+    """How near is there: MoveIt's goal tolerances."""
+
+    position: PositiveLength = Field(default=1e-3, description="Radius around the target [m].")
+    orientation: NonNegativeAngle = Field(
+        default=1e-2, description="Largest rotation about each axis [rad]."
+    )

@@ -1,0 +1,326 @@
+"""Loads scenarios and worlds: every mistake of a file at once, each at its place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Generic, Literal, TypeVar, cast
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from harness.core.errors import Problem, SpecError
+from harness.core.resources import data_folder
+from harness.language.base import SpecModel
+from harness.language.files.mistakes import did_you_mean
+from harness.language.files.source import Loc, Located, Source, SourceMap
+from harness.language.files.yaml_file import parse_yaml, read_text, require_key
+from harness.language.reading.includes import with_includes
+from harness.language.reading.overrides import from_options, override
+from harness.language.reading.params import substitute
+from harness.language.reading.repair import Mended, mended
+from harness.language.reading.short_forms import models_shape
+from harness.language.reading.varied_paths import check_variation, values_of_case
+from harness.language.reading.wording import problems_of
+from harness.language.scenario import Scenario
+from harness.language.world import WorldSpec
+
+M = TypeVar("M", bound=SpecModel)
+
+WORLD_SUFFIXES = (".yaml", ".yml")
+SDF_SUFFIXES = (".sdf", ".world")
+MOST_REPAIRS = 3  # what is left out may leave something else incomplete
+SCENE_SUFFIX = ".scene"
+
+
+@dataclass(frozen=True, eq=False)
+class Loaded(Generic[M]):
+    """A file's model, and the way back to the file.
+
+    Attributes:
+        model: What the file says.
+        path: Where it was read.
+        text: As read.
+        lines: From a field of the model to its line and column.
+        written: The file's values in its own short forms, parameters and overrides applied.
+        notes: What the file may say and probably does not intend.
+    """
+
+    model: M
+    path: Path
+    text: str
+    lines: SourceMap
+    written: Located
+    notes: tuple[Problem, ...] = ()
+
+
+class LoadedScenario(Loaded[Scenario]):
+    """A scenario file."""
+
+    @property
+    def scenario(self) -> Scenario:
+        """What the file says."""
+        return self.model
+
+    @property
+    def resolved(self) -> dict[str, object]:
+        """The file as plain data, parameters and overrides applied."""
+        plain = self.written.plain()
+        return dict(plain) if isinstance(plain, dict) else {}
+
+
+class LoadedWorld(Loaded[WorldSpec]):
+    """A world file."""
+
+    @property
+    def world(self) -> WorldSpec:
+        """What the file says."""
+        return self.model
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """What a scenario file came to.
+
+    Attributes:
+        loaded: The scenario; with problems, what remains of it; None when that is too little.
+        problems: Mistakes found so far.
+        doubtful: Words of what was left out; a mistake that speaks of one may follow from another.
+        missing: `robot` or `world`, where something else stands in for what cannot be read.
+    """
+
+    loaded: LoadedScenario | None
+    problems: tuple[Problem, ...] = ()
+    doubtful: frozenset[str] = frozenset()
+    missing: frozenset[Literal["robot", "world"]] = frozenset()
+
+
+def read_scenario(
+    path: Path,
+    overrides: Mapping[str, str] | None = None,
+    seed: int | None = None,
+    text: str | None = None,
+) -> Reading:
+    """A scenario file with its mistakes, for whoever goes on to find more.
+
+    Args:
+        path: The file.
+        overrides: Dotted path -> YAML value, as given with `--set`.
+        seed: Taken in place of the file's.
+        text: What would stand in the file; None: what does.
+
+    Raises:
+        SpecError: The file is not YAML.
+    """
+    given = dict(overrides or {})
+    if seed is not None:
+        given["seed"] = str(seed)
+    text = read_text(path) if text is None else text
+    problems: list[Problem] = []
+    notes: list[Problem] = []
+    root = parse_yaml(text, Source.of_text(str(path), text), problems)
+    of_file = values_of_case(root, given)
+    options = {key: value for key, value in given.items() if key not in of_file}
+    root = override(root, [*of_file.values(), *from_options(options, problems)], problems)
+    check_variation(root, given, lambda varied: _problems_of(varied, path), problems)
+    written = substitute(with_includes(root, path, problems), problems)
+    try:
+        model, lines = _model(written, Scenario, problems, notes)
+    except _BrokenError as error:
+        if error.remains is None:
+            return Reading(None, tuple(error.problems))
+        loaded = LoadedScenario(error.remains, path, text, error.lines, written, tuple(notes))
+        missing = frozenset(error.mended.missing)
+        return Reading(loaded, tuple(error.problems), frozenset(error.mended.words), missing)
+    return Reading(LoadedScenario(model, path, text, lines, written, tuple(notes)))
+
+
+def _problems_of(root: Located, path: Path) -> list[Problem]:
+    """The mistakes of a scenario's values."""
+    problems: list[Problem] = []
+    written = substitute(with_includes(root, path, problems), problems)
+    try:
+        _model(written, Scenario, problems)
+    except SpecError as error:
+        return error.problems
+    return []
+
+
+def load_scenario(
+    path: Path, overrides: Mapping[str, str] | None = None, seed: int | None = None
+) -> LoadedScenario:
+    """A scenario file, checked as far as it can be without robot and world.
+
+    Args:
+        path: The file.
+        overrides: Dotted path -> YAML value, as given with `--set`.
+        seed: Taken in place of the file's.
+
+    Raises:
+        SpecError: With every problem of the file and of the overrides.
+    """
+    return _whole(read_scenario(path, overrides, seed))
+
+
+def parse_scenario(
+    text: str, path: Path, overrides: Mapping[str, str] | None = None
+) -> LoadedScenario:
+    """As `load_scenario`, of a text that would stand in the file."""
+    return _whole(read_scenario(path, overrides, text=text))
+
+
+def _whole(reading: Reading) -> LoadedScenario:
+    if reading.problems or reading.loaded is None:
+        raise SpecError(reading.problems)
+    return reading.loaded
+
+
+def load_world(name_or_path: str, base_dir: Path) -> LoadedWorld:
+    """A bundled world by its name, or a world file of ours.
+
+    Args:
+        name_or_path: As a scenario's `world` says it.
+        base_dir: Folder of the scenario file; relative paths begin here.
+
+    Raises:
+        SpecError: No such world, or with every problem of its file.
+    """
+    path = world_path(name_or_path, base_dir)
+    problems: list[Problem] = []
+    try:
+        text = read_text(path)
+        require_key(text, ("world",), str(path), "world file")
+        written = parse_yaml(text, Source.of_text(str(path), text), problems)
+    except SpecError as error:
+        raise SpecError(_of_world(problem, name_or_path) for problem in error.problems) from error
+    model, lines = _model(written, WorldSpec, problems)
+    return LoadedWorld(model, path, text, lines, written)
+
+
+def bundled_worlds() -> tuple[str, ...]:
+    """Names of the worlds that come with the program, sorted."""
+    return tuple(sorted(path.stem for path in data_folder("worlds").glob("*.yaml")))
+
+
+def world_path(name_or_path: str, base_dir: Path) -> Path:
+    """The file of a world.
+
+    Raises:
+        SpecError: No such world; the problem has no line, which the scenario knows.
+    """
+    suffix = Path(name_or_path).suffix.lower()
+    if suffix == SCENE_SUFFIX:
+        hint = f"`harness import scene {name_or_path}` writes it as a world file"
+        raise _no_world(name_or_path, "a MoveIt scene is no world yet", hint)
+    if suffix in (*WORLD_SUFFIXES, *SDF_SUFFIXES):
+        return file_path(name_or_path, base_dir)
+    names = bundled_worlds()
+    if name_or_path in names:
+        return data_folder("worlds") / f"{name_or_path}.yaml"
+    hint = did_you_mean(name_or_path, names, "worlds")
+    raise _no_world(
+        name_or_path,
+        f"no world is called `{name_or_path}`",
+        f"{hint}; or the path of a .yaml or .sdf file",
+    )
+
+
+def file_path(text: str, base_dir: Path) -> Path:
+    """The file that a scenario names, relative to its folder.
+
+    Raises:
+        SpecError: A URL, or not a path at all; whether the file is there shows on reading.
+    """
+    if "://" in text:
+        raise _no_world(
+            text, f"`{text}` is a URL; only files are read", "save the file beside this"
+        )
+    if not text.isprintable():
+        raise _no_world(text, f"{text!r} is not a path", "")
+    return base_dir / Path(text).expanduser() if text.startswith("~") else base_dir / text
+
+
+class _BrokenError(SpecError):
+    """A file has mistakes; carries what remains of it besides.
+
+    Attributes:
+        lines: From a field of the model to its line and column.
+        remains: A model of what could be read; None when too little could.
+        mended: What was done to get it.
+    """
+
+    def __init__(
+        self,
+        problems: list[Problem],
+        lines: SourceMap,
+        remains: Any = None,
+        mended: Mended | None = None,
+    ) -> None:
+        super().__init__(problems)
+        self.lines, self.remains, self.mended = lines, remains, mended or Mended({})
+
+
+def _model(
+    written: Located, model: type[M], problems: list[Problem], notes: list[Problem] | None = None
+) -> tuple[M, SourceMap]:
+    """The model of a file's values.
+
+    Raises:
+        SpecError: With the problems found before and all that are found here.
+    """
+    lines = SourceMap(models_shape(written, model, problems, notes))
+    data = lines.root.plain()
+    try:
+        loaded = model.model_validate(data)
+    except ValidationError as error:
+        known = {(problem.path, problem.line, problem.column) for problem in problems}
+        errors = error.errors(include_url=False)
+        independent = [each for each in errors if not _contains(lines, each["loc"], known)]
+        problems += (
+            problem
+            for problem in problems_of(independent, lines)
+            if (problem.path, problem.line, problem.column) not in known
+        )
+        raise _BrokenError(problems, lines, *_remains(data, model, errors)) from None
+    if problems:
+        raise _BrokenError(problems, lines, loaded)
+    return loaded, lines
+
+
+def _contains(lines: SourceMap, loc: Loc, known: set[tuple[str, int, int]]) -> bool:
+    """Whether a value, or what it is directly made of, has a mistake that is known already."""
+    found = lines.find(loc)
+    nearby = [found.item]
+    for _ in range(2 if found.is_whole else 0):
+        nearby += [entry.value for item in nearby for entry in item.mapping().values()]
+        nearby += [child for item in nearby for child in item.items()]
+    places = [item.place for item in nearby]
+    return any((place.source.path, place.line, place.column) in known for place in places)
+
+
+def _remains(
+    data: object, model: type[M], errors: Sequence[ErrorDetails]
+) -> tuple[M | None, Mended | None]:
+    """A model of what is not broken, and what was taken out of it."""
+    if model is not Scenario or not isinstance(data, dict):
+        return None, None
+    places = [error["loc"] for error in errors]
+    for _ in range(MOST_REPAIRS):
+        found = mended(cast("dict[str, Any]", data), places)
+        try:
+            return model.model_validate(found.data), found
+        except ValidationError as error:
+            places += [each["loc"] for each in error.errors(include_url=False)]
+    return None, None
+
+
+def _of_world(problem: Problem, name: str) -> Problem:
+    """A problem without a line, told so that it can stand in the scenario's."""
+    if problem.line:
+        return problem
+    return replace(problem, message=f"world `{name}`: {problem.message}")
+
+
+def _no_world(name: str, message: str, hint: str) -> SpecError:
+    return SpecError([Problem(name, 0, 0, message, hint)])

@@ -1,0 +1,187 @@
+"""Takes a step or an expectation apart: its one word, the content, and what stands beside."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from harness.core.errors import Problem
+from harness.core.registry import broken_plugins
+from harness.language.annotations import is_model, keys_of
+from harness.language.files.mistakes import describe, did_you_mean, nearest
+from harness.language.files.source import Entry, Located, Place
+from harness.language.language import EXPECTATIONS, PREDICATES, UNTIL
+
+TEMPORAL_WORDS = {
+    **dict.fromkeys(("no", "not", "non", "never", "none", "without", "avoid", "free"), "never"),
+    **dict.fromkeys(("always", "stays", "stay", "remains", "keep", "keeps", "kept"), "always"),
+    **dict.fromkeys(("eventually", "finally", "sometimes", "once"), "eventually"),
+}
+"""What people write in or after a predicate's name -> the temporal word in front of it."""
+
+ALONE = ("never", "no", "not", "none", "always", "eventually")
+"""Those that name no object and no state when they stand in the place of one."""
+
+SYNONYMS = {
+    **dict.fromkeys(("contact", "contacts", "touch", "touching"), "in_contact"),
+    **dict.fromkeys(("collide", "collides", "colliding", "collisions"), "collision"),
+    **dict.fromkeys(("held", "holding"), "grasped"),
+    "inside": "in",
+}
+"""Words that are near no predicate's name, or too near to another's."""
+
+BOUNDS = ("slip", "tracking_error", "effort")
+"""Predicates that demand a small value by themselves: `never: slip` would demand slip."""
+
+OPPOSITES = {"grasped": "released", "released": "grasped", "static": "displaced",
+             "displaced": "static"}  # fmt: skip
+"""Predicate -> the predicate that holds at the end where it does not."""
+
+UNTIL_USAGE = "`- {always: A, until: B}`: A holds until B does"
+
+
+class Words(NamedTuple):
+    """A mapping taken apart: its one word, its content, and what stands beside it."""
+
+    word: str
+    entry: Entry
+    beside: dict[str, Entry]
+
+
+def take_apart(
+    item: Located,
+    words: Mapping[str, object],
+    beside: tuple[str, ...],
+    whole: str,
+    kind: str,
+    problems: list[Problem],
+) -> Words | None:
+    """Take a step or an expectation apart; None if there is no telling what it is."""
+    if isinstance(item.value, str):
+        if item.value in words:
+            return Words(item.value, Entry(item.place, Located(None, item.place)), {})
+        nothing = Located(None, item.place)
+        meant = _unknown(item.value, item.place, nothing, words, kind, problems)
+        return None if meant is None else Words(meant, Entry(item.place, nothing), {})
+    if not isinstance(item.value, dict):
+        message = f"{_a(whole)} is a {kind} with its content, not {describe(item.plain())}"
+        problems.append(item.place.problem(message, _all(words, kind)))
+        return None
+    keys = [key for key in item.value if key not in beside]
+    said = [key for key in keys if key in words]
+    others = [key for key in keys if key not in words]
+    rest = {key: entry for key, entry in item.value.items() if key in beside}
+    if not said and others:
+        wrong = max(others, key=lambda key: nearest(key, words) is not None)
+        meant = _unknown(wrong, *item.value[wrong], words, kind, problems)
+        return None if meant is None else Words(meant, item.value[wrong], rest)
+    if not said:
+        message = f"{_a(whole)} has one {kind}; this one has none"
+        hint = UNTIL_USAGE if UNTIL in rest else _all(words, kind)
+        problems.append(item.place.problem(message, hint))
+        return None
+    for extra in said[1:]:
+        message = f"{_a(whole)} has one {kind}; this one has `{said[0]}` and `{extra}`"
+        hint = f"begin another one: `- {extra}:`"
+        problems.append(item.value[extra].key.problem(message, hint))
+    for other in others:
+        _misplaced(other, item.value[other], said[0], words[said[0]], beside, problems)
+    return Words(said[0], item.value[said[0]], rest)
+
+
+def _unknown(
+    word: str,
+    place: Place,
+    content: Located,
+    words: Mapping[str, object],
+    kind: str,
+    problems: list[Problem],
+) -> str | None:
+    """Refuse a word; the nearest valid one, to go on as if the file said that."""
+    temporal = with_temporal_word(word) if kind == "predicate" else None
+    if temporal is not None:
+        before, predicate = temporal
+        hint = f"write `{before}: {_with_content(predicate, content)}`"
+        if before == "never" and predicate in BOUNDS:
+            hint = f"write `{predicate}`: it holds while the value is at most its limit"
+        elif before == "never" and predicate in OPPOSITES:
+            other = _with_content(OPPOSITES[predicate], content).strip("{}")
+            hint += f", which excludes it at every moment, or `{other}`"
+        problems.append(place.problem(f"no predicate is called `{word}`", hint))
+        return predicate
+    if word in EXPECTATIONS and kind == "predicate":
+        message = f"`{word}` cannot stand inside a temporal word; a predicate can"
+    elif word in ("do", "check"):
+        message = f"`{word}:` is not written; the {kind} itself is the key"
+    else:
+        message = f"no {kind} is called `{word}`"
+    hints = [did_you_mean(word, words, f"{kind}s"), *broken_plugins()]
+    problems.append(place.problem(message, "; ".join(hints)))
+    return nearest(word, words)
+
+
+def with_temporal_word(word: str) -> tuple[str, str] | None:
+    """Temporal word and predicate that a joined word means: `no_collision` is never, collision."""
+    parts = word.lower().replace("-", "_").replace(" ", "_").split("_")
+    for count in range(1, len(parts)):
+        for said, rest in (
+            ("_".join(parts[:count]), parts[count:]),
+            ("_".join(parts[-count:]), parts[:-count]),
+        ):
+            name = "_".join(rest)
+            predicate = SYNONYMS.get(name) or nearest(name, PREDICATES)
+            if said in TEMPORAL_WORDS and predicate is not None:
+                return TEMPORAL_WORDS[said], predicate
+    return None
+
+
+def _with_content(predicate: str, content: Located) -> str:
+    """A predicate with its content, as it stands behind a temporal word."""
+    value = content.plain()
+    if value is None:
+        model = PREDICATES[predicate]
+        field = keys_of(model).get(model.short)
+        if field is None or not field.is_required():
+            return predicate
+        value = (
+            [word.upper() for word in ("one", "other")] if model.short == "between" else "OBJECT"
+        )
+    if isinstance(value, dict):
+        return f"{{{predicate}: {{...}}}}"
+    said = f"[{', '.join(map(str, value))}]" if isinstance(value, list) else str(value)
+    return f"{{{predicate}: {said}}}"
+
+
+def wrong_way_round(word: str, content: Located) -> str | None:
+    """What `collision: never`, or `collision: false`, is meant to be; None of other content."""
+    said = "no" if content.value is False else content.value
+    if not isinstance(said, str) or said.lower() not in ALONE:
+        return None
+    return f"{TEMPORAL_WORDS[said.lower()]}: {_with_content(word, Located(None, content.place))}"
+
+
+def _misplaced(
+    key: str,
+    entry: Entry,
+    word: str,
+    model: object,
+    beside: tuple[str, ...],
+    problems: list[Problem],
+) -> None:
+    if is_model(model) and key in keys_of(model):
+        message = f"`{key}` stands inside `{word}`, not beside it"
+        hint = f"write it below `{word}:`, further right"
+    else:
+        message = f"unknown key `{key}` beside `{word}`"
+        hint = did_you_mean(key, beside, "words that may stand there")
+    problems.append(entry.key.problem(message, hint))
+
+
+def _a(whole: str) -> str:
+    if whole in ("step", "expectation"):
+        return f"a{'n' if whole[0] == 'e' else ''} {whole}"
+    return f"`{whole}`"
+
+
+def _all(words: Mapping[str, object], kind: str) -> str:
+    return f"{kind}s: {', '.join(words)}"

@@ -1,0 +1,238 @@
+"""Values set by dotted path (`objects.cube.pose.xyz.2`), with `--set` or from case to case."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple, get_args, get_origin
+
+from harness.core.errors import Problem, SpecError
+from harness.language.annotations import bare, branches, is_model, keys_of
+from harness.language.base import Rpy, SpecModel
+from harness.language.expectation import ExpectationFields, PredicateFields
+from harness.language.files.mistakes import describe, did_you_mean
+from harness.language.files.source import Entry, Located, Place, Source, located
+from harness.language.files.yaml_file import parse_value
+from harness.language.language import BESIDE_CHECK, EXPECTATIONS, TEMPORAL, UNTIL
+from harness.language.reading.params import PARAMS
+from harness.language.reading.short_forms import expanded
+from harness.language.reading.written import written
+from harness.language.scenario import RobotSpec, Scenario
+from harness.language.step import STEPS, Step
+
+NO_ROTATION = (0.0, 0.0, 0.0)
+"""What a pose without any rotation amounts to; its `rpy` may be absent when an angle is set."""
+
+WORLDS_OBJECT = "add it to `objects` with `replace: true` to change an object of the world"
+
+
+class Override(NamedTuple):
+    """A value and the path where it goes.
+
+    Attributes:
+        path: Keys, indices from 0 and names of list items (objects, cameras, ids of steps), joined
+            by dots.
+        value: The new value.
+        place: Where mistakes in the path are reported.
+    """
+
+    path: str
+    value: Located
+    place: Place
+
+    @property
+    def is_option(self) -> bool:
+        """Whether it was given on the command line."""
+        return not self.place.line
+
+
+class _PathError(Exception):
+    """A path that leads nowhere: message and hint."""
+
+
+def from_options(overrides: Mapping[str, str], problems: list[Problem]) -> list[Override]:
+    """Overrides as given with `--set`: path -> value as YAML."""
+    found: list[Override] = []
+    for path, text in overrides.items():
+        source = Source(f"--set {path}={text}")
+        try:
+            found.append(Override(path, parse_value(text, source), Place(source)))
+        except SpecError as error:
+            problems += error.problems
+    return found
+
+
+def override(root: Located, overrides: list[Override], problems: list[Problem]) -> Located:
+    """A scenario's values with others in their place; mistakes are added to `problems`.
+
+    A key that may stand where the path says is added; below a key that is absent, its default is
+    changed. A bare name that is a parameter sets the parameter.
+    """
+    for each in overrides:
+        try:
+            parts = _parts(root, each.path)
+            root = _Setter(each).set(root, Scenario, parts)
+        except _PathError as error:
+            problems.append(each.place.problem(*error.args))
+    return root
+
+
+def _parts(root: Located, path: str) -> list[str]:
+    """The path's parts; a bare name may be a parameter's."""
+    parts = path.split(".")
+    entry = root.mapping().get(PARAMS)
+    params = entry.value.mapping() if entry is not None else {}
+    keys = keys_of(Scenario)
+    if parts[0] in params and (parts[0] not in keys or len(parts) == 1):
+        return [PARAMS, *parts]
+    if parts[0] == PARAMS and len(parts) > 1 and parts[1] not in params:
+        raise _PathError(
+            f"no parameter is called `{parts[1]}`", did_you_mean(parts[1], params, "params")
+        )
+    if parts[0] in keys:
+        return parts
+    hint = did_you_mean(parts[0], (*params, *keys), "what can be set")
+    raise _PathError(f"the file has no `{parts[0]}` to set", hint)
+
+
+class _Setter:
+    def __init__(self, override: Override) -> None:
+        self.override = override
+
+    def set(self, item: Located, annotation: Any, parts: list[str]) -> Located:
+        """The value with the override's at the end of the path; raises _PathError."""
+        if not parts:
+            return self.override.value
+        kind = _kind(item, annotation)
+        if is_model(kind):
+            item = _opened(item, kind)
+        if isinstance(item.value, dict):
+            return self._in_mapping(item, kind, parts)
+        if isinstance(item.value, list):
+            return self._in_list(item, kind, parts)
+        above = self._above(parts)
+        message = f"`{above}` is {describe(item.value)}; it has no `{parts[0]}`"
+        way = f"--set {above}=..." if self.override.is_option else f"`{above}`"
+        raise _PathError(message, f"set the whole of it: {way}")
+
+    def _in_mapping(self, item: Located, kind: Any, parts: list[str]) -> Located:
+        entries = item.mapping()
+        part, rest = _alias(parts[0], item, kind), parts[1:]
+        annotation, default = _field(kind, part)
+        place = self.override.value.place
+        old = entries.get(part)
+        if old is not None and old.value.value is not None:
+            key, below = old
+        else:
+            key = old.key if old is not None else place
+            below = located(default, place) if rest else Located(None, place)
+        if below.value is None and rest and (annotation is None or _is_mapping(annotation)):
+            below = Located({}, place)
+        if below.value is None and rest:
+            message = f"the file does not say `{self._above(rest)}`, and it has no default"
+            raise _PathError(message, "write it in the file, so that a part of it can be set")
+        new = Entry(key, self.set(below, annotation, rest))
+        return Located({**entries, part: new}, item.place, item.tag)
+
+    def _in_list(self, item: Located, kind: Any, parts: list[str]) -> Located:
+        items = item.items()
+        index, taken = _index(items, parts)
+        if index is None:
+            names = [name for each in items for name in _names(each)]
+            message = f"`{parts[0]}` in `{self.override.path}` is no index of this list of"
+            message += f" {len(items)}" + (", and no name in it" if names else "")
+            indices = f"indices: 0 to {len(items) - 1}" if items else "indices: none, it is empty"
+            hints = [did_you_mean(parts[0], names, "names")] * bool(names) + [indices]
+            hints += [WORLDS_OBJECT] * (self._above(parts) == "objects")
+            raise _PathError(message, "; ".join(hints))
+        items = list(items)
+        items[index] = self.set(items[index], _item_kind(kind, index), parts[taken:])
+        return Located(items, item.place, item.tag)
+
+    def _above(self, rest: list[str]) -> str:
+        """The part of the path in front of the rest."""
+        return self.override.path[: len(self.override.path) - len(".".join(rest)) - 1]
+
+
+def _kind(item: Located, annotation: Any) -> Any:
+    """The annotation without unions: the branch that a value of this shape belongs to."""
+    annotation = bare(annotation)
+    members = [bare(each) for each in branches(annotation)]
+    if not members:
+        return annotation
+    models = [each for each in members if is_model(each)]
+    lists = [each for each in members if get_origin(each) is tuple]
+    chosen = lists if isinstance(item.value, list) else models
+    return chosen[0] if chosen else None
+
+
+def _opened(item: Located, model: type[SpecModel]) -> Located:
+    """A bare value as the field that it is short for, so that its neighbours can be set."""
+    is_ready = isinstance(item.value, dict) and not issubclass(model, RobotSpec)
+    return item if is_ready else expanded(item, model)
+
+
+def _alias(part: str, item: Located, kind: Any) -> str:
+    """The key that the part means: the course's `ur_type` is `model`."""
+    is_alias = kind is RobotSpec and part == "ur_type" and part not in item.mapping()
+    return "model" if is_alias else part
+
+
+def _field(kind: Any, key: str) -> tuple[Any, Any]:
+    """Annotation and default of a key, as plain data; None where the language has none."""
+    if kind is Step and key in STEPS:
+        return STEPS[key], {}
+    if kind in (ExpectationFields, PredicateFields):
+        if key in TEMPORAL or key == UNTIL:
+            return PredicateFields, None
+        return EXPECTATIONS.get(key), ({} if key not in BESIDE_CHECK else None)
+    if get_origin(kind) is dict:
+        return get_args(kind)[1], None
+    if not is_model(kind):
+        return None, None
+    keys = keys_of(kind)
+    if key not in keys:
+        if kind.short_is_list and kind.short in keys:  # `add_object: {name: ...}`
+            return _field(_item_kind(bare(keys[kind.short].annotation), 0), key)
+        return None, None
+    field = keys[key]
+    default = None if field.is_required() else field.get_default(call_default_factory=True)
+    if default is None and bare(field.annotation) == Rpy:
+        default = NO_ROTATION
+    return field.annotation, written(default)
+
+
+def _is_mapping(annotation: Any) -> bool:
+    kind = bare(annotation)
+    return (
+        is_model(kind)
+        or get_origin(kind) is dict
+        or any(is_model(bare(each)) for each in branches(kind))
+    )
+
+
+def _item_kind(kind: Any, index: int) -> Any:
+    arguments = get_args(kind) if get_origin(kind) is tuple else ()
+    if not arguments:
+        return None
+    is_long = arguments[-1] is ...
+    return arguments[0] if is_long else arguments[min(index, len(arguments) - 1)]
+
+
+def _names(item: Located) -> list[str]:
+    """What a list's item may be called: an object's or a camera's name, a step's id."""
+    entries = item.mapping()
+    named = (entries[key].value.value for key in ("name", "id") if key in entries)
+    return [each for each in named if isinstance(each, str) and each]
+
+
+def _index(items: list[Located], parts: list[str]) -> tuple[int | None, int]:
+    """Index of the item that a path goes on with, and how many parts say so; names have dots."""
+    first = parts[0]
+    if first.isascii() and first.isdecimal() and len(first) <= 9:
+        return (int(first), 1) if int(first) < len(items) else (None, 1)
+    for taken in range(len(parts), 0, -1):
+        name = ".".join(parts[:taken])
+        for index, item in enumerate(items):
+            if name in _names(item):
+                return index, taken
+    return None, 1

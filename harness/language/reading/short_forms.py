@@ -1,0 +1,272 @@
+"""Brings a file's short forms into the models' shape: `- gripper: open` to `{do: gripper, ...}`.
+
+Guided by the models: a verb or predicate becomes a tag, a bare value the field it is short for.
+Unknown words are refused here, where it is known what could stand in their place; what is wrong
+is left out, so that pydantic goes on with the rest. Every value keeps its place in the file.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any, get_args, get_origin
+
+from pydantic.fields import FieldInfo
+
+from harness.core.errors import Problem
+from harness.language.annotations import bare, branches, is_model, keys_of, units_of
+from harness.language.base import SpecModel
+from harness.language.expectation import CHECK, ExpectationFields, PredicateFields
+from harness.language.files.mistakes import describe, did_you_mean, nearest
+from harness.language.files.source import Entry, Located
+from harness.language.language import (
+    BESIDE_CHECK,
+    BESIDE_VERB,
+    EXPECTATIONS,
+    PREDICATES,
+    TEMPORAL,
+    UNTIL,
+)
+from harness.language.reading.names import UNTIL_USAGE, Words, take_apart, wrong_way_round
+from harness.language.scenario import RobotSpec
+from harness.language.step import STEPS, TAG, Step
+
+TURN = 6.283186  # [rad], rounded up
+
+
+def models_shape(
+    item: Located,
+    model: type[SpecModel],
+    problems: list[Problem],
+    notes: list[Problem] | None = None,
+) -> Located:
+    """A file's values in the shape of its model.
+
+    Args:
+        item: The file.
+        model: Its model.
+        problems: Gets the mistakes.
+        notes: Gets what is allowed and probably not intended.
+    """
+    return _Shaper(problems, [] if notes is None else notes).model(item, model)
+
+
+class _Shaper:
+    def __init__(self, problems: list[Problem], notes: list[Problem]) -> None:
+        self.problems = problems
+        self.notes = notes
+
+    def shape(self, item: Located, annotation: Any, metadata: Iterable[Any] = ()) -> Located:
+        self._note_angle(item, annotation, metadata)
+        annotation = bare(annotation)
+        if annotation is Step:
+            return self.step(item)
+        if annotation is ExpectationFields:
+            return self.expectation(item)
+        if is_model(annotation) and issubclass(annotation, PredicateFields):
+            return self.predicate(item)
+        if is_model(annotation):
+            return self.model(item, annotation)
+        members = branches(annotation)
+        if members:
+            fitting = [bare(each) for each in members if _fits(item, bare(each))]
+            return self.shape(item, fitting[0]) if fitting else item
+        arguments = get_args(annotation)
+        if get_origin(annotation) is tuple and isinstance(item.value, list):
+            kinds = [*arguments[:1]] * len(item.value) if arguments[-1] is ... else arguments
+            shaped = [self.shape(*pair) for pair in zip(item.value, kinds, strict=False)]
+            return Located(shaped + item.value[len(shaped) :], item.place)
+        if get_origin(annotation) is dict and isinstance(item.value, dict):
+            entries = {
+                key: Entry(entry.key, self.shape(entry.value, arguments[1]))
+                for key, entry in item.value.items()
+            }
+            return Located(entries, item.place)
+        return item
+
+    def field(self, item: Located, field: FieldInfo) -> Located:
+        return self.shape(item, field.annotation, field.metadata)
+
+    def _note_angle(self, item: Located, annotation: Any, metadata: Iterable[Any]) -> None:
+        """Note numbers that are degrees in all likelihood."""
+        number = item.value
+        if isinstance(number, bool) or not isinstance(number, int | float) or abs(number) <= TURN:
+            return
+        if "rad" in units_of(annotation, metadata):
+            message = f"{number:g} is an angle in radians, {math.degrees(number):.1f} degrees"
+            hint = f"write `{number:g} deg` for degrees"
+            self.notes.append(item.place.problem(message, hint))
+
+    def model(self, item: Located, model: type[SpecModel], **names: str) -> Located:
+        """A mapping with the model's keys; `names` says how to speak of it."""
+        item = expanded(item, model)
+        if not isinstance(item.value, dict):
+            return item
+        keys = keys_of(model)
+        inside = [key for key in keys if not (issubclass(model, Step) and key in BESIDE_VERB)]
+        entries: dict[str, Entry] = {}
+        for key, entry in item.value.items():
+            if key in inside:
+                shaped = self.field(entry.value, keys[key])
+                entries[key] = Entry(entry.key, shaped)
+            elif key in keys and "verb" in names:
+                message = f"`{key}` stands beside `{names['verb']}`, not inside it"
+                hint = f"write it in the column of `{names['verb']}:`"
+                self.problems.append(entry.key.problem(message, hint))
+            else:
+                where = names.get("verb") or names.get("word") or ""
+                message = f"unknown key `{key}`" + (f" in `{where}`" if where else "")
+                hint = did_you_mean(key, inside, "keys") if inside else "it has no keys"
+                self.problems.append(entry.key.problem(message, hint))
+                meant = nearest(key, inside)
+                if meant is not None and meant not in item.value:  # go on as if it said so
+                    shaped = self.field(entry.value, keys[meant])
+                    entries[meant] = Entry(entry.key, shaped)
+        return Located(entries, item.place)
+
+    def step(self, item: Located) -> Located:
+        found = take_apart(item, STEPS, BESIDE_VERB, "step", "verb", self.problems)
+        if found is None:
+            return _stand_in(item, TAG, "settle", {})
+        model = STEPS[found.word]
+        content = self.model(_content(found.entry), model, verb=found.word)
+        if not isinstance(content.value, dict):
+            self._not_content(found, content, model)
+            content = Located({}, content.place)
+        beside = {
+            key: Entry(entry.key, self.field(entry.value, keys_of(model)[key]))
+            for key, entry in found.beside.items()
+        }
+        return _tagged(TAG, found, content.mapping() | beside)
+
+    def expectation(self, item: Located) -> Located:
+        words = (*BESIDE_CHECK, UNTIL)
+        found = take_apart(item, EXPECTATIONS, words, "expectation", "predicate", self.problems)
+        if found is None:
+            return _stand_in(item, CHECK, "within_limits", {})
+        until = found.beside.pop(UNTIL, None)
+        if until is not None and found.word != "always":
+            message = f"`until` goes with `always`, not with `{found.word}`"
+            self.problems.append(until.key.problem(message, UNTIL_USAGE))
+            until = None
+        if found.word in TEMPORAL:
+            return self._temporal(found, until)
+        return self._predicate(found)
+
+    def predicate(self, item: Located) -> Located:
+        found = take_apart(
+            item, PREDICATES, BESIDE_CHECK, "expectation", "predicate", self.problems
+        )
+        if found is None:
+            return _stand_in(item, CHECK, "within_limits", {})
+        return self._predicate(found)
+
+    def _predicate(self, found: Words) -> Located:
+        model = EXPECTATIONS[found.word]
+        meant = wrong_way_round(found.word, found.entry.value) if found.word in PREDICATES else None
+        if meant is not None:
+            place = found.entry.value.place
+            message = f"a temporal word stands before its predicate, not in `{found.word}`"
+            self.problems.append(place.problem(message, f"write `{meant}`"))
+            return _stand_in(found.entry.value, CHECK, "within_limits", {})
+        content = self.model(_content(found.entry), model, word=found.word)
+        if not isinstance(content.value, dict):
+            self._not_content(found, content, model)
+            content = Located({}, content.place)
+        allowed = keys_of(model)
+        entries = dict(content.mapping())
+        for key, entry in found.beside.items():
+            if key not in allowed:
+                message = f"`{key}` has no meaning beside `{found.word}`"
+                self.problems.append(entry.key.problem(message))
+            else:
+                self._put(entries, key, entry)
+        return _tagged(CHECK, found, entries)
+
+    def _temporal(self, found: Words, until: Entry | None) -> Located:
+        """`never: {collision: {...}, for: 1 s}`: the words inside belong to `never`."""
+        inner = take_apart(
+            found.entry.value, PREDICATES, BESIDE_CHECK, found.word, "predicate", self.problems
+        )
+        entries = dict(found.beside)
+        if inner is None:
+            return _stand_in(found.entry.value, CHECK, "within_limits", {})
+        for key, entry in inner.beside.items():
+            self._put(entries, key, entry)
+        predicate = self._predicate(Words(inner.word, inner.entry, {}))
+        entries["predicate"] = Entry(found.entry.key, predicate)
+        if until is None:
+            return _tagged(CHECK, found, entries)
+        entries[UNTIL] = Entry(until.key, self.predicate(until.value))
+        return _tagged(CHECK, Words(UNTIL, found.entry, {}), entries)
+
+    def _not_content(self, found: Words, content: Located, model: type[SpecModel]) -> None:
+        message = f"`{found.word}` takes a mapping, not {describe(content.plain())}"
+        keys = [key for key in keys_of(model) if key not in (*BESIDE_VERB, *BESIDE_CHECK)]
+        hint = f"keys: {', '.join(keys)}" if keys else f"write `- {found.word}` alone"
+        self.problems.append(content.place.problem(message, hint))
+
+    def _put(self, entries: dict[str, Entry], key: str, entry: Entry) -> None:
+        if key in entries:
+            first = f"the first is in line {entries[key].key.line}"
+            self.problems.append(entry.key.problem(f"`{key}` is here twice", first))
+        else:
+            entries[key] = entry
+
+
+def expanded(item: Located, model: type[SpecModel]) -> Located:
+    """A bare value as the field it is short for; a mapping as it is."""
+    if issubclass(model, RobotSpec):
+        return course_words(item)
+    if isinstance(item.value, dict):
+        items_are_models = model.short_is_list and _list_of_models(model)
+        if not items_are_models or model.short in item.value or not item.value:
+            return item
+    elif not model.short or item.value is None:
+        return item
+    if model.short_is_list and not isinstance(item.value, list):
+        item = Located([item], item.place)
+    return Located({model.short: Entry(item.place, item)}, item.place)
+
+
+def course_words(robot: Located) -> Located:
+    """`robot: ur3e`, and `ur_type: ur3e` as the course writes it, are short for `model: ur3e`."""
+    if isinstance(robot.value, str):
+        return Located({"model": Entry(robot.place, robot)}, robot.place)
+    entries = robot.mapping()
+    if "ur_type" not in entries or "model" in entries:
+        return robot
+    renamed = {("model" if key == "ur_type" else key): entry for key, entry in entries.items()}
+    return Located(renamed, robot.place)
+
+
+def _list_of_models(model: type[SpecModel]) -> bool:
+    """Whether one mapping alone may stand for the list: `add_object: {name: ...}`."""
+    kind = get_args(bare(keys_of(model)[model.short].annotation))[0]
+    return is_model(bare(kind))
+
+
+def _fits(item: Located, annotation: Any) -> bool:
+    if isinstance(item.value, dict):
+        return is_model(annotation) or get_origin(annotation) is dict
+    if isinstance(item.value, list):
+        return get_origin(annotation) in (tuple, list)
+    return False
+
+
+def _content(entry: Entry) -> Located:
+    """What stands behind a word; nothing is an empty mapping, standing at the word."""
+    if entry.value.value is None:
+        return Located({}, entry.key)
+    return entry.value
+
+
+def _tagged(tag: str, found: Words, entries: dict[str, Entry]) -> Located:
+    place = found.entry.key
+    word = Entry(place, Located(found.word, place))
+    return Located({tag: word, **entries}, place, found.word)
+
+
+def _stand_in(item: Located, tag: str, word: str, beside: dict[str, Entry]) -> Located:
+    """Holds the place of what could not be read, so that indices stay."""
+    return _tagged(tag, Words(word, Entry(item.place, item), {}), beside)

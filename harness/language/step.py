@@ -1,0 +1,145 @@
+"""What every step is: the keys next to its verb, and what its class must provide."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar
+
+from pydantic import Field
+
+from harness.core.errors import ErrorCode
+from harness.core.registry import Registry, registry
+from harness.language.base import Name, PositiveDuration, SpecModel
+from harness.language.expectation import AnyExpectation
+from harness.language.files.source import Loc
+from harness.language.planning import Planning
+from harness.language.plugin_field import PluginField
+from harness.language.world import ObjectSpec
+
+TAG = "do"
+"""In the shape of the models, the key of a step's verb."""
+
+
+@dataclass(frozen=True)
+class Block:
+    """Steps inside a step, one time through.
+
+    Attributes:
+        steps: In order.
+        loc: Of the list in the file.
+        path: Of the list in the expanded file: `steps[2].repeat[0]`.
+        suffix: Appended to the ids of the steps where they run more than once: `#2`.
+    """
+
+    steps: Sequence[Step]
+    loc: Loc
+    path: str
+    suffix: str = ""
+
+
+class Step(SpecModel):
+    """A step of a scenario: a subclass for each verb says, checks and does all of it.
+
+    The docstring of a subclass is the step's text in the reference and in editors.
+
+    Attributes:
+        verb: The key of the step in a file; empty in classes that several steps share.
+        moves_arm: Whether the step is one motion of the arm, which `parallel` can combine with a
+            `gripper` step.
+    """
+
+    plugin_kind: ClassVar[str] = "step"
+    verb: ClassVar[str] = ""
+    moves_arm: ClassVar[bool] = False
+
+    id: Name | None = Field(
+        default=None,
+        description="A unique name by which expectations (`during`) and reports refer to the step.",
+    )
+    name: str | None = Field(
+        default=None, description="A title for people, in place of the generated summary."
+    )
+    group: Name | None = Field(
+        default=None, description="The SRDF planning group that moves; the default is the arm's."
+    )
+    expect: tuple[AnyExpectation, ...] = Field(
+        default=(), description="Expectations that are judged over this step."
+    )
+    expect_error: ErrorCode | None = Field(
+        default=None,
+        description="The step must fail with this name of moveit_msgs/MoveItErrorCodes.",
+    )
+    timeout: PositiveDuration | None = Field(
+        default=None, description="The step fails when it takes longer, in simulated seconds."
+    )
+    planning: Planning | None = Field(
+        default=None, description="Planning parameters that override the scenario's `planning`."
+    )
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        """Refuse a class that lacks something a step must have, when it is defined."""
+        verb = cls.plugin_name()
+        if not verb:
+            return
+        reserved = {*Step.model_fields, TAG}
+        if not verb.isidentifier() or verb in reserved:
+            raise TypeError(f"`{verb}` cannot be a step's verb: it is no word, or a key of steps")
+        if not cls.__doc__:
+            raise TypeError(f"the step `{verb}` has no docstring, which is its reference text")
+        if TAG in cls.model_fields or cls.execute is Step.execute:
+            raise TypeError(f"the step `{verb}` needs an `execute` method, and no field `{TAG}`")
+
+    @classmethod
+    def plugin_name(cls) -> str:
+        """The verb that this class is registered under; empty for what several steps share."""
+        return cls.__dict__.get("verb", "")
+
+    @property
+    def title(self) -> str:
+        """One line for a person: `move_to mogi_home`."""
+        return f"{self.verb} {self.name or self.summary()}".rstrip()
+
+    def summary(self) -> str:
+        """The step's content in a few words."""
+        return ""
+
+    def check(self, at: Any) -> None:
+        """Report what is wrong with the step, then change the scope as the step will.
+
+        Args:
+            at: `harness.cell.scope.At`: what exists at this point of the file, and the step's
+                place in it.
+        """
+
+    def execute(self, cell: Any) -> None:
+        """Do what the step says; `harness check` calls this with a cell that moves nothing.
+
+        Args:
+            cell: `harness.cell.cell.Cell`: robot, planning scene, planner and simulator.
+
+        Raises:
+            StepFailed: The step cannot be carried out.
+        """
+        raise NotImplementedError(self.verb)
+
+    def new_objects(self) -> Iterator[tuple[Loc, ObjectSpec]]:
+        """Objects that the step adds to the scene, each with its place in the step."""
+        return iter(())
+
+    def blocks(self, loc: Loc, path: str) -> Iterator[Block]:
+        """Steps inside the step: a block for each time through.
+
+        Args:
+            loc: The step's place in the file.
+            path: The step's place in the expanded file.
+        """
+        del loc, path
+        return iter(())
+
+
+STEPS: Registry[type[Step]] = registry(Step.plugin_kind)
+"""The class of every verb."""
+
+AnyStep = Annotated[Step, PluginField(Step.plugin_kind, TAG)]

@@ -1,0 +1,114 @@
+"""Cases of a scenario: values that take others in turn, or are drawn at random."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, cast
+
+from pydantic import AfterValidator, Field, model_validator
+
+from harness.core.quantity import split_quantity
+from harness.core.variation import MOST_CASES, count_of
+from harness.language.base import Fraction, Share, SpecModel
+
+VARIATION_KEYS = ("parametrize", "randomize", "samples", "redraw_overlaps", "expect_rate")
+"""Keys that say which cases there are; a case itself has none of them."""
+
+
+def _is_finite_quantity(value: object) -> object:
+    if not math.isfinite(split_quantity(value)[0]):
+        raise ValueError("a finite number is wanted")
+    return value
+
+
+Quantity = Annotated[Any, AfterValidator(_is_finite_quantity)]
+
+
+class Normal(SpecModel):
+    """A normal distribution, cut at its bounds where there are some."""
+
+    mean: Quantity = Field(description="A number, with or without a unit.")
+    std: Quantity = Field(description="Standard deviation, in the unit of the mean.")
+    low: Quantity | None = Field(default=None, description="Drawn again below this.")
+    high: Quantity | None = Field(default=None, description="Drawn again above this.")
+
+    @model_validator(mode="after")
+    def _reachable(self) -> Normal:
+        mean, std = split_quantity(self.mean), split_quantity(self.std)
+        bounds = [split_quantity(each) for each in (self.low, self.high) if each is not None]
+        if any(unit != mean[1] for _, unit in (std, *bounds)):
+            raise ValueError("mean, std, low and high are in one unit")
+        if std[0] <= 0:
+            raise ValueError("`std` is above 0")
+        low = -math.inf if self.low is None else split_quantity(self.low)[0]
+        high = math.inf if self.high is None else split_quantity(self.high)[0]
+        if high - low < 0.1 * std[0] or low > mean[0] + 3 * std[0] or high < mean[0] - 3 * std[0]:
+            raise ValueError("`low` and `high` leave too little of the distribution")
+        return self
+
+
+class Distribution(SpecModel):
+    """Where a random value comes from: exactly one of these."""
+
+    uniform: tuple[Quantity, Quantity] | None = Field(
+        default=None, description="Between two numbers, with or without a unit."
+    )
+    normal: Normal | None = Field(default=None, description="About a mean.")
+    choice: Annotated[tuple[Any, ...], Field(min_length=1, max_length=1000)] | None = Field(
+        default=None, description="One of these values, each as likely."
+    )
+
+    @model_validator(mode="after")
+    def _one(self) -> Distribution:
+        if sum(each is not None for each in (self.uniform, self.normal, self.choice)) != 1:
+            raise ValueError("exactly one of uniform, normal, choice")
+        if self.uniform is not None:
+            (low, unit), (high, other) = (split_quantity(each) for each in self.uniform)
+            if unit != other:
+                raise ValueError("both ends are in one unit")
+            if low >= high:
+                raise ValueError("the first end is below the second")
+        return self
+
+
+class Expected(SpecModel):
+    """A success rate to be shown by random cases: `90 %` is short for `{at_least: 90 %}`."""
+
+    short = "at_least"
+
+    at_least: Fraction = Field(description="Share of the samples that pass.")
+    confidence: Annotated[Share, Field(gt=0.5, lt=1)] = Field(
+        default=0.95, description="With which this is to be shown."
+    )
+    stop_early: bool = Field(
+        default=True, description="End as soon as a sequential test has decided."
+    )
+
+
+def _grid_or_cases(value: object) -> object:
+    if not value:
+        raise ValueError("there is no case; `parametrize` is a grid, or a list of named cases")
+    if isinstance(value, dict):
+        grid = cast("dict[str, Any]", value)
+        for path, values in grid.items():
+            if not isinstance(values, list) or not values:
+                raise ValueError(f"`{path}` takes a list of values in turn")
+        if count_of(grid) > MOST_CASES:
+            raise ValueError(f"the grid has more than {MOST_CASES} cases")
+        return grid
+    cases = cast("list[Any]", value)
+    for case in cases:
+        if not isinstance(case, dict):
+            raise ValueError(  # noqa: TRY004 - what pydantic collects
+                "a named case is a mapping: `{id: small, params.size: 2 cm}`"
+            )
+    names = [case["id"] for case in cases if "id" in case]
+    if any(not isinstance(name, str) for name in names):
+        raise ValueError("an `id` is text")
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"two cases are called `{name}`")
+    return value
+
+
+Parametrize = Annotated[dict[str, Any] | list[Any], AfterValidator(_grid_or_cases)]

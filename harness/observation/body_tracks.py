@@ -1,0 +1,179 @@
+"""Poses of the bodies of a recorded run at every sample, and how far they move."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import coal
+import numpy as np
+
+from harness.core.geometry import Shape
+from harness.core.spatial import rotation_from_quat_wxyz
+from harness.core.types import BoolArray, FloatArray
+from harness.planning.collision.geometry import coal_geometry
+from harness.planning.model.forward_kinematics import LinkPoses
+from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """A rigid body over N samples.
+
+    Attributes:
+        rotations: The rotations of T_world_body, shape (N, 3, 3).
+        translations: The translations of T_world_body [m], shape (N, 3); NaN while absent.
+    """
+
+    rotations: FloatArray
+    translations: FloatArray
+
+    @cached_property
+    def turns(self) -> FloatArray:
+        """Rotation angle between neighbouring samples [rad], shape (N - 1,)."""
+        steps = np.diff(self.rotations, axis=0).reshape(-1, 9)
+        chords = np.sqrt(np.einsum("ij,ij->i", steps, steps)) / (2 * np.sqrt(2))
+        return 2 * np.arcsin(np.minimum(chords, 1.0))
+
+    @property
+    def present(self) -> BoolArray:
+        """Samples with a pose, shape (N,)."""
+        return np.isfinite(self.translations[:, 0])
+
+    def part(self, samples: BoolArray) -> Track:
+        """The same body at some samples only."""
+        return Track(self.rotations[samples], self.translations[samples])
+
+
+def track_of_poses(poses: FloatArray) -> Track:
+    """A track from recorded poses (N, 7), xyz and quat wxyz, NaN while absent."""
+    w, x, y, z = np.moveaxis(poses[:, 3:], 1, 0)
+    rotations = np.empty((len(poses), 3, 3))
+    rotations[:, 0] = np.column_stack(
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)]
+    )
+    rotations[:, 1] = np.column_stack(
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)]
+    )
+    rotations[:, 2] = np.column_stack(
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]
+    )
+    return Track(rotations, np.array(poses[:, :3]))
+
+
+def link_track(poses: LinkPoses, link: str) -> Track:
+    """A link's track."""
+    return Track(poses.rotations[link], poses.translations[link])
+
+
+def carried_track(link: Track, pose_in_link: Sequence[float]) -> Track:
+    """Track of something fixed to a link at T_link_object (xyz, quat wxyz)."""
+    offset = np.asarray(pose_in_link, dtype=float)
+    rotation = rotation_from_quat_wxyz(offset[3:])
+    return Track(link.rotations @ rotation, link.translations + link.rotations @ offset[:3])
+
+
+def object_track(
+    record: ObjectRecord,
+    attachments: Sequence[AttachmentRecord],
+    signals: Signals,
+    links: LinkPoses,
+) -> Track:
+    """An object's track: as the physics recorded it, otherwise as the planning scene assumes it.
+
+    An object of the planning scene alone stays where it is added, moves with the link to which it
+    is attached, and stays where it is detached.
+    """
+    times = signals.times
+    recorded = signals.object_poses.get(record.name)
+    if recorded is not None:
+        track = track_of_poses(np.asarray(recorded, dtype=float))
+    else:
+        count = len(times)
+        poses = np.full((count, 7), np.nan)
+        if record.pose:
+            poses[:] = record.pose
+        track = track_of_poses(poses)
+        for held in sorted(attachments, key=lambda item: item.start_time):
+            if held.object != record.name:
+                continue
+            carried = carried_track(link_track(links, held.link), held.pose_in_link)
+            during = (times >= held.start_time) & (times <= held.end_time)
+            track.rotations[during] = carried.rotations[during]
+            track.translations[during] = carried.translations[during]
+            if during.any():
+                last = int(np.flatnonzero(during)[-1])
+                track.rotations[last:] = carried.rotations[last]
+                track.translations[last:] = carried.translations[last]
+    there = np.zeros(len(times), dtype=bool)
+    for start, end in record.present:
+        there |= (times >= start) & (times <= end)
+    track.translations[~there] = np.nan
+    return track
+
+
+@dataclass(frozen=True, eq=False)
+class TrackedShape:
+    """A collision shape of a body, with its bounding sphere.
+
+    Attributes:
+        body: The name of the body.
+        geometry: The shape as Coal's geometry.
+        pose: T_body_shape as Coal's transform.
+        center: The bounding sphere's centre in the body frame [m].
+        radius: The bounding sphere's radius [m]; inf for a half space.
+    """
+
+    body: str
+    geometry: coal.CollisionGeometry
+    pose: coal.Transform3s
+    center: FloatArray
+    radius: float
+
+
+def tracked_shapes(body: str, shapes: Sequence[Shape]) -> tuple[TrackedShape, ...]:
+    """Convert a body's shapes for distance measurements."""
+    found = []
+    for shape in shapes:
+        geometry = coal_geometry(shape)
+        geometry.computeLocalAABB()
+        center = shape.pose.apply(np.array(geometry.aabb_center).reshape(3))
+        found.append(
+            TrackedShape(
+                body,
+                geometry,
+                coal.Transform3s(shape.pose.rotation, shape.pose.translation),
+                center,
+                float(geometry.aabb_radius),
+            )
+        )
+    return tuple(found)
+
+
+def relative(first: Track, second: Track) -> Track:
+    """Track of the first body in the frame of the second: T_second_first."""
+    turned = np.swapaxes(second.rotations, 1, 2)
+    offset = (first.translations - second.translations)[:, :, None]
+    return Track(turned @ first.rotations, (turned @ offset)[:, :, 0])
+
+
+def travel(seen: Track, shape: TrackedShape) -> FloatArray:
+    """Bound the path length of every point of a shape since the first sample [m], shape (N,).
+
+    Between two samples a point of the shape moves at most as far as the centre of its sphere plus
+    the sphere's radius times the angle turned.
+    """
+    centers = seen.translations + seen.rotations @ shape.center
+    steps = np.diff(centers, axis=0)
+    shifts = np.sqrt(np.einsum("ij,ij->i", steps, steps))
+    return np.concatenate([[0.0], np.cumsum(shifts + shape.radius * seen.turns)])
+
+
+def links_with_shapes(
+    shapes: Mapping[str, Sequence[Shape]],
+) -> dict[str, tuple[TrackedShape, ...]]:
+    """Tracked shapes of every link that has any."""
+    return {link: tracked_shapes(link, each) for link, each in shapes.items() if each}

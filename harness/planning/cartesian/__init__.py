@@ -1,0 +1,1 @@
+"""Motions along lines and arcs, and sequences of them with blends."""

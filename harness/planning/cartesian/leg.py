@@ -1,0 +1,188 @@
+"""One motion of several that follow each other, and how one goes over into the next."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import pinocchio as pin
+
+from harness.core.errors import PlanningFailed
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.planning.cartesian.link_timing import LinkRates
+from harness.planning.cartesian.splines import uniform_spline
+from harness.planning.cartesian.tracing import LinkPath, link_goal
+from harness.planning.collision import wording
+from harness.planning.collision.checker import MotionChecker, touch_facts
+from harness.planning.ik.numeric import LinkTask
+
+JOINT_STEP = 0.03
+"""Between the samples of a joint motion [rad]."""
+
+BLEND_STEP = 0.002
+"""Between the poses that are solved in a transition [m], about."""
+
+_FEWEST = 8
+_SEARCHED = 400  # points of a leg looked at for where it enters a sphere
+_SAME = 1e-5  # [rad] a transition that ends farther from the next leg is on another branch
+_SOLVED = 1e-8  # [m, rad]
+
+
+class Leg:
+    """A motion whose parameter runs from 0 to 1.
+
+    Attributes:
+        link: Whose way counts.
+        path: Of the link through space; None for a joint motion.
+        rates: What the link may do; None for a joint motion.
+        positions: Group positions at even parameters, shape (K, dof).
+        name: In messages: `item 2 (lin)`.
+    """
+
+    def __init__(
+        self,
+        link: str,
+        checker: MotionChecker,
+        positions: FloatArray,
+        path: LinkPath | None = None,
+        rates: LinkRates | None = None,
+        name: str = "",
+    ) -> None:
+        self.link, self.path, self.rates, self.name = link, path, rates, name
+        self.positions = positions
+        self._space = checker.space
+        self._spline = uniform_spline(positions)
+
+    @classmethod
+    def straight(cls, link: str, checker: MotionChecker, end: FloatArray, start: FloatArray) -> Leg:
+        """All joints together, straight in joint space."""
+        space = checker.space
+        count = max(_FEWEST, int(np.ceil(space.distance(start, end) / JOINT_STEP)))
+        shares = np.linspace(0.0, 1.0, count + 1)[:, None]
+        return cls(link, checker, start + shares * (end - start))
+
+    def at(self, parameters: FloatArray) -> FloatArray:
+        """Group positions at parameters (N,), shape (N, dof)."""
+        return self._spline(np.asarray(parameters, dtype=float))[0]
+
+    def pose(self, parameter: float) -> SE3:
+        """T_world_link at a parameter."""
+        if self.path is not None:
+            return self.path.pose(parameter)
+        positions = self.at(np.array([parameter]))[0]
+        return self._space.robot.link_pose(self._space.whole(positions), self.link)
+
+    def part(self, first: float, last: float) -> FloatArray:
+        """Samples from one parameter to another, both included, shape (N, dof)."""
+        count = max(_FEWEST, int(np.ceil((last - first) * (len(self.positions) - 1))))
+        return self.at(np.linspace(first, last, count + 1))
+
+    def leaves(self, center: FloatArray, radius: float, *, backwards: bool) -> float | None:
+        """Where the leg leaves a sphere about its start, or, `backwards`, about its end.
+
+        None when it stays inside.
+        """
+        shares = np.linspace(0.0, 1.0, _SEARCHED + 1)
+        if backwards:
+            shares = shares[::-1]
+
+        def outside(share: float) -> bool:
+            away = self.pose(share).translation - center
+            return float(np.linalg.norm(away)) >= radius
+
+        for inner, outer in pairwise(shares):
+            if outside(float(outer)):
+                low, high = float(inner), float(outer)
+                for _ in range(40):
+                    middle = 0.5 * (low + high)
+                    low, high = (low, middle) if outside(middle) else (middle, high)
+                return high
+        return None
+
+
+@dataclass(frozen=True, eq=False)
+class Transition:
+    """The way over from one leg into the next, inside a sphere about the point between them.
+
+    Attributes:
+        leaves: Parameter of the first leg at which it begins.
+        enters: Parameter of the second at which it ends.
+        positions: Group positions on it, shape (N, dof).
+    """
+
+    leaves: float
+    enters: float
+    positions: FloatArray
+
+
+def transition(first: Leg, second: Leg, radius: float, checker: MotionChecker) -> Transition:
+    """Blend two legs in space, as Pilz's transition window does.
+
+    The link's pose is a mean of where both legs have it, whose weight goes over from the first to
+    the second by 6 u^5 - 15 u^4 + 10 u^3, so that it joins both with the same velocity and
+    acceleration.
+
+    Raises:
+        PlanningFailed: INVALID_MOTION_PLAN, when the sphere is larger than a leg or something is
+            in the way; PLANNING_FAILED, when the joints cannot go over so.
+    """
+    corner = first.pose(1.0).translation
+    leaves = first.leaves(corner, radius, backwards=True)
+    enters = second.leaves(corner, radius, backwards=False)
+    for leg, found in ((first, leaves), (second, enters)):
+        if found is None:
+            raise PlanningFailed(
+                "INVALID_MOTION_PLAN",
+                f"the blend radius of {1000 * radius:.1f} mm is larger than {leg.name}",
+                {"blend_radius": radius},
+            )
+    if leaves is None or enters is None:
+        raise ValueError("both were found")
+    count = max(10, int(np.ceil(2 * radius / BLEND_STEP)))
+    positions = [first.at(np.array([leaves]))[0]]
+    for u in np.linspace(0.0, 1.0, count + 1)[1:]:
+        pose = _between(first.pose(leaves + u * (1 - leaves)), second.pose(u * enters), u)
+        positions.append(_follow(first, pose, positions, checker))
+    last = second.at(np.array([enters]))[0]
+    if float(np.abs(positions[-1] - last).max()) > _SAME:
+        raise PlanningFailed(
+            "PLANNING_FAILED",
+            f"the blend from {first.name} into {second.name} ends on another branch of inverse "
+            "kinematics; make its radius smaller",
+            {"blend_radius": radius},
+        )
+    positions[-1] = last
+    return Transition(leaves, enters, np.array(positions))
+
+
+def _between(first: SE3, second: SE3, u: float) -> SE3:
+    weight = ((6 * u - 15) * u + 10) * u**3
+    turn = pin.log3(second.rotation @ first.rotation.T)
+    return SE3(
+        pin.exp3(weight * turn) @ first.rotation,
+        first.translation + weight * (second.translation - first.translation),
+    )
+
+
+def _follow(leg: Leg, pose: SE3, before: list[FloatArray], checker: MotionChecker) -> FloatArray:
+    """The free joint positions that bring the link to a pose, from those just before."""
+    task = LinkTask(checker.space, link_goal(leg.link, pose, checker.space.dof))
+    guess = 2 * before[-1] - before[-2] if len(before) > 1 else before[-1]
+    found, error = task.polish(guess, iterations=20)
+    space = checker.space
+    if error > _SOLVED or np.any(found < space.lower) or np.any(found > space.upper):
+        raise PlanningFailed(
+            "NO_IK_SOLUTION", f"{leg.link} cannot follow the blend after {leg.name}"
+        )
+    if not checker.state_free(found):
+        touches = checker.touches(found)
+        raise PlanningFailed(
+            "INVALID_MOTION_PLAN",
+            f"in the blend after {leg.name} these come too near: {wording.touches(touches)}",
+            {"touches": touch_facts(touches)},
+        )
+    return found

@@ -1,0 +1,236 @@
+"""Plans lines and arcs of a link: LIN, CIRC and MoveRelative, each verified."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from harness.core.errors import PlanningFailed
+from harness.core.spatial import SE3
+from harness.core.trajectory import JointTrajectory
+from harness.core.types import FloatArray
+from harness.planning.cartesian.circular_path import Arc
+from harness.planning.cartesian.line_goals import end_pose
+from harness.planning.cartesian.linear_path import Line
+from harness.planning.cartesian.link_timing import (
+    CARTESIAN_TOLERANCE,
+    LinkRates,
+    link_motion,
+    time_on_path,
+)
+from harness.planning.cartesian.tracing import CODES, STEP_LENGTH, LinkPath, Trace, deviation, trace
+from harness.planning.goals.goals import find_goals
+from harness.planning.ik.kinematics import PinocchioKinematics, meets_tolerance
+from harness.planning.task import PlanningTask
+from harness.planning.timing.limits import TimingError
+from harness.planning.timing.profiles import resting
+from harness.ports import ArcPoint, Goal, MotionPlan, PoseGoal
+
+RELATIVE_STEP = 0.002
+"""Step of a motion that goes as far as it can [m]."""
+
+POSITION_DEVIATION = 1e-4
+"""How far the timed motion may leave its line or circle [m]."""
+ORIENTATION_DEVIATION = 1e-3
+"""How far it may be turned away from where it should be [rad]."""
+
+
+class LinkMotions:
+    """Lines and arcs for one planning call."""
+
+    def __init__(self, kinematics: PinocchioKinematics, task: PlanningTask) -> None:
+        self.kinematics = kinematics
+        self.task = task
+
+    def linear(self, goal: Goal) -> MotionPlan:
+        """Pilz's LIN."""
+        target = end_pose(self.kinematics, self.task, self.task.start, goal)
+        line = Line.between(target.link, self.pose(self.task.start, target.link), target.pose)
+        return self._to_end(line, target, "LIN", {})
+
+    def circular(self, goal: Goal, point: ArcPoint) -> MotionPlan:
+        """Pilz's CIRC."""
+        target = end_pose(self.kinematics, self.task, self.task.start, goal)
+        arc = arc_to(target, self.pose(self.task.start, target.link), point)
+        circle = {"center": arc.center.tolist(), "radius": arc.radius, "sweep": arc.sweep}
+        return self._to_end(arc, target, "CIRC", circle)
+
+    def relative(self, link: str, twist: FloatArray, distances: tuple[float, float]) -> MotionPlan:
+        """Task Constructor's MoveRelative: as far as goes between two distances."""
+        task, (least, most) = self.task, distances
+        twist = np.asarray(twist, dtype=float)
+        line = Line(link, self.pose(task.start, link), most * twist[:3], most * twist[3:])
+        step = RELATIVE_STEP if least < most else STEP_LENGTH
+        traced = trace(line, task.checker, task.start, step)
+        reached = traced.share * most
+        if not traced.reached_end and reached < least:
+            unit, scale = ("mm", 1000.0) if np.any(twist[:3]) else ("°", float(np.degrees(1.0)))
+            raise PlanningFailed(
+                "PLANNING_FAILED",
+                f"{link} gets {scale * reached:.1f} of {scale * least:.1f} {unit} far: "
+                f"{traced.stop}",
+                {"reached": reached, "least": least, **_stopped(traced)},
+            )
+        explanation = {
+            "lowered_margins": list(task.checker.lowered),
+            "distance": reached,
+            "stopped_by": traced.stop,
+        }
+        if not traced.reached_end:
+            line = line.part(traced.share)
+            traced = trace(line, task.checker, task.start, step)
+            if not traced.reached_end:
+                raise path_failed(line, traced)
+        return self._timed(line, traced, "move_relative", explanation, {"distance": reached})
+
+    def solutions(self, start: FloatArray, target: PoseGoal) -> dict[str, Any]:
+        """What became of the solutions of inverse kinematics of a way's end.
+
+        Raises:
+            PlanningFailed: Nothing free reaches it.
+        """
+        task = self.task
+        whole = task.space.whole(start)
+        found = find_goals(self.kinematics, task.checker, whole, target, task.options.seed)
+        return {**found.explanation, "lowered_margins": list(task.checker.lowered)}
+
+    def pose(self, positions: FloatArray, link: str) -> SE3:
+        """T_world_link at group positions."""
+        return self.kinematics.link_pose(self.task.space.whole(positions), link)
+
+    def followed(self, path: LinkPath, target: PoseGoal, start: FloatArray) -> Trace:
+        """A way traced to its end, which must be the target.
+
+        Raises:
+            PlanningFailed: Something stops it, or the arm's end pose is not the target's.
+        """
+        traced = trace(path, self.task.checker, start)
+        if not traced.reached_end:
+            raise path_failed(path, traced)
+        end = self.pose(traced.positions[-1], target.link)
+        if not meets_tolerance(target, end):
+            shift, angle = target.pose.distance_to(end)
+            raise PlanningFailed(
+                "NO_IK_SOLUTION",
+                f"at the end of the {path.name} {target.link} is {1000 * shift:.1f} mm and "
+                f"{angle:.4f} rad from the goal",
+                {"position_error": shift, "orientation_error": angle},
+            )
+        return traced
+
+    def _to_end(
+        self, path: LinkPath, target: PoseGoal, kind: str, explanation: dict[str, Any]
+    ) -> MotionPlan:
+        explanation = {**self.solutions(self.task.start, target), **explanation}
+        traced = self.followed(path, target, self.task.start)
+        return self._timed(path, traced, kind, explanation, {})
+
+    def _timed(
+        self,
+        path: LinkPath,
+        traced: Trace,
+        kind: str,
+        explanation: dict[str, Any],
+        result: Mapping[str, Any],
+    ) -> MotionPlan:
+        task = self.task
+        if task.options.path_only:
+            return task.jump(traced.positions[-1], explanation, result)
+        rates = LinkRates.of(task.options.cartesian_limits, task.options)
+        trajectory = self.time(path, traced, rates)
+        task.accept(trajectory, traced.positions[-1], f"the motion on the {path.name}")
+        statistics = task.statistics(kind, trajectory, traced.positions)
+        statistics |= self.check_path(path, trajectory)
+        statistics |= self.check_rates(path.link, trajectory, rates)
+        return MotionPlan(trajectory, statistics, explanation, result)
+
+    def time(self, path: LinkPath, traced: Trace, rates: LinkRates) -> JointTrajectory:
+        """A whole trace with its times.
+
+        Raises:
+            PlanningFailed: INVALID_MOTION_PLAN, when the limits cannot be kept.
+        """
+        names = self.task.space.joint_names
+        if path.length < 1e-9 and path.angle < 1e-9:
+            return resting(names, traced.positions[0])
+        try:
+            return time_on_path(path, traced, names, self.task.limits, rates)
+        except TimingError as problem:
+            raise PlanningFailed("INVALID_MOTION_PLAN", str(problem), problem.facts) from problem
+
+    def check_path(self, path: LinkPath, trajectory: JointTrajectory) -> dict[str, float]:
+        """How far a trajectory's link leaves its way.
+
+        Raises:
+            PlanningFailed: INVALID_MOTION_PLAN, more than it may.
+        """
+        shift, turn = deviation(
+            path,
+            trajectory,
+            lambda positions: self.pose(positions, path.link),
+            pitch_only=self.task.space.dof < 6,
+        )
+        if shift > POSITION_DEVIATION or turn > ORIENTATION_DEVIATION:
+            raise PlanningFailed(
+                "INVALID_MOTION_PLAN",
+                f"{path.link} would leave its {path.name} by {1000 * shift:.3f} mm and "
+                f"{turn:.5f} rad",
+                {"position_deviation": shift, "orientation_deviation": turn},
+            )
+        return {"position_deviation": shift, "orientation_deviation": turn}
+
+    def check_rates(
+        self, link: str, trajectory: JointTrajectory, rates: LinkRates
+    ) -> dict[str, float]:
+        """The link's largest speeds and acceleration on a trajectory.
+
+        Raises:
+            PlanningFailed: INVALID_MOTION_PLAN, when they exceed the Cartesian limits.
+        """
+        motion = link_motion(trajectory, lambda positions: self.pose(positions, link))
+        if motion.excess(rates, turns=self.task.space.dof >= 6) > 1 + CARTESIAN_TOLERANCE:
+            raise PlanningFailed(
+                "INVALID_MOTION_PLAN",
+                f"{link} would move at {motion.velocity:.4f} m/s (at most {rates.velocity:.4f}), "
+                f"with {motion.acceleration:.4f} m/s^2 (at most {rates.acceleration:.4f}), turning "
+                f"at {motion.turning:.4f} rad/s (at most {rates.turning:.4f})",
+            )
+        return {
+            "link_velocity": motion.velocity,
+            "link_acceleration": motion.acceleration,
+            "link_turning": motion.turning,
+        }
+
+
+def arc_to(target: PoseGoal, start: SE3, point: ArcPoint) -> Arc:
+    """The arc from a pose to a target.
+
+    Raises:
+        PlanningFailed: INVALID_MOTION_PLAN, when there is no such circle.
+    """
+    make = Arc.through if point.kind == "interim" else Arc.about
+    return make(target.link, start, point.position, target.pose)
+
+
+def path_failed(path: LinkPath, traced: Trace) -> PlanningFailed:
+    """The failure of a way that was not followed to its end."""
+    kind = {"line": "straight line", "arc": "arc"}.get(path.name, path.name)
+    amount = (
+        f"its {1000 * path.length:.1f} mm"
+        if path.length > 1e-9
+        else f"its {np.degrees(path.angle):.1f}°"
+    )
+    return PlanningFailed(
+        CODES[traced.reason],
+        f"{path.link} can follow the {kind} for {100 * traced.share:.0f} % of {amount}: "
+        f"{traced.stop}",
+        {"free_share": traced.share, **_stopped(traced)},
+    )
+
+
+def _stopped(traced: Trace) -> dict[str, Any]:
+    """What stopped a trace, and the group's positions there."""
+    end = traced.positions[-1].tolist()
+    return {"reason": traced.reason, "joint_positions": end, **traced.facts}

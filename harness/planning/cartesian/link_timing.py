@@ -1,0 +1,192 @@
+"""Times a line or an arc: the link's velocity a trapezoid, slower where a joint cannot follow."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from harness.core.spatial import SE3
+from harness.core.trajectory import JointTrajectory
+from harness.core.types import FloatArray
+from harness.planning.cartesian.splines import uniform_spline
+from harness.planning.cartesian.tracing import LinkPath, Trace
+from harness.planning.timing.limits import (
+    Limits,
+    TimingError,
+    largest_jerk,
+    slowed_to_limits,
+    time_grid,
+)
+from harness.planning.timing.profiles import Curve, Trapezoid, on_grid, sample, smoothed
+from harness.ports import CartesianLimits, PlanningOptions
+
+MAX_TRANSLATION_VELOCITY = 1.0
+"""pilz_cartesian_limits of ur_moveit_config [m/s]."""
+MAX_TRANSLATION_ACCELERATION = 2.25
+"""[m/s^2]"""
+MAX_ROTATION_VELOCITY = 1.57
+"""[rad/s]; the acceleration is in proportion, as Pilz has it."""
+
+CENTRIPETAL_SHARE = 0.7
+"""Of the link's acceleration that the speed on an arc may take; the rest is for its change."""
+
+CARTESIAN_TOLERANCE = 5e-3
+"""Share by which a final sample may exceed a Cartesian limit."""
+
+
+Profile = tuple[FloatArray, ...]
+"""A parameter, its rate and its acceleration, (N,) each."""
+
+_MOST_EASINGS = 30
+
+
+@dataclass(frozen=True)
+class LinkRates:
+    """Cartesian limits with every number known.
+
+    Attributes:
+        velocity: [m/s]
+        acceleration: [m/s^2]
+        turning: [rad/s]
+        turning_acceleration: [rad/s^2]
+    """
+
+    velocity: float
+    acceleration: float
+    turning: float
+    turning_acceleration: float
+
+    @classmethod
+    def of(cls, limits: CartesianLimits, options: PlanningOptions) -> LinkRates:
+        """What was given as it is; the rest is Pilz's default times the scaling factors."""
+        speed, push = options.velocity_scaling, options.acceleration_scaling
+        velocity = limits.translation_velocity or speed * MAX_TRANSLATION_VELOCITY
+        acceleration = limits.translation_acceleration or push * MAX_TRANSLATION_ACCELERATION
+        turning = limits.rotation_velocity or speed * MAX_ROTATION_VELOCITY
+        return cls(velocity, acceleration, turning, acceleration / velocity * turning)
+
+    def on(self, path: LinkPath) -> tuple[float, float]:
+        """Largest rate of a way's parameter and of that rate [1/s, 1/s^2].
+
+        On an arc the acceleration towards its centre is kept within the limit together with the
+        one along it, which Pilz leaves out.
+        """
+        speed = min(
+            self.velocity, float(np.sqrt(CENTRIPETAL_SHARE * self.acceleration * path.radius))
+        )
+        along = float(np.sqrt(self.acceleration**2 - (speed**2 / path.radius) ** 2))
+        rate = min(speed / max(path.length, 1e-9), self.turning / max(path.angle, 1e-9))
+        change = min(
+            along / max(path.length, 1e-9), self.turning_acceleration / max(path.angle, 1e-9)
+        )
+        return rate, change
+
+
+def time_on_path(
+    path: LinkPath,
+    traced: Trace,
+    joint_names: tuple[str, ...],
+    limits: Limits,
+    rates: LinkRates,
+) -> JointTrajectory:
+    """Time a whole trace.
+
+    Args:
+        path: What was traced, to its end.
+        traced: The joint positions.
+        joint_names: Of the columns.
+        limits: Of the joints, scaled.
+        rates: Of the link.
+
+    Raises:
+        TimingError: The limits cannot be kept.
+    """
+    rate, change = rates.on(path)
+    spline = uniform_spline(traced.positions)
+    for _ in range(2):  # gentler ramps and a lower middle, before everything is slowed down
+        profile = Trapezoid.fastest(1.0, rate, change)
+        _, velocities, accelerations = _along(spline, profile)(time_grid(profile.duration)[:-1])
+        rate /= max(1.0, float(np.max(np.abs(velocities) / limits.velocity)))
+        change /= max(1.0, float(np.max(np.abs(accelerations) / limits.acceleration)))
+    profile = Trapezoid.fastest(1.0, rate, change)
+    curve, total = _gentle(spline, profile, limits)
+    return sample(joint_names, curve, total)
+
+
+def _gentle(spline: Curve, profile: Trapezoid, limits: Limits) -> tuple[Curve, float]:
+    """The spline run through by the profile, whose ramps are eased until the jerk is kept.
+
+    Easing the profile, and not the joints' motion, keeps the link on its way.
+    """
+    curve, total = slowed_to_limits(_along(spline, profile), profile.duration, limits)
+    if not np.isfinite(limits.jerk):
+        return curve, total
+
+    def rows(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        s, rate, change = profile(times)
+        return s[:, None], rate[:, None], change[:, None]
+
+    window = on_grid(float(np.abs(curve(time_grid(total))[2]).max()) / limits.jerk)
+    for _ in range(_MOST_EASINGS):
+        eased = smoothed(rows, profile.duration, window)
+
+        def columns(times: FloatArray, eased: Curve = eased) -> Profile:
+            return tuple(part[:, 0] for part in eased(times))
+
+        length = profile.duration + window
+        curve, total = slowed_to_limits(_along(spline, columns), length, limits)
+        jerk = largest_jerk(curve, total)
+        if jerk <= limits.jerk:
+            return curve, total
+        window = on_grid(window * min(max(jerk / limits.jerk, 1.1), 2.0))
+    raise TimingError(f"the jerk stays above {limits.jerk:g} however long it is spread")
+
+
+def _along(spline: Curve, profile: Callable[[FloatArray], Profile]) -> Curve:
+    """A spline over its parameter, as a curve over time."""
+
+    def curve(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        s, ds, dds = (column[:, None] for column in profile(times))
+        value, slope, bend = spline(s[:, 0])
+        return value, slope * ds, slope * dds + bend * ds**2
+
+    return curve
+
+
+@dataclass(frozen=True)
+class LinkMotion:
+    """The largest speeds and accelerations of a link between a trajectory's samples (SI)."""
+
+    velocity: float
+    acceleration: float
+    turning: float
+
+    def excess(self, rates: LinkRates, *, turns: bool) -> float:
+        """How many times slower the motion must be; at most 1 when it keeps the limits.
+
+        The turn counts with `turns` alone: that of an arm of fewer joints is not its own to choose.
+        """
+        return max(
+            self.velocity / rates.velocity,
+            float(np.sqrt(self.acceleration / rates.acceleration)),
+            self.turning / rates.turning if turns else 0.0,
+        )
+
+
+def link_motion(trajectory: JointTrajectory, pose_of: Callable[[FloatArray], SE3]) -> LinkMotion:
+    """What a link does on a trajectory, from the differences of its poses alone."""
+    poses = [pose_of(positions) for positions in trajectory.positions]
+    steps = np.diff(trajectory.times)
+    places = np.array([pose.translation for pose in poses])
+    velocities = np.diff(places, axis=0) / steps[:, None]
+    turns = [first.distance_to(second)[1] for first, second in pairwise(poses)]
+    between = 0.5 * (steps[1:] + steps[:-1])[:, None]
+    changes = np.linalg.norm(np.diff(velocities, axis=0) / between, axis=1)
+    return LinkMotion(
+        float(np.linalg.norm(velocities, axis=1).max()),
+        float(changes.max()) if len(changes) else 0.0,
+        float((np.array(turns) / steps).max()),
+    )

@@ -1,0 +1,71 @@
+"""Plans Pilz's motion sequence: PTP, LIN and CIRC, blended into each other; all or nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from harness.core.errors import PlanningFailed
+from harness.core.types import FloatArray
+from harness.planning.cartesian.leg import Leg
+from harness.planning.cartesian.leg_run import runs_of, time_runs
+from harness.planning.cartesian.line_goals import end_pose
+from harness.planning.cartesian.linear_path import Line
+from harness.planning.cartesian.link_motion import LinkMotions, arc_to
+from harness.planning.cartesian.link_timing import LinkRates
+from harness.planning.goals.goals import find_goals
+from harness.ports import JointGoal, MotionPlan, SequenceItem
+
+
+def plan_items(motions: LinkMotions, items: Sequence[SequenceItem]) -> MotionPlan:
+    """A verified motion through all items.
+
+    Raises:
+        PlanningFailed: The first item that cannot be carried out; says which.
+    """
+    task = motions.task
+    legs: list[Leg] = []
+    start = task.start
+    for index, item in enumerate(items):
+        name = f"item {index + 1} ({item.kind})"
+        try:
+            leg = _leg(motions, item, start)
+        except PlanningFailed as failure:
+            facts = {**failure.facts, "item": index}
+            raise PlanningFailed(failure.code, f"{name}: {failure.message}", facts) from failure
+        leg.name = name
+        legs.append(leg)
+        start = leg.positions[-1]
+    runs = runs_of(legs, [item.blend_radius for item in items[:-1]], motions)
+    result = {"items": len(items), "stops": len(runs) - 1, "blends": len(items) - len(runs)}
+    explanation = {"lowered_margins": list(task.checker.lowered)}
+    end = legs[-1].positions[-1]
+    if task.options.path_only:
+        return task.jump(end, explanation, result)
+    trajectory = time_runs(runs, motions)
+    task.accept(trajectory, end, "the sequence")
+    waypoints = np.concatenate([leg.positions for leg in legs])
+    return MotionPlan(
+        trajectory, task.statistics("sequence", trajectory, waypoints), explanation, result
+    )
+
+
+def _leg(motions: LinkMotions, item: SequenceItem, start: FloatArray) -> Leg:
+    task, kinematics = motions.task, motions.kinematics
+    if item.kind == "ptp":
+        whole = task.space.whole(start)
+        found = find_goals(kinematics, task.checker, whole, item.goal, task.options.seed)
+        link = kinematics.description.tcp_link
+        link = link if isinstance(item.goal, JointGoal) else item.goal.link
+        return Leg.straight(link, task.checker, found.positions[0], start)
+    target = end_pose(kinematics, task, start, item.goal)
+    now = motions.pose(start, target.link)
+    if item.point is None:
+        path = Line.between(target.link, now, target.pose)
+    else:
+        path = arc_to(target, now, item.point)
+    motions.solutions(start, target)
+    traced = motions.followed(path, target, start)
+    rates = LinkRates.of(item.cartesian_limits, task.options)
+    return Leg(target.link, task.checker, traced.positions, path, rates)

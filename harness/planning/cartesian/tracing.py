@@ -1,0 +1,273 @@
+"""Follows a link's path through space with the joints, as far as possible."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+
+from harness.core.errors import ErrorCode
+from harness.core.spatial import SE3
+from harness.core.trajectory import JointTrajectory
+from harness.core.types import FloatArray
+from harness.planning.cartesian.splines import uniform_spline
+from harness.planning.collision import wording
+from harness.planning.collision.checker import MotionChecker, touch_facts
+from harness.planning.ik.numeric import LinkGoal, LinkTask, pitch_of
+from harness.ports import JumpThreshold, PoseGoal, PositionGoal
+
+STEP_LENGTH = 0.005
+"""Distance between the poses that are solved on a way [m]."""
+STEP_ANGLE = 0.02
+"""Turn between them [rad]."""
+STEP_SWEEP = 0.1
+"""Angle of an arc between them [rad]."""
+
+JUMP = JumpThreshold(revolute=0.15, prismatic=0.05)
+"""A joint that moves farther from one pose to the next has jumped, or is at a singularity."""
+
+CODES: dict[str, ErrorCode] = {
+    "unreachable": "NO_IK_SOLUTION",
+    "limit": "NO_IK_SOLUTION",
+    "jump": "PLANNING_FAILED",
+    "collision": "INVALID_MOTION_PLAN",
+}
+"""Failure of a way that must be followed to its end, by the reason of the stop."""
+
+STRIDES = (1, 2, 4, 8)
+"""How many poses are tried for one step, until a curve through them stays on the way."""
+
+OFF_BETWEEN = 3e-5
+"""How far the curve may leave it in the middle between two poses [m]."""
+
+_FEWEST_STEPS = 8
+_SOLVED = 1e-8  # [m, rad]
+
+
+class LinkPath(Protocol):
+    """A link's way through space, its parameter running evenly from 0 to 1."""
+
+    link: str
+    name: str
+    start: SE3
+
+    @property
+    def length(self) -> float:
+        """Of the translation [m]."""
+        ...
+
+    @property
+    def angle(self) -> float:
+        """Of the turn [rad]."""
+        ...
+
+    @property
+    def radius(self) -> float:
+        """Of the curvature [m]."""
+        ...
+
+    def pose(self, parameter: float) -> SE3:
+        """T_world_link at a parameter."""
+        ...
+
+    def nearest(self, pose: SE3) -> tuple[float, float]:
+        """The parameter nearest to a pose's origin, and the distance there [m]."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """Joint positions along a way, as far as they go.
+
+    Attributes:
+        parameters: Even, from 0; ends at 1 when nothing stopped it, shape (K,).
+        positions: Group positions, shape (K, dof).
+        stop: Why the trace ends before the path; empty when it reaches the end.
+        reason: `end`, `unreachable`, `limit`, `jump` or `collision`.
+        facts: The numbers of `stop`.
+        stride: The number of poses per requested step.
+    """
+
+    parameters: FloatArray
+    positions: FloatArray
+    stop: str = ""
+    reason: str = "end"
+    facts: dict[str, Any] = field(default_factory=dict)
+    stride: int = 1
+
+    @property
+    def share(self) -> float:
+        """How much of the way was traced."""
+        return float(self.parameters[-1])
+
+    @property
+    def reached_end(self) -> bool:
+        """Whether nothing stopped it."""
+        return self.reason == "end"
+
+    @property
+    def largest_step(self) -> float:
+        """Farthest that a joint moves within one step [rad or m]."""
+        stride = min(self.stride, len(self.positions) - 1)
+        if stride < 1:
+            return 0.0
+        return float(np.abs(self.positions[stride:] - self.positions[:-stride]).max())
+
+
+def trace(
+    path: LinkPath,
+    checker: MotionChecker,
+    start: FloatArray,
+    step_length: float = STEP_LENGTH,
+    jump: JumpThreshold = JUMP,
+) -> Trace:
+    """Follow a way from the start's branch of inverse kinematics until its end, or what stops it.
+
+    Arms with fewer than six joints keep position and pitch; their yaw follows from the position.
+
+    Where a curve through the joint positions leaves the way between them, as near a singularity,
+    the poses are taken nearer to each other; the trace ends where that does not help.
+
+    Args:
+        path: Where the link goes.
+        checker: Of the states on it.
+        start: Group positions at the way's start.
+        step_length: Between the poses that are solved [m].
+        jump: What no joint may exceed from one pose to the next.
+    """
+    space = checker.space
+    steps = max(path.length / min(step_length, STEP_SWEEP * path.radius), path.angle / STEP_ANGLE)
+    count = max(_FEWEST_STEPS, int(np.ceil(steps)))
+    largest = np.where(space.wraps, jump.revolute, jump.prismatic)
+    traced, off = _attempt(path, checker, start, count, largest, 1), np.zeros(0)
+    for stride in STRIDES:
+        if stride > 1:
+            traced = _attempt(path, checker, start, count, largest, stride)
+        if len(traced.positions) <= _FEWEST_STEPS:
+            return traced
+        off = _off_between(path, traced, checker)
+        if np.all(off <= OFF_BETWEEN):
+            return traced
+    kept = max(1, int(np.argmax(off > OFF_BETWEEN)) - _FEWEST_STEPS)
+    return Trace(
+        traced.parameters[:kept],
+        traced.positions[:kept],
+        f"the joints cannot turn as fast as the {path.name} requires (the arm is at or near a "
+        "singularity)",
+        "jump",
+        {"deviation": float(off.max())},
+        traced.stride,
+    )
+
+
+def _attempt(
+    path: LinkPath,
+    checker: MotionChecker,
+    start: FloatArray,
+    count: int,
+    largest: FloatArray,
+    stride: int,
+) -> Trace:
+    """A trace with `stride` poses for each of `count` steps."""
+    space = checker.space
+    parameters = np.linspace(0.0, 1.0, count * stride + 1)
+    positions = [np.asarray(start, dtype=float)]
+    for number in range(1, len(parameters)):
+        goal = link_goal(path.link, path.pose(float(parameters[number])), space.dof)
+        task = LinkTask(space, goal)
+        guess = 2 * positions[-1] - positions[-2] if number > 1 else positions[-1]
+        found, error = task.polish(guess, iterations=20)
+        stopped = _stopped(path, checker, positions[-1], found, error, largest / stride)
+        if stopped is not None:
+            reason, message, facts = stopped
+            reached = parameters[:number]
+            return Trace(reached, np.array(positions), message, reason, facts, stride)
+        positions.append(found)
+    return Trace(parameters, np.array(positions), stride=stride)
+
+
+def _off_between(path: LinkPath, traced: Trace, checker: MotionChecker) -> FloatArray:
+    """How far a spline through a trace leaves the way between neighbouring poses [m], (K - 1,)."""
+    middles = np.arange(len(traced.positions) - 1) + 0.5
+    between = uniform_spline(traced.positions)(middles / (len(traced.positions) - 1))[0]
+    space = checker.space
+    return np.array(
+        [
+            path.nearest(space.robot.link_pose(space.whole(positions), path.link))[1]
+            for positions in between
+        ]
+    )
+
+
+def link_goal(link: str, pose: SE3, dof: int) -> LinkGoal:
+    """What the joints must do for a pose: all of it, or its position and pitch."""
+    if dof >= 6:
+        return PoseGoal(link, pose)
+    return PositionGoal(link, pose.translation, pitch_of(pose.rotation))
+
+
+def _stopped(
+    path: LinkPath,
+    checker: MotionChecker,
+    previous: FloatArray,
+    found: FloatArray,
+    error: float,
+    largest: FloatArray,
+) -> tuple[str, str, dict[str, Any]] | None:
+    space = checker.space
+    if error > _SOLVED:
+        message = f"the arm reaches no farther on this {path.name}"
+        return "unreachable", message, {"residual": error}
+    outside = np.maximum(space.lower - found, found - space.upper)
+    worst = int(np.argmax(outside))
+    if outside[worst] > 1e-9:
+        name = space.joint_names[worst]
+        limit = space.lower[worst] if found[worst] < space.lower[worst] else space.upper[worst]
+        return (
+            "limit",
+            f"{name} meets its limit {limit:.4f}",
+            {"joint": name, "limit": float(limit)},
+        )
+    jump = np.abs(found - previous)
+    fastest = int(np.argmax(jump / largest))
+    if jump[fastest] > largest[fastest]:
+        name = space.joint_names[fastest]
+        unit = "rad" if space.wraps[fastest] else "m"
+        message = (
+            f"{name} would jump by {jump[fastest]:.2f} {unit} from one point of the {path.name} to "
+            "the next (the arm is at or near a singularity)"
+        )
+        return "jump", message, {"joint": name, "jump": float(jump[fastest])}
+    if not checker.state_free(found):
+        touches = checker.touches(found)
+        message = f"then these come too near: {wording.touches(touches)}"
+        return "collision", message, {"touches": touch_facts(touches)}
+    return None
+
+
+def deviation(
+    path: LinkPath,
+    trajectory: JointTrajectory,
+    pose_of: Callable[[FloatArray], SE3],
+    *,
+    pitch_only: bool,
+) -> tuple[float, float]:
+    """Largest distance [m] and turn [rad] of a trajectory's link from its way.
+
+    With `pitch_only` (arms of fewer than six joints) the turn is the difference of pitch.
+    """
+    worst_shift, worst_turn = 0.0, 0.0
+    for positions in trajectory.positions:
+        pose = pose_of(positions)
+        share, shift = path.nearest(pose)
+        expected = path.pose(min(max(share, 0.0), 1.0))
+        if pitch_only:
+            turn = abs(pitch_of(pose.rotation) - pitch_of(expected.rotation))
+        else:
+            turn = expected.distance_to(pose)[1]
+        worst_shift, worst_turn = max(worst_shift, shift), max(worst_turn, turn)
+    return worst_shift, worst_turn

@@ -1,0 +1,1 @@
+"""Collision checks of states and edges, with clearance certificates."""

@@ -1,0 +1,177 @@
+"""Which links of a robot touch each other at random configurations: pairs that may be allowed.
+
+The kinds are those of MoveIt's Setup Assistant: adjacent links, links that touch where the robot
+starts, always, or in no sample.
+"""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import pinocchio as pin
+
+from harness.core.types import BoolArray, FloatArray
+from harness.planning.collision.geometry import geometry_object
+from harness.planning.model.robot_model import RobotModel
+from harness.robot.description import Joint, RobotDescription
+from harness.robot.srdf.srdf import link_pair
+from harness.robot.tree import carriers
+
+Reason = Literal["Adjacent", "Default", "Always", "Never"]
+REASONS: tuple[Reason, ...] = ("Adjacent", "Default", "Always", "Never")
+
+ALWAYS = 0.95
+"""Part of the samples from which a pair touches always, as in the Setup Assistant."""
+
+WORLD = "world"
+
+
+@dataclass(frozen=True, eq=False)
+class SelfTouches:
+    """Which links touched at which configurations.
+
+    Attributes:
+        description: The robot.
+        pairs: Links that move against each other, sorted names; allowed pairs included.
+        touched: Shape (N, P): whether a pair touched in a sample.
+        at_start: Shape (P,): whether it touches where the robot starts.
+    """
+
+    description: RobotDescription
+    pairs: tuple[tuple[str, str], ...]
+    touched: BoolArray
+    at_start: BoolArray
+
+    @property
+    def is_checked(self) -> BoolArray:
+        """Which pairs the planner checks, shape (P,)."""
+        allowed = self.description.allowed_collisions
+        across = _across(self.description)
+        return np.array([pair not in allowed and pair not in across for pair in self.pairs], bool)
+
+    @property
+    def is_free(self) -> BoolArray:
+        """In which samples no checked pair touches, shape (N,)."""
+        return np.logical_not(self.touched[:, self.is_checked].any(axis=1))
+
+    @property
+    def rate(self) -> float:
+        """Part of the samples in which the robot collides with itself."""
+        return float(1.0 - self.is_free.mean())
+
+    def most_frequent(self, count: int) -> tuple[tuple[tuple[str, str], float], ...]:
+        """Checked pairs that touch most often, with the part of the samples in which they do."""
+        means = np.where(self.is_checked, self.touched.mean(axis=0), 0.0)
+        order = np.argsort(-means, kind="stable")[:count]
+        return tuple((self.pairs[i], float(means[i])) for i in order if means[i] > 0)
+
+    def proposed(self) -> dict[tuple[str, str], Reason]:
+        """Pairs that need not be checked, with the reason; adjacent ones first."""
+        reasons = {pair: self._reason(index) for index, pair in enumerate(self.pairs)}
+        return {
+            pair: kind for kind in REASONS for pair, reason in reasons.items() if reason == kind
+        }
+
+    def _reason(self, index: int) -> Reason | None:
+        if self.pairs[index] in _neighbours(self.description):
+            return "Adjacent"
+        if self.at_start[index]:
+            return "Default"
+        mean = float(self.touched[:, index].mean())
+        return "Always" if mean >= ALWAYS else "Never" if mean == 0 else None
+
+
+def random_positions(
+    description: RobotDescription, samples: int, rng: np.random.Generator
+) -> FloatArray:
+    """Joint positions inside the limits, mimic joints following, shape (samples, n).
+
+    Turning joints are drawn from one turn at most, prismatic ones without limits from one metre.
+    """
+    ends = np.array([_ends(joint) for joint in description.movable_joints]).reshape(-1, 2)
+    drawn = rng.uniform(ends[:, 0], ends[:, 1], size=(samples, len(ends)))
+    return np.array([description.with_mimics(row) for row in drawn]).reshape(samples, len(ends))
+
+
+def _ends(joint: Joint) -> tuple[float, float]:
+    if joint.kind != "prismatic":
+        return max(joint.lower, -np.pi), min(joint.upper, np.pi)
+    lower = joint.lower if np.isfinite(joint.lower) else -0.5
+    return lower, joint.upper if np.isfinite(joint.upper) else lower + 1.0
+
+
+def self_touches(description: RobotDescription, positions: FloatArray) -> SelfTouches:
+    """Look for touching links at joint positions, description order, shape (N, n)."""
+    checker = _Checker(description)
+    touched = np.array([checker.touching(row) for row in positions], dtype=bool)
+    at_start = checker.touching(description.start_positions())
+    shape = (len(positions), len(checker.pairs))
+    return SelfTouches(description, checker.pairs, touched.reshape(shape), at_start)
+
+
+class _Checker:
+    """All shapes of a robot, and the pairs of links that can collide."""
+
+    def __init__(self, description: RobotDescription) -> None:
+        self._robot = RobotModel(description)
+        self._geometry = pin.GeometryModel()
+        shaped: dict[str, list[int]] = {}
+        for link in description.links:
+            for shape in link.collisions:
+                name = f"{link.name} {self._geometry.ngeoms}"
+                joint, placement = (
+                    self._robot.parent_joint(link.name),
+                    self._robot.placement(link.name),
+                )
+                placed = geometry_object(name, joint, placement, shape)
+                index = self._geometry.addGeometryObject(placed)
+                shaped.setdefault(link.name, []).append(index)
+        carrier = carriers(description.joints, WORLD)
+        names = list(shaped)
+        pairs = [
+            (first, second)
+            for place, first in enumerate(names)
+            for second in names[place + 1 :]
+            if carrier[first] != carrier[second]
+        ]
+        self.pairs = tuple(link_pair(*pair) for pair in pairs)
+        self._owner: list[int] = []
+        for number, (first, second) in enumerate(pairs):
+            for one in shaped[first]:
+                for other in shaped[second]:
+                    self._geometry.addCollisionPair(pin.CollisionPair(one, other))
+                    self._owner.append(number)
+        self._data = pin.GeometryData(self._geometry)
+
+    def touching(self, joint_positions: FloatArray) -> BoolArray:
+        """Which pairs touch, in the order of `pairs`."""
+        model, data = self._robot.model, self._robot.data
+        configuration = self._robot.configuration(np.asarray(joint_positions))
+        pin.computeCollisions(model, data, self._geometry, self._data, configuration, False)
+        found = np.zeros(len(self.pairs), dtype=bool)
+        for owner, result in zip(self._owner, self._data.collisionResults, strict=True):
+            found[owner] |= result.isCollision()
+        return found
+
+
+def _across(description: RobotDescription) -> frozenset[tuple[str, str]]:
+    """Pairs of links that a joint connects."""
+    return frozenset(link_pair(joint.parent, joint.child) for joint in description.joints)
+
+
+def _neighbours(description: RobotDescription) -> frozenset[tuple[str, str]]:
+    """Pairs with one joint between them; links without a shape are looked through."""
+    shaped = {link.name for link in description.links if link.collisions}
+    before = {joint.child: joint.parent for joint in description.joints}
+    pairs: set[tuple[str, str]] = set()
+    for first in shaped:
+        above = before.get(first)
+        while above is not None and above not in shaped:
+            above = before.get(above)
+        if above is not None:
+            pairs.add(link_pair(first, above))
+    return frozenset(pairs)

@@ -1,0 +1,343 @@
+"""The planning scene on Pinocchio and Coal: robot, objects, what is attached, what may touch."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import pinocchio as pin
+
+from harness.core.errors import StepFailed
+from harness.core.geometry import Plane, Shape
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.core.world import WorldObject
+from harness.planning.collision.geometry import geometry_object
+from harness.planning.model.robot_model import RobotModel
+from harness.ports import Touch
+from harness.robot.description import RobotDescription
+
+ROBOT = "robot"
+"""Stands for every link of the robot in allowed pairs."""
+
+
+@dataclass(frozen=True, eq=False)
+class SceneObject:
+    """An object of the scene.
+
+    Attributes:
+        shapes: On the body.
+        pose: T_world_object, or T_link_object while attached.
+        link: What it is attached to; None while it stands in the world.
+        touch_links: Links it may touch while attached.
+        mass: [kg]
+        center_of_mass: In the object [m], shape (3,).
+        inertia: About the centre of mass, object axes, shape (3, 3).
+    """
+
+    shapes: tuple[Shape, ...]
+    pose: SE3
+    link: str | None = None
+    touch_links: frozenset[str] = frozenset()
+    mass: float = 0.0
+    center_of_mass: FloatArray = field(default_factory=lambda: np.zeros(3))
+    inertia: FloatArray = field(default_factory=lambda: np.zeros((3, 3)))
+
+
+@dataclass(frozen=True, eq=False)
+class Payload:
+    """What an attached object adds to the link that carries it; as in SceneObject."""
+
+    name: str
+    link: str
+    pose: SE3
+    mass: float
+    center_of_mass: FloatArray
+    inertia: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A link or an object as a set of geometries that move together.
+
+    Attributes:
+        name: Of the link or the object.
+        joint: Pinocchio's joint it moves with; 0 stands still.
+        geometries: Indices into the geometry model.
+        shapes: The same, placed on the joint.
+        is_link: A link of the robot.
+        is_held: An attached object.
+    """
+
+    name: str
+    joint: int
+    geometries: tuple[int, ...]
+    shapes: tuple[Shape, ...]
+    is_link: bool
+    is_held: bool
+
+
+@dataclass(frozen=True, eq=False)
+class BodyPair:
+    """Two bodies that are checked against each other.
+
+    Attributes:
+        first: Name; the robot's link or the held object where there is one.
+        second: Name.
+        keeps_padding: Between the robot (or what it holds) and an object of the world that it is
+            not about to grasp.
+        pairs: Rows of the geometry model's collision pairs.
+    """
+
+    first: str
+    second: str
+    keeps_padding: bool
+    pairs: range
+
+
+@dataclass(frozen=True, eq=False)
+class CollisionModel:
+    """The scene as it is now, ready to be checked; not changed after it was made."""
+
+    robot: RobotModel
+    geometry: pin.GeometryModel
+    bodies: tuple[Body, ...]
+    pairs: tuple[BodyPair, ...]
+
+
+class CoalScene:
+    """The port `PlanningScene`; collision models are rebuilt when the scene has changed.
+
+    Bodies that move together are never checked against each other: a static link and an object
+    that stands in the world, two links of one rigid body, an object and the body that holds it.
+    """
+
+    def __init__(self, description: RobotDescription) -> None:
+        self.description = description
+        self.robot = RobotModel(description)
+        self._objects: dict[str, SceneObject] = {}
+        self._allowed: set[tuple[str, str]] = {
+            _sorted(*pair) for pair in description.allowed_collisions
+        }
+        self._allowed |= {_sorted(joint.parent, joint.child) for joint in description.joints}
+        self._extra: set[tuple[str, str]] = set()
+        self._unpadded: frozenset[tuple[str, str]] = frozenset()
+        self._model: CollisionModel | None = None
+
+    # Changes -------------------------------------------------------------------------------
+
+    def add_object(self, obj: WorldObject, pose: SE3) -> None:
+        """Put an object into the scene, at T_world_object."""
+        if obj.name in self._objects:
+            raise StepFailed("INVALID_OBJECT_NAME", f"object '{obj.name}' is in the scene already")
+        self._objects[obj.name] = SceneObject(
+            obj.shapes,
+            pose,
+            mass=obj.mass,
+            center_of_mass=obj.center_of_mass,
+            inertia=obj.inertia,
+        )
+        self._model = None
+
+    def remove_object(self, name: str) -> None:
+        """Take an object out of the scene."""
+        self._find(name)
+        del self._objects[name]
+        self._model = None
+
+    def move_object(self, name: str, pose: SE3) -> None:
+        """Set T_world_object of an object that is not attached."""
+        found = self._find(name)
+        if found.link is not None:
+            raise StepFailed("INVALID_OBJECT_NAME", f"object '{name}' is attached to {found.link}")
+        if np.array_equal(found.pose.matrix(), pose.matrix()):
+            return
+        self._objects[name] = replace(found, pose=pose)
+        self._model = None
+
+    def attach_object(
+        self, name: str, link: str, touch_links: Sequence[str], joint_positions: FloatArray
+    ) -> SE3:
+        """Fix an object of the scene to a link where both stand now; returns T_link_object."""
+        found = self._find(name)
+        if link not in self.description.link_names:
+            raise StepFailed("INVALID_LINK_NAME", f"the robot has no link '{link}'")
+        T_world_object = self.object_pose(name, joint_positions)
+        T_link_object = self.robot.link_pose(joint_positions, link).inverse() @ T_world_object
+        touching = frozenset(touch_links) | {link}
+        self._objects[name] = replace(found, pose=T_link_object, link=link, touch_links=touching)
+        self._model = None
+        return T_link_object
+
+    def detach_object(self, name: str, joint_positions: FloatArray) -> SE3:
+        """Let go of an attached object; it stays in the scene at the returned T_world_object."""
+        found = self._find(name)
+        if found.link is None:
+            raise StepFailed("INVALID_OBJECT_NAME", f"object '{name}' is not attached")
+        pose = self.object_pose(name, joint_positions)
+        self._objects[name] = replace(found, pose=pose, link=None, touch_links=frozenset())
+        self._model = None
+        return pose
+
+    def set_allowed(self, pairs: Sequence[tuple[str, str]], *, allowed: bool) -> None:
+        """Allow (or check again) collisions of pairs of links or objects; `robot`: all links."""
+        for pair in pairs:
+            key = _sorted(*pair)
+            if allowed:
+                self._extra.add(key)
+            else:
+                self._extra.discard(key)
+        self._model = None
+
+    def set_unpadded(self, pairs: Sequence[tuple[str, str]]) -> None:
+        """Apply no padding to these pairs of a link and an object, and to no others."""
+        self._unpadded = frozenset(_sorted(*pair) for pair in pairs)
+        self._model = None
+
+    # Questions -----------------------------------------------------------------------------
+
+    def object_names(self) -> tuple[str, ...]:
+        """Objects in the scene, attached ones included, in order of adding."""
+        return tuple(self._objects)
+
+    def is_ground(self, name: str) -> bool:
+        """Whether an object is solid without end below a plane."""
+        return any(isinstance(shape.geometry, Plane) for shape in self._find(name).shapes)
+
+    def attached(self) -> Mapping[str, str]:
+        """Link of each attached object."""
+        return {name: obj.link for name, obj in self._objects.items() if obj.link is not None}
+
+    def payloads(self) -> tuple[Payload, ...]:
+        """Of attached objects that weigh something."""
+        return tuple(
+            Payload(name, found.link, found.pose, found.mass, found.center_of_mass, found.inertia)
+            for name, found in self._objects.items()
+            if found.link is not None and found.mass > 0
+        )
+
+    def object_pose(self, name: str, joint_positions: FloatArray) -> SE3:
+        """T_world_object, attached or not."""
+        found = self._find(name)
+        if found.link is None:
+            return found.pose
+        return self.robot.link_pose(np.asarray(joint_positions, float), found.link) @ found.pose
+
+    def touches(self, joint_positions: FloatArray, padding: float = 0.0) -> Sequence[Touch]:
+        """Pairs closer than allowed at a state, nearest first."""
+        required = (
+            replace(touch, required=padding if pair.keeps_padding else 0.0)
+            for touch, pair in self.distances(joint_positions)
+        )
+        return tuple(touch for touch in required if touch.distance <= touch.required)
+
+    def distances(self, joint_positions: FloatArray) -> list[tuple[Touch, BodyPair]]:
+        """Signed distance of every checked pair of bodies [m], nearest first."""
+        model = self.collision_model()
+        robot, geometry = model.robot, model.geometry
+        data = geometry.createData()
+        configuration = robot.configuration(np.asarray(joint_positions, dtype=float))
+        pin.computeDistances(robot.model, robot.data, geometry, data, configuration)
+        results = data.distanceResults
+        found: list[tuple[Touch, BodyPair]] = []
+        for pair in model.pairs:
+            nearest = min(float(results[row].min_distance) for row in pair.pairs)
+            found.append((Touch(pair.first, pair.second, nearest), pair))
+        found.sort(key=lambda item: (item[0].distance, item[0].first, item[0].second))
+        return found
+
+    def is_allowed(self, first: str, second: str) -> bool:
+        """Whether the robot's description or the scene lets two bodies touch."""
+        links = self.description.link_names
+        names = [(first, second)]
+        names += [(ROBOT, second)] if first in links else []
+        names += [(first, ROBOT)] if second in links else []
+        names += [(ROBOT, ROBOT)] if first in links and second in links else []
+        keys = {_sorted(*pair) for pair in names}
+        return bool(keys & (self._allowed | self._extra))
+
+    def collision_model(self) -> CollisionModel:
+        """Geometries and pairs of the scene as it is now."""
+        if self._model is None:
+            self._model = self._build()
+        return self._model
+
+    def _build(self) -> CollisionModel:
+        geometry = pin.GeometryModel()
+        bodies = [
+            self._add_body(geometry, link.name, link.name, SE3.identity(), link.collisions, True)
+            for link in self.description.links
+            if link.collisions
+        ]
+        bodies += [
+            self._add_body(geometry, name, obj.link, obj.pose, obj.shapes, False)
+            for name, obj in self._objects.items()
+            if obj.shapes
+        ]
+        pairs: list[BodyPair] = []
+        for later, second in enumerate(bodies):
+            for first in bodies[:later]:
+                if self._is_checked(first, second):
+                    padded = _sorted(first.name, second.name) not in self._unpadded
+                    pairs.append(_add_pair(geometry, first, second, padded=padded))
+        return CollisionModel(self.robot, geometry, tuple(bodies), tuple(pairs))
+
+    def _add_body(
+        self,
+        geometry: pin.GeometryModel,
+        name: str,
+        link: str | None,
+        pose: SE3,
+        shapes: Sequence[Shape],
+        is_link: bool,
+    ) -> Body:
+        joint, T_joint_body = 0, pose
+        if link is not None:
+            joint = self.robot.parent_joint(link)
+            T_joint_body = self.robot.placement(link) @ pose
+        indices = tuple(
+            geometry.addGeometryObject(
+                geometry_object(f"{name}#{number}", joint, T_joint_body, shape)
+            )
+            for number, shape in enumerate(shapes)
+        )
+        placed = tuple(replace(shape, pose=T_joint_body @ shape.pose) for shape in shapes)
+        return Body(name, joint, indices, placed, is_link, not is_link and link is not None)
+
+    def _is_checked(self, first: Body, second: Body) -> bool:
+        if first.joint == second.joint or self.is_allowed(first.name, second.name):
+            return False
+        for held, other in ((first, second), (second, first)):
+            if held.is_held and other.is_link:
+                return other.name not in self._objects[held.name].touch_links
+        return True
+
+    def _find(self, name: str) -> SceneObject:
+        if name not in self._objects:
+            known = ", ".join(self._objects) or "none"
+            raise StepFailed(
+                "INVALID_OBJECT_NAME",
+                f"the planning scene has no object '{name}' (it has: {known})",
+                {"object": name, "known": list(self._objects)},
+            )
+        return self._objects[name]
+
+
+def _add_pair(geometry: pin.GeometryModel, first: Body, second: Body, *, padded: bool) -> BodyPair:
+    start = len(geometry.collisionPairs)
+    for a in first.geometries:
+        for b in second.geometries:
+            geometry.addCollisionPair(pin.CollisionPair(a, b))
+    rows = range(start, len(geometry.collisionPairs))
+    robot_side = [body for body in (first, second) if body.is_link or body.is_held]
+    # Links come before objects; a held object comes before what it could hit.
+    if second.is_held and not first.is_link:
+        first, second = second, first
+    return BodyPair(first.name, second.name, padded and len(robot_side) == 1, rows)
+
+
+def _sorted(first: str, second: str) -> tuple[str, str]:
+    return (first, second) if first <= second else (second, first)

@@ -1,0 +1,89 @@
+"""Numbers of an explanation as a person reads them, each with its unit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence, Sized
+
+import numpy as np
+
+from harness.core.quantity import distinct
+from harness.core.types import FloatArray
+from harness.planning.collision.scene import CoalScene
+from harness.planning.model.robot_model import GroupSpace
+from harness.ports import Touch
+
+MOST_TOUCHES = 3
+"""Pairs that are named; of the rest only how many they are."""
+
+
+def length(metres: float, more_digits: int = 0) -> str:
+    """`12.3 mm`, or `1.23 m`."""
+    if abs(metres) < 1.0:
+        return f"{1000 * metres:.{1 + more_digits}f} mm"
+    return f"{metres:.{2 + more_digits}f} m"
+
+
+def angle(radians: float) -> str:
+    """`20.0°`, finer where that would say nothing."""
+    degrees = float(np.degrees(radians))
+    return f"{degrees:.1f}°" if abs(degrees) >= 0.05 else f"{degrees:.2g}°"
+
+
+def point(xyz: FloatArray) -> str:
+    """`(0.320, -0.170, 1.320)`, without a negative zero."""
+    return "(" + ", ".join(f"{round(float(value), 3) + 0.0:.3f}" for value in xyz) + ")"
+
+
+def joint_value(space: GroupSpace, joint: str, value: float) -> str:
+    """A joint's position in its unit: `2.100 rad (120.3°)`, `12.0 mm`."""
+    if space.wraps[space.joint_names.index(joint)]:
+        return f"{value:.3f} rad ({angle(value)})"
+    return length(value)
+
+
+def touch(item: Touch) -> str:
+    """`forearm_link and Table (12.3 mm deep)`, `rh_l2 and cube (13.5 mm apart, 25.0 mm required)`.
+
+    The digits show that the distance is smaller than the required one.
+    """
+    names = f"{item.first} and {item.second}"
+    if item.distance < 0:
+        return f"{names} ({length(-item.distance)} deep)"
+    if item.required <= item.distance:
+        return f"{names} ({length(item.distance)} apart)"
+    distance, required = distinct(item.distance, item.required, length)
+    return f"{names} ({distance} apart, {required} required)"
+
+
+def touches(items: Sequence[Touch], most: int = MOST_TOUCHES) -> str:
+    """The nearest pairs, and how many more there are."""
+    more = len(items) - most
+    rest = f" and {count(more, 'more pair')}" if more > 0 else ""
+    return ", ".join(map(touch, items[:most])) + rest
+
+
+def padding_advice(distance: float, padding: float) -> str:
+    """What to do where the padding alone is in the way."""
+    smaller, stated = distinct(distance, padding, length)
+    return (
+        f"nothing touches, only the `padding` of {stated} is not kept: give `planning` a `padding`"
+        f" of less than {smaller}"
+    )
+
+
+def way_out(item: Touch, scene: CoalScene) -> str:
+    """What to change so that the robot, or what it holds, comes apart from the body it is in."""
+    objects = set(scene.object_names()) - set(scene.attached())
+    blocker = next((name for name in (item.second, item.first) if name in objects), None)
+    if blocker is None:
+        return "move the joints so that the links come apart"
+    if scene.is_ground(blocker):
+        return f"raise the robot's `base`: it reaches {length(-item.distance)} into '{blocker}'"
+    return f"move '{blocker}' out of the way: it is {length(-item.distance)} too near"
+
+
+def count(things: Sized | int, noun: str) -> str:
+    """`1 way`, `2 ways`; `branch` gets its `es`."""
+    number = things if isinstance(things, int) else len(things)
+    plural = f"{noun}es" if noun.endswith(("ch", "s")) else f"{noun}s"
+    return f"{number} {noun if number == 1 else plural}"

@@ -1,0 +1,1 @@
+"""Why a planning request failed, stage by stage."""

@@ -1,0 +1,113 @@
+"""Explains inverse kinematics: each branch, and why it is ruled out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from harness.planning.collision.checker import touch_facts
+from harness.planning.collision.wording import count, joint_value, length, padding_advice, touches
+from harness.planning.diagnosis.stage_request import Finding, StageRequest, nearest_facts
+from harness.planning.goals.goal_study import GoalStudy
+from harness.planning.ik.nearest_pose import SHIFTS, NearestPose, nearest_free_shift
+from harness.planning.ik.numeric import LinkGoal
+from harness.recording.explanation import Stage
+
+MOST_DETAILS = 8
+"""Number of branches that are listed individually."""
+
+_METHODS = {
+    "ur": "closed form of Universal Robots",
+    "open_manipulator_x": "closed form of OpenMANIPULATOR-X",
+    "numeric": "numeric, with restarts",
+}
+
+
+def branches_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> Finding:
+    """The result of every branch: free, in collision, or beyond a joint limit, with the numbers."""
+    answer = study.answer
+    kind = f"{_METHODS[answer.method]}, solved for the {answer.task}"
+    if not answer.solutions and not answer.outside_limits:
+        return Finding(Stage("inverse kinematics", "not reached", f"no branch ({kind})"))
+    free = sum(not branch.touches for branch in study.branches)
+    parts = [f"{free} free", f"{len(study.branches) - free} in collision"]
+    parts.append(f"{len(answer.outside_limits)} beyond a joint limit")
+    parts.append(f"{study.unchecked} more distant ones not checked")
+    counted = [part for part in parts if not part.startswith("0 ") or part == "0 free"]
+    total = count(len(answer.solutions) + len(answer.outside_limits), "branch")
+    text = f"{total} ({kind}): {', '.join(counted)}"
+    details = _branch_lines(request, study)
+    if free:
+        return Finding(Stage("inverse kinematics", "passed", text, "", details))
+    if not study.branches:
+        stage = Stage("inverse kinematics", "failed", text, "NO_IK_SOLUTION", details)
+        return Finding(stage, {}, "turn or move the goal, so that every joint is inside its limits")
+    stage = Stage("inverse kinematics", "failed", text, "GOAL_IN_COLLISION", details)
+    return Finding(stage, *_in_collision(request, goal, study))
+
+
+def _branch_lines(request: StageRequest, study: GoalStudy) -> tuple[str, ...]:
+    """Describe each branch, and why it is ruled out."""
+    lines = [
+        f"{branch.name or f'solution {number}'}: "
+        + (touches(branch.touches, most=1) if branch.touches else "free")
+        for number, branch in enumerate(study.branches, start=1)
+    ]
+    for solution, name in zip(study.answer.outside_limits, study.outside, strict=True):
+        joint, excess = solution.joint, abs(solution.value - solution.limit)
+        lines.append(
+            f"{name or f'solution {len(lines) + 1}'}: {joint} would be at "
+            f"{joint_value(request.space, joint, solution.value)}, "
+            f"{joint_value(request.space, joint, excess)} beyond its limit"
+        )
+    more = len(lines) - MOST_DETAILS
+    return tuple(lines[:MOST_DETAILS]) + ((f"and {more} more",) if more > 0 else ())
+
+
+def _in_collision(
+    request: StageRequest, goal: LinkGoal, study: GoalStudy
+) -> tuple[dict[str, Any], str]:
+    """The collision of the nearest branch, and the shortest move that frees the goal."""
+    branch = study.branches[0]
+    pose = request.kinematics.link_pose(request.space.whole(branch.positions), goal.link)
+    nearest = NearestPose(branch.positions, pose, *branch.residual)
+    facts = nearest_facts(request, goal, nearest) | {
+        "shows": "goal in collision",
+        "touches": touch_facts(list(branch.touches)),
+    }
+    pair = branch.touches[0]
+    otherwise = (
+        padding_advice(pair.distance, request.options.padding)
+        if pair.distance >= 0
+        else "where the contact is intended, plan inside `allow_collisions` with the pair "
+        f"[{pair.first}, {pair.second}]"
+    )
+    found = nearest_free_shift(
+        goal,
+        lambda moved: (
+            request.kinematics.analyse(
+                request.space, moved, request.start, request.options.seed
+            ).solutions
+        ),
+        lambda positions: not request.touches(positions),
+    )
+    if found is None:
+        farthest = length(SHIFTS[-1])
+        return (
+            facts,
+            f"no position within {farthest} along a world axis is free: move the goal farther; "
+            f"{otherwise}",
+        )
+    shift, positions = found
+    facts["nearest_free"] = {
+        "shift": shift.tolist(),
+        "joint_positions": request.joints(positions),
+    }
+    axis = int(np.argmax(np.abs(shift)))
+    way = np.ceil(1000 * abs(shift[axis])) / 1000
+    sign = "+" if shift[axis] > 0 else "-"
+    return (
+        facts,
+        f"moved {length(way)} along {sign}{'xyz'[axis]} of the world the goal is free; {otherwise}",
+    )

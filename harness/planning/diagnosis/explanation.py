@@ -1,0 +1,116 @@
+"""Explains a failed planning call: the result of each planning stage, in order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import wraps
+from inspect import signature
+from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
+
+import numpy as np
+
+from harness.core.errors import PlanningFailed
+from harness.core.types import FloatArray
+from harness.planning.collision.checker import MotionChecker
+from harness.planning.collision.scene import CoalScene
+from harness.planning.diagnosis.goal_stages import goal_findings, target_positions
+from harness.planning.diagnosis.motion_stages import path_finding, start_finding, timing_finding
+from harness.planning.diagnosis.stage_request import Finding, StageRequest
+from harness.planning.ik.kinematics import PinocchioKinematics
+from harness.planning.model.robot_model import GroupSpace
+from harness.ports import Goal, JointGoal, PlanningOptions, PoseGoal, PositionGoal
+
+_NO_STAGE = ("INVALID_GROUP_NAME", "INVALID_LINK_NAME", "UNRECOGNIZED_GOAL_TYPE")
+
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
+
+
+class _Planner(Protocol):
+    scene: CoalScene
+    kinematics: PinocchioKinematics
+
+
+_S = TypeVar("_S", bound=_Planner)
+
+
+def explained(
+    method: Callable[Concatenate[_S, _P], _R],
+) -> Callable[Concatenate[_S, _P], _R]:
+    """Add `stages`, `nearest` and `advice` to the facts of a planner method's failures.
+
+    The method has parameters named `group`, `start` and `options`. A `goal` or the joint
+    `positions` of a goal are explained; other methods have no goal of their own.
+    """
+    parameters = signature(method)
+
+    @wraps(method)
+    def explaining(self: _S, *args: _P.args, **kwargs: _P.kwargs) -> _R:
+        try:
+            return method(self, *args, **kwargs)
+        except PlanningFailed as failure:
+            if failure.code not in _NO_STAGE and "stages" not in failure.facts:
+                call = parameters.bind(self, *args, **kwargs).arguments
+                request = _request(failure, self, call)
+                failure.facts.update(explanation_of(request))
+            raise
+
+    return explaining
+
+
+def explanation_of(request: StageRequest) -> dict[str, Any]:
+    """Explain a failed call as plain data.
+
+    `stages` follow the order of `recording.explanation.STAGES`. `nearest` is a robot state to draw
+    and `advice` is what to do; both belong to the first stage that has them. A start that no
+    motion can leave comes before the goal: no other goal helps.
+    """
+    findings: list[Finding] = goal_findings(request)
+    start = start_finding(request)
+    findings += [start, path_finding(request, target_positions(request))]
+    findings.append(timing_finding(request))
+    facts: dict[str, Any] = {"stages": [finding.stage.plain() for finding in findings]}
+    if request.failure.code.startswith("START_STATE"):
+        findings.insert(0, start)
+    nearest = next((finding.nearest for finding in findings if finding.nearest), None)
+    if nearest is not None:
+        facts["nearest"] = dict(nearest)
+    advice = next((finding.advice for finding in findings if finding.advice), "")
+    if advice:
+        facts["advice"] = advice
+    return facts
+
+
+def _request(failure: PlanningFailed, planner: _Planner, call: Mapping[str, Any]) -> StageRequest:
+    """The stages' input, from the call's arguments by parameter name."""
+    start = np.asarray(call["start"], dtype=float)
+    options: PlanningOptions = call["options"]
+    space = GroupSpace(planner.kinematics.robot, call["group"], start)
+    return StageRequest(
+        failure=failure,
+        kinematics=planner.kinematics,
+        scene=planner.scene,
+        space=space,
+        start=start,
+        goal=_goal(call),
+        options=options,
+        checker=_checker(planner.scene, space, start, options),
+    )
+
+
+def _goal(call: Mapping[str, Any]) -> Goal | None:
+    """The single goal of a call; None where it has none, or a choice of several."""
+    if "positions" in call:
+        return JointGoal(np.asarray(call["positions"], dtype=float))
+    goal = call.get("goal")
+    return goal if isinstance(goal, JointGoal | PoseGoal | PositionGoal) else None
+
+
+def _checker(
+    scene: CoalScene, space: GroupSpace, start: FloatArray, options: PlanningOptions
+) -> MotionChecker | None:
+    """The checker of the motion; None where no motion can begin from the start state."""
+    try:
+        return MotionChecker(scene, space, space.part(start), options.padding)
+    except PlanningFailed:
+        return None

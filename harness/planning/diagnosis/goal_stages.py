@@ -1,0 +1,90 @@
+"""Explains the first two planning stages: whether the arm reaches the goal, and its branches."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.planning.collision.checker import touch_facts
+from harness.planning.collision.wording import count, joint_value, touches
+from harness.planning.diagnosis.branch_stage import branches_finding
+from harness.planning.diagnosis.reach_stage import reach_finding
+from harness.planning.diagnosis.stage_request import Finding, StageRequest
+from harness.planning.goals.goal_study import GoalStudy, broken_limits, limit_sentence, study_goal
+from harness.planning.ik.numeric import LinkGoal
+from harness.ports import JointGoal
+from harness.recording.explanation import Stage
+
+
+def goal_findings(request: StageRequest) -> list[Finding]:
+    """Explain reach and inverse kinematics; empty where the motion has no goal of its own."""
+    goal = request.goal
+    if goal is None:
+        return []
+    if isinstance(goal, JointGoal):
+        return _joint_findings(request, np.asarray(goal.positions, dtype=float))
+    study = _study(request, goal)
+    return [reach_finding(request, goal, study), branches_finding(request, goal, study)]
+
+
+def target_positions(request: StageRequest) -> FloatArray | None:
+    """Group positions of the first free solution; None where none is free."""
+    goal = request.goal
+    if goal is None:
+        return None
+    if isinstance(goal, JointGoal):
+        return np.asarray(goal.positions, dtype=float)
+    branches = _study(request, goal).branches
+    return next((branch.positions for branch in branches if not branch.touches), None)
+
+
+def _study(request: StageRequest, goal: LinkGoal) -> GoalStudy:
+    seed = request.options.seed
+    return study_goal(request.kinematics, request.space, request.touches, request.start, goal, seed)
+
+
+def _joint_findings(request: StageRequest, positions: FloatArray) -> list[Finding]:
+    space = request.space
+    broken = broken_limits(space, positions)
+    given = "not needed: the goal gives joint positions"
+    if broken:
+        first = broken[0]
+        below = first["value"] < first["lower"]
+        limit = joint_value(space, first["joint"], first["lower" if below else "upper"])
+        stage = Stage(
+            "reach",
+            "failed",
+            f"{count(broken, 'joint')} beyond a limit",
+            "GOAL_STATE_INVALID",
+            tuple(limit_sentence(space, each) for each in broken),
+        )
+        nearest = {
+            "shows": "nearest joint positions inside the limits",
+            "joint_positions": request.joints(np.clip(positions, space.lower, space.upper)),
+        }
+        advice = f"give {first['joint']} at {'least' if below else 'most'} {limit}"
+        unknown = Stage("inverse kinematics", "not reached", given)
+        return [Finding(stage, nearest, advice), Finding(unknown)]
+    reach = Finding(Stage("reach", "passed", "every joint is inside its limits"))
+    found = request.touches(positions)
+    if not found:
+        return [
+            reach,
+            Finding(Stage("inverse kinematics", "passed", f"{given}, and they are free")),
+        ]
+    stage = Stage(
+        "inverse kinematics",
+        "failed",
+        f"{given}; there {touches(found)}",
+        "GOAL_IN_COLLISION",
+    )
+    nearest = {
+        "shows": "goal in collision",
+        "joint_positions": request.joints(positions),
+        "touches": touch_facts(list(found)),
+    }
+    advice = (
+        f"choose other joint positions, or move {found[0].second} out of the way; with a `pose` "
+        "the planner chooses among all branches"
+    )
+    return [reach, Finding(stage, nearest, advice)]

@@ -1,0 +1,86 @@
+"""The input and the output of the stages that explain a failed planning call."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from harness.core.errors import PlanningFailed
+from harness.core.types import FloatArray
+from harness.planning.collision.checker import MotionChecker
+from harness.planning.collision.scene import CoalScene
+from harness.planning.ik.kinematics import PinocchioKinematics
+from harness.planning.ik.nearest_pose import NearestPose
+from harness.planning.ik.numeric import LinkGoal
+from harness.planning.model.robot_model import GroupSpace
+from harness.ports import Goal, PlanningOptions, PoseGoal, Touch
+from harness.recording.explanation import Stage
+
+
+@dataclass(frozen=True, eq=False)
+class Finding:
+    """A stage's result, with additional data for the report.
+
+    Attributes:
+        stage: The stage and its status.
+        nearest: A state to draw: `shows`, `joint_positions` ...; empty where there is none.
+        advice: What to do if this is the first failed stage.
+    """
+
+    stage: Stage
+    nearest: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    advice: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class StageRequest:
+    """A failed planning call.
+
+    Attributes:
+        failure: The error that was raised.
+        kinematics: The robot's kinematics.
+        scene: The planning scene.
+        space: The group, with the other joints at the start state.
+        start: The start positions in description order.
+        goal: The goal; None for a motion without one, such as a relative motion.
+        options: The planning options.
+        checker: The checker of the motion's states; None where the motion cannot begin.
+    """
+
+    failure: PlanningFailed
+    kinematics: PinocchioKinematics
+    scene: CoalScene
+    space: GroupSpace
+    start: FloatArray
+    goal: Goal | None
+    options: PlanningOptions
+    checker: MotionChecker | None
+
+    def touches(self, positions: FloatArray) -> Sequence[Touch]:
+        """What is too near at group positions, nearest first."""
+        if self.checker is None:
+            return self.scene.touches(self.space.whole(positions), self.options.padding)
+        return self.checker.touches(positions)
+
+    def joints(self, positions: FloatArray) -> dict[str, float]:
+        """Every joint of the robot by name, at positions of the group."""
+        whole = self.space.whole(np.asarray(positions, dtype=float))
+        names = self.space.robot.description.joint_names
+        return dict(zip(names, map(float, whole), strict=True))
+
+
+def nearest_facts(request: StageRequest, goal: LinkGoal, nearest: NearestPose) -> dict[str, Any]:
+    """A nearest pose as plain data: the robot's joints, link, target, what is missed."""
+    target = goal.pose.as_vector() if isinstance(goal, PoseGoal) else goal.position
+    return {
+        "shows": "nearest pose",
+        "link": goal.link,
+        "target": [float(value) for value in target],
+        "pose": [float(value) for value in nearest.pose.as_vector()],
+        "position_error": nearest.shift,
+        "orientation_error": nearest.turn,
+        "joint_positions": request.joints(nearest.positions),
+    }

@@ -1,0 +1,1 @@
+"""Joint goals for pose goals: branches, ranking, choice."""

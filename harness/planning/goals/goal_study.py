@@ -1,0 +1,142 @@
+"""Studies a goal: its solutions of inverse kinematics, and whether each is free."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from harness.core.types import FloatArray
+from harness.planning.collision.checker import touch_facts
+from harness.planning.collision.wording import joint_value
+from harness.planning.goals.branches import branch_name
+from harness.planning.ik.answer import IkAnswer
+from harness.planning.ik.kinematics import PinocchioKinematics
+from harness.planning.ik.numeric import LinkGoal
+from harness.planning.model.robot_model import GroupSpace
+from harness.ports import Touch
+
+MOST_GOALS = 8
+"""Number of solutions of inverse kinematics that are checked and planned to, nearest first."""
+
+FindTouches = Callable[[FloatArray], Sequence[Touch]]
+"""Pairs too near at group positions; empty where they are free."""
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """A solution inside the limits, and whether it is free.
+
+    Attributes:
+        positions: The group positions.
+        name: The posture of the arm; empty where the solver has no branches.
+        distance: The joint-space distance from the start [rad].
+        touches: The pairs that are too near.
+        residual: The position error [m] and the orientation error [rad].
+    """
+
+    positions: FloatArray
+    name: str
+    distance: float
+    touches: tuple[Touch, ...]
+    residual: tuple[float, float]
+
+    def facts(self) -> dict[str, Any]:
+        """The facts as plain data."""
+        return {
+            "joint_positions": [float(value) for value in self.positions],
+            "branch": self.name,
+            "distance": self.distance,
+            "status": "in collision" if self.touches else "free",
+            "touches": touch_facts(list(self.touches)),
+            "residual": {"position": self.residual[0], "orientation": self.residual[1]},
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class GoalStudy:
+    """The solutions of inverse kinematics for a goal, and the collisions of the nearest ones.
+
+    Attributes:
+        answer: The result of inverse kinematics.
+        branches: The nearest solutions, all checked, nearest first.
+        unchecked: The number of further solutions.
+        outside: The names of the branches outside the limits, in the answer's order.
+    """
+
+    answer: IkAnswer
+    branches: tuple[Branch, ...]
+    unchecked: int
+    outside: tuple[str, ...]
+
+    def facts(self) -> dict[str, Any]:
+        """The facts as plain data."""
+        return {
+            "ik_method": self.answer.method,
+            "ik_task": self.answer.task,
+            "ik_solutions": [branch.facts() for branch in self.branches],
+            "outside_limits": [
+                {**solution.facts(), "branch": name}
+                for solution, name in zip(self.answer.outside_limits, self.outside, strict=True)
+            ],
+        }
+
+
+def study_goal(
+    kinematics: PinocchioKinematics,
+    space: GroupSpace,
+    find_touches: FindTouches,
+    start: FloatArray,
+    goal: LinkGoal,
+    seed: int,
+) -> GoalStudy:
+    """Solve a goal and check the nearest solutions.
+
+    Raises:
+        PlanningFailed: INVALID_LINK_NAME.
+    """
+    answer = kinematics.analyse(space, goal, start, seed)
+    reference = space.part(start)
+
+    def name(positions: FloatArray) -> str:
+        return branch_name(kinematics, space, answer.method, positions)
+
+    branches = tuple(
+        Branch(
+            positions,
+            name(positions),
+            space.distance(reference, positions),
+            tuple(find_touches(positions)),
+            kinematics.residual(space, goal, positions),
+        )
+        for positions in answer.solutions[:MOST_GOALS]
+    )
+    outside = tuple(name(solution.positions) for solution in answer.outside_limits)
+    return GoalStudy(answer, branches, len(answer.solutions) - len(branches), outside)
+
+
+def broken_limits(space: GroupSpace, positions: FloatArray) -> list[dict[str, Any]]:
+    """The joints outside their limits and their excess, in the group's order."""
+    return [
+        {
+            "joint": name,
+            "value": float(value),
+            "lower": float(low),
+            "upper": float(high),
+            "excess": float(max(low - value, value - high)),
+        }
+        for name, value, low, high in zip(
+            space.joint_names, positions, space.lower, space.upper, strict=True
+        )
+        if not low - 1e-9 <= value <= high + 1e-9
+    ]
+
+
+def limit_sentence(space: GroupSpace, broken: dict[str, Any]) -> str:
+    """`elbow_joint would be at 3.500 rad (200.5°), 0.360 rad (20.6°) beyond its limit ...`."""
+    name, value, excess = broken["joint"], broken["value"], broken["excess"]
+    limit = broken["lower"] if value < broken["lower"] else broken["upper"]
+    return (
+        f"{name} would be at {joint_value(space, name, value)}, "
+        f"{joint_value(space, name, excess)} beyond its limit {joint_value(space, name, limit)}"
+    )

@@ -1,0 +1,1 @@
+"""Inverse kinematics: closed forms, a numeric solver, nearest reachable poses."""

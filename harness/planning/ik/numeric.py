@@ -1,0 +1,196 @@
+"""Numeric inverse kinematics of any chain: damped least squares with seeded restarts."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.planning.model.robot_model import GroupSpace
+from harness.ports import PoseGoal, PositionGoal
+
+LinkGoal = PoseGoal | PositionGoal
+
+RESTARTS, MOST_RESTARTS = 24, 64
+"""Searches from random positions after the one from the seed, and the limit while none succeeds.
+Success rates of every bundled arm are in robots/INVERSE_KINEMATICS.md."""
+
+_CONVERGED = 1e-9  # [m, rad] error at which least squares stop
+_FOUND = 1e-8  # [m, rad] largest error of a solution
+_NO_HEADING = 1e-9  # [1] horizontal part below which the x axis is vertical
+_VERTICAL = 1e-6  # [1] cosine below which a pitch is a quarter turn
+
+
+def pitch_of(rotation: FloatArray) -> float:
+    """Angle of the frame's x axis below the horizontal [rad], -pi/2 to pi/2."""
+    x_axis = rotation[:, 0]
+    return float(np.arctan2(-x_axis[2], np.hypot(x_axis[0], x_axis[1])))
+
+
+class LinkTask:
+    """The error of a link relative to its goal, and the Jacobian of the error.
+
+    Rows are metres and radians in world axes: position (3), then for a pose the rotation vector
+    from the link to the goal (3), for a position with pitch the pitch (1; 2 when x is vertical).
+    Rotation rows are multiplied by `metres_per_radian`: their weight relative to a distance where
+    both cannot be satisfied.
+    """
+
+    def __init__(
+        self, space: GroupSpace, goal: LinkGoal, *, metres_per_radian: float = 1.0
+    ) -> None:
+        self.space = space
+        self.goal = goal
+        self._turn = metres_per_radian
+        self._robot = space.robot
+        self._frame = space.robot.frame_id(goal.link)
+        self._columns = space.robot.velocity_columns
+
+    def link_pose(self, positions: FloatArray) -> SE3:
+        """T_world_link at group positions."""
+        return self._robot.link_pose(self.space.whole(positions), self.goal.link)
+
+    def evaluate(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Error (m,) and Jacobian (m, dof) at positions; a step `pinv(J) @ error` closes in."""
+        error, jacobian = self._evaluate(positions)
+        error[3:] *= self._turn
+        jacobian[3:] *= self._turn
+        return error, jacobian
+
+    def _evaluate(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
+        model, data = self._robot.model, self._robot.data
+        configuration = self._robot.configuration(self.space.whole(positions))
+        pin.computeJointJacobians(model, data, configuration)
+        placement = pin.updateFramePlacement(model, data, self._frame)
+        whole = pin.getFrameJacobian(model, data, self._frame, pin.LOCAL_WORLD_ALIGNED)
+        whole = whole.reshape(6, -1)  # one joint gives a one-dimensional array
+        jacobian = whole[:, self._columns] @ self.space.matrix
+        rotation = placement.rotation
+        goal = self.goal
+        if isinstance(goal, PoseGoal):
+            error = np.concatenate(
+                [
+                    goal.pose.translation - placement.translation,
+                    pin.log3(goal.pose.rotation @ rotation.T),
+                ]
+            )
+            return error, jacobian
+        shift = goal.position - placement.translation
+        if goal.pitch is None:
+            return shift, jacobian[:3]
+        x_axis = rotation[:, 0]
+        turned = np.cross(jacobian[3:].T, x_axis).T  # change of the x axis, (3, dof)
+        if abs(np.cos(goal.pitch)) < _VERTICAL:
+            return np.concatenate([shift, -x_axis[:2]]), np.vstack([jacobian[:3], turned[:2]])
+        horizontal = float(np.hypot(x_axis[0], x_axis[1]))
+        ahead = x_axis[:2] / horizontal if horizontal > _NO_HEADING else np.array([1.0, 0.0])
+        slope = x_axis[2] * (ahead @ turned[:2]) - horizontal * turned[2]
+        pitch = float(np.arcsin(np.clip(np.sin(goal.pitch), -1.0, 1.0)))
+        return np.append(shift, pitch - pitch_of(rotation)), np.vstack([jacobian[:3], slope])
+
+    def polish(self, positions: FloatArray, iterations: int = 8) -> tuple[FloatArray, float]:
+        """Refine a near solution by Newton steps; returns positions and the remaining error."""
+        positions = np.array(positions, dtype=float)
+        error, jacobian = self.evaluate(positions)
+        for _ in range(iterations):
+            if np.linalg.norm(error) < 1e-13:
+                break
+            step = np.linalg.lstsq(jacobian, error, rcond=1e-8)[0]
+            candidate = positions + step
+            new_error, new_jacobian = self.evaluate(candidate)
+            if np.linalg.norm(new_error) >= np.linalg.norm(error):
+                break
+            positions, error, jacobian = candidate, new_error, new_jacobian
+        return positions, float(np.linalg.norm(error))
+
+    def least_squares(self, seed: FloatArray, iterations: int = 100) -> tuple[FloatArray, float]:
+        """Damped least squares inside the position limits, from one seed.
+
+        Levenberg-Marquardt with the damping proportional to the squared error [1]; joints
+        at a limit that would exceed it are excluded from a step.
+
+        Returns:
+            Joint positions and the norm of the error there.
+
+        References:
+            [1] T. Sugihara, "Solvability-Unconcerned Inverse Kinematics by the
+                Levenberg-Marquardt Method", IEEE T-RO 27(5), 2011.
+        """
+        space = self.space
+        positions = np.clip(seed, space.lower, space.upper)
+        error, jacobian = self.evaluate(positions)
+        cost, factor = float(error @ error), 1.0
+        for _ in range(iterations):
+            if cost < _CONVERGED**2:
+                break
+            gradient = jacobian.T @ error
+            free = ~(
+                ((positions <= space.lower) & (gradient < 0))
+                | ((positions >= space.upper) & (gradient > 0))
+            )
+            damping = factor * 0.5 * cost + 1e-12
+            normal = jacobian[:, free].T @ jacobian[:, free] + damping * np.eye(int(free.sum()))
+            step = np.zeros(space.dof)
+            step[free] = np.linalg.solve(normal, gradient[free])
+            candidate = np.clip(positions + step, space.lower, space.upper)
+            new_error, new_jacobian = self.evaluate(candidate)
+            new_cost = float(new_error @ new_error)
+            if new_cost < cost:
+                stalled = cost - new_cost < 1e-10 * cost
+                positions, error, jacobian, cost = candidate, new_error, new_jacobian, new_cost
+                factor = max(factor * 0.3, 1e-3)
+                if stalled:
+                    break
+            else:
+                factor *= 10.0
+                if factor > 1e8:
+                    break
+        return positions, float(np.sqrt(cost))
+
+
+def random_positions(space: GroupSpace, rng: np.random.Generator) -> FloatArray:
+    """Draw group positions uniformly inside the limits, or in one turn where there are none."""
+    lower = np.where(np.isfinite(space.lower), space.lower, -np.pi)
+    upper = np.where(np.isfinite(space.upper), space.upper, np.pi)
+    return rng.uniform(lower, upper)
+
+
+def solve_numeric(
+    space: GroupSpace,
+    goal: LinkGoal,
+    seed_positions: FloatArray,
+    seed: int,
+    *,
+    restarts: int = RESTARTS,
+    most_restarts: int = MOST_RESTARTS,
+    enough: int = 1000,
+) -> list[FloatArray]:
+    """Find joint positions that bring a link to its goal, from the seed and from random restarts.
+
+    Args:
+        space: The group, the rest of the robot at rest.
+        goal: The goal of the link.
+        seed_positions: The start of the first search, shape (dof,).
+        seed: The seed of the restarts; the same seed gives the same result.
+        restarts: The number of searches from random positions after the first.
+        most_restarts: The largest number of searches while no solution is found.
+        enough: The number of solutions that ends the search.
+
+    Returns:
+        Distinct solutions in order of finding, exact to 1e-9, inside the limits; may be empty.
+    """
+    task = LinkTask(space, goal)
+    rng = np.random.default_rng(seed)
+    found: list[FloatArray] = []
+    start = np.asarray(seed_positions, dtype=float)
+    for number in range(1 + max(restarts, most_restarts)):
+        if len(found) >= enough or (found and number > restarts):
+            break
+        positions, error = task.least_squares(start)
+        if error < _FOUND and all(space.distance(positions, other) > 1e-4 for other in found):
+            found.append(positions)
+        start = random_positions(space, rng)
+    return found

@@ -1,0 +1,1 @@
+"""The robot in Pinocchio, forward kinematics and turns of revolute joints."""

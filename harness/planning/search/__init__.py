@@ -1,0 +1,1 @@
+"""Sampling-based search with OMPL and roadmaps, and shortening."""

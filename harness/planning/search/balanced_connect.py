@@ -1,0 +1,259 @@
+"""The fast planner: two trees of equal size that grow towards low-discrepancy samples."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.planning.collision.checker import MotionChecker
+from harness.planning.model.robot_model import GroupSpace
+
+RANGE = 1.5
+"""Longest edge [rad]."""
+
+DOMAIN = 4.0
+"""Radius of a vertex's domain after the first blocked edge from it [rad]; infinite before."""
+
+SMALLEST_DOMAIN = 1.0
+"""Radius below which a domain does not shrink [rad]."""
+
+SHRINK = 1e-4
+"""Share by which a free edge enlarges a domain and a blocked edge shrinks it."""
+
+SHORTEST = 1 / 16
+"""Shortest edge, as a share of the longest; edges shrink at vertices in narrow passages."""
+
+PATIENCE = 64
+"""Consecutive samples outside the domains after which one is used anyway."""
+
+BEYOND = np.pi
+"""How far beyond start and goals samples are drawn [rad]: a whole turn covers every posture."""
+
+_EdgeCheck = Callable[[FloatArray, FloatArray], bool]
+_PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37)
+_BLOCK = 256
+
+PARAMETERS = ("range",)
+
+
+def search_connect(
+    planner_id: str,
+    checker: MotionChecker,
+    start: FloatArray,
+    goals: Sequence[FloatArray],
+    *,
+    resolution: float,
+    max_state_checks: int,
+    seed: int,
+    parameters: Mapping[str, float],
+) -> tuple[FloatArray | None, int, int, float]:
+    """Search a path; the arguments are those of `search`.
+
+    RRT-Connect [1] in which the smaller tree grows [2], with dynamic domains of the vertices near
+    obstacles [3] and samples from a Halton sequence, whose first index follows from the seed.
+    Distances are measured in the group's metric.
+
+    Returns:
+        Waypoints or None, the number of state checks, the number of vertices, and the gap.
+
+    Raises:
+        ValueError: The parameter is unknown.
+
+    References:
+        [1] J. Kuffner, S. LaValle, "RRT-Connect: An Efficient Approach to Single-Query Path
+            Planning", ICRA 2000. [2] The same, "An Efficient Approach to Path Planning Using
+            Balanced Bidirectional RRT Search", 2005. [3] A. Yershova et al., "Dynamic-Domain RRTs:
+            Efficient Exploration by Controlling the Sampling Domain", ICRA 2005.
+    """
+    step = step_length(planner_id, parameters)
+    space = checker.space
+    metric = space.metric
+    lower, upper = sampling_bounds(space, np.vstack([start, *goals]))
+    before = checker.checks
+    trees = (
+        _Tree([start * metric], step),
+        _Tree([np.asarray(goal) * metric for goal in goals], step),
+    )
+
+    def is_free(first: FloatArray, second: FloatArray) -> bool:
+        return checker.edge_free(first / metric, second / metric, resolution)
+
+    def outcome(path: FloatArray | None) -> tuple[FloatArray | None, int, int, float]:
+        count = trees[0].count + trees[1].count
+        gap = 0.0 if path is not None else _gap(*trees)
+        return path, checker.checks - before, count, gap
+
+    for goal in goals:
+        if is_free(trees[0].points[0], np.asarray(goal) * metric):
+            return outcome(np.array([start, goal], dtype=float))
+    offset = 1 + seed % 1_000_003
+    growing = drawn = refused = 0
+    samples = np.empty((0, space.dof))
+    while checker.checks - before < max_state_checks:
+        if drawn % _BLOCK == 0:
+            samples = halton(offset + drawn, _BLOCK, lower * metric, upper * metric)
+        sample = samples[drawn % _BLOCK]
+        drawn += 1
+        if trees[growing].count > trees[1 - growing].count:
+            growing = 1 - growing
+        tree = trees[growing]
+        near, distance = tree.nearest(sample)
+        if tree.domain(near) < distance and refused < PATIENCE:
+            refused += 1
+            continue
+        refused = 0
+        vertex = tree.grow(near, sample, distance, is_free)
+        if vertex is None:
+            continue
+        other = trees[1 - growing]
+        met = other.connect(trees[growing].points[vertex], is_free)
+        if met is not None:
+            halves = [trees[growing].branch(vertex), other.branch(met)]
+            first, last = halves if growing == 0 else halves[::-1]
+            path = np.vstack([first[::-1], last[1:]]) / metric
+            path[0] = start
+            return outcome(_ending_exactly(path, goals))
+        growing = 1 - growing
+    return outcome(None)
+
+
+def step_length(planner_id: str, parameters: Mapping[str, float]) -> float:
+    """Read the longest edge [rad], the only parameter of this planner.
+
+    Raises:
+        ValueError: The parameter is unknown, or its value is not a positive length.
+    """
+    for name in parameters:
+        if name not in PARAMETERS:
+            raise ValueError(
+                f"planner {planner_id} has no parameter '{name}' (it has: {', '.join(PARAMETERS)})"
+            )
+    step = float(parameters.get("range", RANGE))
+    if step <= 0:
+        raise ValueError(f"planner parameter 'range' cannot be {step:g}; it is a distance [rad]")
+    return step
+
+
+def sampling_bounds(space: GroupSpace, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Sampling box inside the joint limits; revolute joints are sampled up to `BEYOND` the ends."""
+    beyond = np.where(space.wraps, BEYOND, np.inf)
+    lower = np.maximum(space.lower, ends.min(axis=0) - beyond)
+    upper = np.minimum(space.upper, ends.max(axis=0) + beyond)
+    return lower, upper
+
+
+def halton(first: int, count: int, lower: FloatArray, upper: FloatArray) -> FloatArray:
+    """Compute points of the Halton sequence in a box, from an index on, shape (count, dof).
+
+    Raises:
+        ValueError: There are more dimensions than primes in the list.
+    """
+    if len(lower) > len(_PRIMES):
+        raise ValueError(
+            f"the group has {len(lower)} joints; the planner supports at most {len(_PRIMES)}"
+        )
+    points = np.empty((count, len(lower)))
+    for column, base in enumerate(_PRIMES[: len(lower)]):
+        index = np.arange(first, first + count)
+        share, value = 1.0, np.zeros(count)
+        while index.any():
+            share /= base
+            value += share * (index % base)
+            index //= base
+        points[:, column] = value
+    return lower + (upper - lower) * points
+
+
+class _Tree:
+    """Vertices in the scaled joint space, each with its parent and the radius of its domain."""
+
+    def __init__(self, roots: Sequence[FloatArray], step: float) -> None:
+        self.points = np.empty((max(256, 2 * len(roots)), len(roots[0])))
+        self.count = 0
+        self._parents: list[int] = []
+        self._domains: list[float] = []
+        self._steps: list[float] = []
+        self._step = step
+        for root in roots:
+            self._add(root, -1, step)
+
+    def _add(self, point: FloatArray, parent: int, step: float) -> int:
+        if self.count == len(self.points):
+            self.points = np.concatenate([self.points, np.empty_like(self.points)])
+        self.points[self.count] = point
+        self._parents.append(parent)
+        self._domains.append(np.inf)
+        self._steps.append(step)
+        self.count += 1
+        return self.count - 1
+
+    def nearest(self, point: FloatArray) -> tuple[int, float]:
+        """The vertex nearest to a point, and its distance [rad]."""
+        away = self.points[: self.count] - point
+        squares = np.einsum("ij,ij->i", away, away)
+        index = int(squares.argmin())
+        return index, float(np.sqrt(squares[index]))
+
+    def domain(self, vertex: int) -> float:
+        """Radius within which a vertex grows towards a sample [rad]."""
+        return self._domains[vertex]
+
+    def grow(
+        self, near: int, sample: FloatArray, distance: float, is_free: _EdgeCheck
+    ) -> int | None:
+        """Add a vertex one step from another towards a sample; None when the edge is blocked.
+
+        Every blocked edge shortens the steps from its vertex, and every free edge lengthens the
+        steps from the new one, so that a tree leaves a narrow passage.
+        """
+        if distance < 1e-9:
+            return None
+        here, step = self.points[near], self._steps[near]
+        there = here + min(1.0, step / distance) * (sample - here)
+        domain = self._domains[near]
+        if not is_free(here, there):
+            smaller = max(domain * (1 - SHRINK), SMALLEST_DOMAIN)
+            self._domains[near] = DOMAIN if domain == np.inf else smaller
+            self._steps[near] = max(0.5 * step, SHORTEST * self._step)
+            return None
+        self._domains[near] = domain * (1 + SHRINK)
+        return self._add(there, near, min(2 * step, self._step))
+
+    def connect(self, point: FloatArray, is_free: _EdgeCheck) -> int | None:
+        """Extend step by step to a point of the other tree; the vertex that reaches it, or None."""
+        near, distance = self.nearest(point)
+        while True:
+            here = self.points[near]
+            is_last = distance <= self._step
+            there = point if is_last else here + self._step / distance * (point - here)
+            if not is_free(here, there):
+                return None
+            near = self._add(there, near, self._step)
+            if is_last:
+                return near
+            distance -= self._step
+
+    def branch(self, index: int) -> FloatArray:
+        """Points from a vertex to its root, shape (K, dof)."""
+        found = []
+        while index >= 0:
+            found.append(self.points[index])
+            index = self._parents[index]
+        return np.array(found)
+
+
+def _gap(first: _Tree, second: _Tree) -> float:
+    """The smallest distance between two trees [rad]."""
+    points = second.points[: second.count]
+    return float(
+        min(np.min(np.sum((points - q) ** 2, axis=1)) for q in first.points[: first.count]) ** 0.5
+    )
+
+
+def _ending_exactly(path: FloatArray, goals: Sequence[FloatArray]) -> FloatArray:
+    """The path with its last point set exactly to the goal that it reached."""
+    away = [float(np.max(np.abs(path[-1] - goal))) for goal in goals]
+    path[-1] = goals[int(np.argmin(away))]
+    return path

@@ -1,0 +1,1 @@
+"""Time parametrisation of paths within limits."""

@@ -1,0 +1,115 @@
+"""Gives a path its times: a trapezoid on a straight line, TOPP-RA through waypoints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from harness.core.trajectory import JointTrajectory
+from harness.core.types import FloatArray
+from harness.planning.timing.blended_path import BlendedPath
+from harness.planning.timing.jerk_profile import JerkLimited
+from harness.planning.timing.limits import Limits as Limits
+from harness.planning.timing.limits import TimingError as TimingError
+from harness.planning.timing.limits import slowed_to_limits, within_limits
+from harness.planning.timing.profiles import Trapezoid, resting, sample, straight_curve
+from harness.planning.timing.toppra_solver import fastest
+
+GRID_POINTS_PER_PIECE = 20
+"""TOPP-RA's grid points on each line and blend; fewer break the limits in between."""
+
+_STILL = 1e-9  # [rad] paths shorter than this have nowhere to go
+
+
+def time_straight(
+    joint_names: tuple[str, ...], first: FloatArray, second: FloatArray, limits: Limits
+) -> JointTrajectory:
+    """Move on a straight joint-space line, all joints at once, as fast as the limits let.
+
+    Every joint's velocity is a trapezoid; under a jerk limit it is what Ruckig makes of it.
+
+    Raises:
+        TimingError: The limits cannot be kept.
+    """
+    span = np.abs(second - first)
+    if np.linalg.norm(span) < _STILL:
+        return resting(joint_names, first)
+    moving = span > 1e-12
+    velocity = float(np.min(limits.velocity[moving] / span[moving]))
+    acceleration = float(np.min(limits.acceleration[moving] / span[moving]))
+    if np.isfinite(limits.jerk):
+        jerk = limits.jerk / float(span.max())
+        profile = JerkLimited.fastest(velocity, acceleration, jerk)
+    else:
+        profile = Trapezoid.fastest(1.0, velocity, acceleration)
+    line = straight_curve(first, second, profile)
+    curve, total = slowed_to_limits(line, profile.duration, limits)
+    trajectory = sample(joint_names, curve, total)
+    trajectory.positions[-1] = second
+    return trajectory
+
+
+def time_stopping(
+    joint_names: tuple[str, ...], waypoints: FloatArray, limits: Limits
+) -> JointTrajectory:
+    """Move along a polyline exactly, at rest at every waypoint."""
+    pieces = [
+        time_straight(joint_names, first, second, limits) for first, second in pairwise(waypoints)
+    ]
+    return joined(pieces)
+
+
+def joined(pieces: Sequence[JointTrajectory]) -> JointTrajectory:
+    """One trajectory after the other, each beginning at rest where the previous one ends."""
+    times, offset = [pieces[0].times], pieces[0].duration
+    for piece in pieces[1:]:
+        times.append(piece.times[1:] + offset)
+        offset += piece.duration
+    rest = [slice(None), *[slice(1, None)] * (len(pieces) - 1)]
+    columns: list[FloatArray] = [
+        np.concatenate(
+            [getattr(piece, name)[part] for piece, part in zip(pieces, rest, strict=True)]
+        )
+        for name in ("positions", "velocities", "accelerations")
+    ]
+    return JointTrajectory(pieces[0].joint_names, np.concatenate(times), *columns)
+
+
+def time_blended(
+    joint_names: tuple[str, ...], waypoints: FloatArray, limits: Limits, deviation: float
+) -> JointTrajectory:
+    """Move along a polyline as fast as the limits let, its corners rounded, timed by TOPP-RA.
+
+    Args:
+        joint_names: Of the columns.
+        waypoints: Shape (N, dof), N > 2.
+        limits: Kept on every 2 ms sample: the times are stretched where TOPP-RA exceeds them.
+        deviation: Largest joint-space distance from a corner [rad].
+
+    Raises:
+        TimingError: TOPP-RA has no solution.
+    """
+    path = BlendedPath(waypoints, deviation)
+    timed, duration = fastest(path, limits, _grid(path))
+    curve, total = within_limits(timed, duration, limits)
+    trajectory = sample(joint_names, curve, total)
+    trajectory.positions[0], trajectory.positions[-1] = waypoints[0], waypoints[-1]
+    return trajectory
+
+
+def _grid(path: BlendedPath) -> FloatArray:
+    """TOPP-RA's grid points: evenly on every line and blend."""
+    grid = np.unique(
+        np.concatenate(
+            [
+                np.linspace(low, high, GRID_POINTS_PER_PIECE + 1)
+                for low, high in zip(path.breaks[:-1], path.breaks[1:], strict=True)
+                if high - low > 1e-9
+            ]
+        )
+    )
+    grid = grid[np.concatenate([[True], np.diff(grid) > 1e-10])]
+    grid[0], grid[-1] = 0.0, path.length
+    return grid

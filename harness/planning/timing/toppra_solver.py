@@ -1,0 +1,165 @@
+"""Computes the fastest times along a joint-space curve under limits, with TOPP-RA."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import logging
+import warnings
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.planning.timing.limits import Limits, TimingError
+from harness.planning.timing.profiles import SAMPLE_PERIOD, Curve
+
+UNLIMITED_EFFORT = 1e6
+"""Stands for no limit [N m or N]: the solver takes finite numbers."""
+
+
+class JointCurve(Protocol):
+    """A curve in joint space over a parameter from 0 to its length."""
+
+    length: float
+
+    def evaluate(self, parameter: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Positions and their first two derivatives, (M, dof) each, at parameters (M,)."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class LinkLimits:
+    """What a link may do along a curve, at every grid point; shape (M,) each.
+
+    With the parameter's rate squared x and its acceleration u: `rate_squared` bounds x, and
+    |speeds u + bends x| <= 1 bounds accelerations, one column a kind, shape (M, k).
+    """
+
+    rate_squared: FloatArray
+    speeds: FloatArray
+    bends: FloatArray
+
+
+def fastest(
+    path: JointCurve, limits: Limits, grid: FloatArray, link_limits: LinkLimits | None = None
+) -> tuple[Curve, float]:
+    """TOPP-RA's solution as a curve over time, and its duration [s].
+
+    Effort limits take part only where the solution without them breaks them: where it does not,
+    it is the solution with them too.
+
+    Raises:
+        TimingError: There is no solution.
+
+    References:
+        H. Pham, Q.-C. Pham, "A New Approach to Time-Optimal Path Parameterization Based on
+        Reachability Analysis", IEEE T-RO 34(3), 2018.
+    """
+    constraints = _joint_constraints(limits)
+    if link_limits is not None:
+        constraints.append(_link_constraint(link_limits, len(limits.velocity)))
+    timed, duration = _solve(path, constraints, grid, len(limits.velocity))
+    times: FloatArray = np.arange(0.0, duration, SAMPLE_PERIOD)
+    if limits.effort_excess(*timed(times)) > 1.0:
+        constraints.append(_effort_constraint(limits))
+        timed, duration = _solve(path, constraints, grid, len(limits.velocity))
+    return timed, duration
+
+
+def _joint_constraints(limits: Limits) -> list[Any]:
+    ta = _toppra()
+    return [
+        ta.constraint.JointVelocityConstraint(np.column_stack([-limits.velocity, limits.velocity])),
+        ta.constraint.JointAccelerationConstraint(
+            np.column_stack([-limits.acceleration, limits.acceleration])
+        ),
+    ]
+
+
+def _effort_constraint(limits: Limits) -> Any:
+    dynamics = limits.dynamics
+    if dynamics is None:
+        raise TimingError("the robot has no effort limits")
+    most = np.minimum(dynamics.limits, UNLIMITED_EFFORT)
+    bounds = np.column_stack([-most, most])
+
+    def inverse_dynamics(q: FloatArray, qd: FloatArray, qdd: FloatArray) -> FloatArray:
+        return dynamics.efforts(q[None], qd[None], qdd[None])[0]
+
+    constraint = _toppra().constraint
+    return constraint.JointTorqueConstraint(
+        inverse_dynamics,
+        bounds,
+        np.zeros(len(bounds)),
+        constraint.DiscretizationType.Interpolation,
+    )
+
+
+def _link_constraint(limits: LinkLimits, dof: int) -> Any:
+    constraint = _toppra().constraint
+    kinds = limits.speeds.shape[1]
+
+    class OnLink(constraint.LinearConstraint):
+        def __init__(self) -> None:
+            super().__init__()
+            self.dof = dof
+            self.identical = True
+            self.set_discretization_type(constraint.DiscretizationType.Collocation)
+
+        def compute_constraint_params(self, path: Any, gridpoints: FloatArray) -> tuple[Any, ...]:
+            del path
+            sides = np.vstack([np.eye(kinds), -np.eye(kinds)])
+            x_bound = np.column_stack([np.zeros(len(gridpoints)), limits.rate_squared])
+            none = np.zeros_like(limits.speeds)
+            return limits.speeds, limits.bends, none, sides, np.ones(2 * kinds), None, x_bound
+
+    return OnLink()
+
+
+def _solve(
+    path: JointCurve, constraints: list[Any], grid: FloatArray, dof: int
+) -> tuple[Curve, float]:
+    ta = _toppra()
+
+    class Geometry(ta.interpolator.AbstractGeometricPath):
+        def __call__(self, path_positions: Any, order: int = 0) -> FloatArray:
+            values = path.evaluate(path_positions)[order]
+            return values[0] if np.ndim(path_positions) == 0 else values
+
+        @property
+        def dof(self) -> int:
+            return dof
+
+        @property
+        def path_interval(self) -> FloatArray:
+            return np.array([0.0, path.length])
+
+        @property
+        def waypoints(self) -> None:
+            return None
+
+    solver = ta.algorithm.TOPPRA(
+        constraints, Geometry(), gridpoints=grid, parametrizer="ParametrizeConstAccel"
+    )
+    result = solver.compute_trajectory(0, 0)
+    if result is None:
+        raise TimingError("TOPP-RA found no times under the limits")
+
+    def timed(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        return result(times, 0), result(times, 1), result(times, 2)
+
+    return timed, float(result.duration)
+
+
+def _toppra() -> Any:
+    """The library, with the warnings of its first import silenced."""
+    with warnings.catch_warnings():  # invalid escapes of its own
+        warnings.simplefilter("ignore")
+        import toppra
+        import toppra.algorithm
+        import toppra.constraint
+        import toppra.interpolator
+    logging.getLogger("toppra").setLevel(logging.CRITICAL)
+    return toppra

@@ -1,0 +1,1 @@
+"""Grippers and TCPs inferred from a description without annotations."""

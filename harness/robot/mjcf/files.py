@@ -1,0 +1,141 @@
+"""Reads the XML of an MJCF robot and of its includes, within the given folders."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from harness.language.files.xml_file import XmlElement, read_xml
+from harness.robot.mesh_file import LARGEST_FILE
+from harness.robot.packages import NotFoundError, PackagePath
+
+DEEPEST_INCLUDE = 20
+MOST_FILES = 200
+ASSETS = {"mesh": "meshdir", "texture": "texturedir", "hfield": "meshdir", "skin": "meshdir"}
+TEXTURE_SIDES = ("file", "fileright", "fileup", "fileleft", "filedown", "filefront", "fileback")
+
+USER_DATA = ("body", "jnt", "geom", "site", "cam", "tendon", "actuator", "sensor")
+MOST: Mapping[str, Mapping[str, int]] = {
+    "texture": {"width": 8192, "height": 8192 * 6},
+    "hfield": {"nrow": 2048, "ncol": 2048},
+    "mesh": {"params": 100},
+    "size": dict.fromkeys(
+        ("nkey", "nuserdata", *(f"nuser_{kind}" for kind in USER_DATA)),
+        1000,
+    ),
+}
+"""Largest numbers in attributes, by element; MuJoCo would allocate any amount of memory for them.
+
+The height of a cube's texture covers six sides.
+"""
+
+MOST_COPIES = 1000
+"""Most copies by all `<replicate>` together."""
+
+UNUSED = {
+    "composite": "deformable bodies are not part of an arm",
+    "flexcomp": "deformable bodies are not part of an arm",
+    "extension": "plugins are not loaded",
+    "model": "models of other files are not attached",
+}
+
+
+def read_tree(path: Path, packages: PackagePath) -> list[XmlElement]:
+    """The root elements of a file and of its includes, each once, the file's own first.
+
+    Raises:
+        SpecError: A file cannot be read, includes itself, is not MJCF, refers to a file that does
+            not exist or may not be read, or needs too much memory; at line and column.
+    """
+    roots: list[XmlElement] = []
+    _include(path, packages, (), roots)
+    top = roots[0]
+    if top.tag != "mujoco":
+        top.refuse(f"the root element is <{top.tag}>, an MJCF's is <mujoco>")
+    _refuse_unbounded(roots)
+    folders = _folders(roots, path.parent)
+    for root in roots:
+        for item in root.walk():
+            if item.tag in ASSETS:
+                for key in TEXTURE_SIDES:
+                    if item.get(key):
+                        folder = folders[ASSETS[item.tag]]
+                        _check(item, key, folder, packages)
+    return roots
+
+
+def _include(
+    path: Path, packages: PackagePath, above: tuple[Path, ...], roots: list[XmlElement]
+) -> None:
+    """Add a file's root element, and those of its includes, to `roots`."""
+    root = read_xml(path)
+    roots.append(root)
+    for item in root.walk():
+        if item.tag != "include":
+            continue
+        name = item.need("file")
+        try:
+            # MuJoCo resolves every include from the folder of the first file.
+            inside = packages.file(name, (above[0] if above else path).parent)
+        except NotFoundError as error:
+            item.refuse(str(error), at="file")
+        files = (*above, path)
+        if inside.resolve() in [each.resolve() for each in files]:
+            circle = " - ".join(each.name for each in (*files, inside))
+            item.refuse(f"files include each other in a circle: {circle}", at="file")
+        if len(files) > DEEPEST_INCLUDE:
+            item.refuse(f"files include each other more than {DEEPEST_INCLUDE} deep", at="file")
+        if len(roots) >= MOST_FILES:
+            item.refuse(f"more than {MOST_FILES} files are included", at="file")
+        _include(inside, packages, files, roots)
+
+
+def _folders(roots: list[XmlElement], folder: Path) -> dict[str, Path]:
+    """Folders of meshes and textures, by the compiler's attribute."""
+    found = {"meshdir": folder, "texturedir": folder}
+    for compiler in (item for root in roots for item in root.findall("compiler")):
+        for key in found:
+            name = compiler.get(key) or compiler.get("assetdir")
+            if name:
+                found[key] = folder / name
+    return found
+
+
+def _check(item: XmlElement, key: str, folder: Path, packages: PackagePath) -> None:
+    try:
+        path = packages.file(item.get(key), folder)
+    except NotFoundError as error:
+        item.refuse(f"{item.tag} {error}", at=key)
+    size = path.stat().st_size
+    if size > LARGEST_FILE:
+        most = LARGEST_FILE / 1e6
+        item.refuse(f"{path.name} has {size / 1e6:.0f} MB; at most {most:.0f} MB are read", at=key)
+
+
+def _refuse_unbounded(roots: Sequence[XmlElement]) -> None:
+    """Refuse elements that a robot does not need, and numbers above their limits.
+
+    Raises:
+        SpecError: An element or number is refused; at the element or its attribute.
+    """
+    copies = 1.0
+    for item in (item for root in roots for item in root.walk()):
+        if item.tag in UNUSED:
+            item.refuse(UNUSED[item.tag], f"remove the <{item.tag}>")
+        for name, most in MOST.get(item.tag, {}).items():
+            if max(_numbers(item.get(name)), default=0.0) > most:
+                item.refuse(f"<{item.tag}> has a {name} above {most}", at=name)
+        if item.tag == "replicate":
+            copies *= max(_numbers(item.get("count")), default=1.0)
+            if copies > MOST_COPIES:
+                item.refuse(f"more than {MOST_COPIES} copies are made", at="count")
+
+
+def _numbers(text: str) -> list[float]:
+    """The numbers of an attribute; text that is not a number counts as infinite."""
+    try:
+        values = [float(word) for word in text.split()]
+    except ValueError:
+        return [math.inf]
+    return [math.inf if math.isnan(value) else value for value in values]

@@ -1,0 +1,181 @@
+"""MJCF robots as links and joints: bodies, sites, hinges, slides, shapes, keyframes."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from harness.core.errors import Problem, SpecError
+from harness.language.files.source import Source
+from harness.language.files.xml_file import XmlElement
+from harness.robot.description import Joint, Link, NamedState
+from harness.robot.mjcf.files import read_tree
+from harness.robot.mjcf.joints import body_chain, fixed_joint, mjcf_pose, with_mimics
+from harness.robot.mjcf.links import body_link, links_between
+from harness.robot.packages import PackagePath
+from harness.robot.srdf.srdf import link_pair
+from harness.robot.tree import in_tree_order
+from harness.robot.urdf.urdf import Urdf
+
+ROOT = "robot_world"
+"""The link to which the bodies of MJCF's world body are fixed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mjcf:
+    """An MJCF robot.
+
+    Attributes:
+        urdf: Its tree.
+        states: Keyframes as states of the driven joints; their group is empty.
+        disabled: Pairs that the file excludes from contact.
+    """
+
+    urdf: Urdf
+    states: tuple[NamedState, ...]
+    disabled: Mapping[tuple[str, str], str]
+
+
+def read_mjcf(path: Path, packages: PackagePath) -> Mjcf:
+    """Read an MJCF file as MuJoCo compiles it.
+
+    Only the force limits of actuators are read: the program drives every joint with its own servo.
+
+    Raises:
+        SpecError: A file cannot be read, or MuJoCo refuses it; at line and column where known.
+    """
+    import mujoco  # here: other robots do not need it
+
+    roots = read_tree(path, packages)
+    elements = {
+        (kind, item.get("name")): item
+        for root in roots
+        for item in root.walk()
+        for kind in (("link",) if item.tag == "body" else ("joint",) if item.tag == "joint" else ())
+        if item.get("name")
+    }
+    try:
+        spec = mujoco.MjSpec.from_file(str(path))
+        model = spec.compile()
+    except ValueError as error:
+        raise SpecError([_problem(str(error), roots[0], path)]) from error
+    reader = _Reader(model, spec, path.parent, elements)
+    links, joints = reader.tree()
+    ordered = in_tree_order(links, joints, str(path), elements)
+    urdf = Urdf(model.names.split(b"\0")[0].decode(), *ordered, tuple(reader.notes), elements)
+    return Mjcf(urdf, reader.states(), reader.excluded())
+
+
+def _problem(message: str, root: XmlElement, path: Path) -> Problem:
+    """MuJoCo's message, at the line that it names."""
+    lines = [line for line in message.splitlines() if line.strip()]
+    text = lines[0].removeprefix("Error: ").removeprefix("XML Error: ")
+    found = re.search(r"line (\d+)", message)
+    source: Source = root.place.source
+    line = int(found[1]) if found else 0
+    excerpt = source.line(line)
+    column = len(excerpt) - len(excerpt.lstrip()) + 1 if line else 0
+    return Problem(str(path), line, column, f"MuJoCo: {text}", "", excerpt)
+
+
+@dataclass(eq=False)
+class _Reader:
+    """Converts a compiled model to links and joints."""
+
+    model: Any
+    spec: Any
+    folder: Path
+    elements: Mapping[tuple[str, str], XmlElement]
+    notes: list[str] = field(default_factory=list[str])
+
+    def tree(self) -> tuple[list[Link], list[Joint]]:
+        model = self.model
+        links, joints = [Link(ROOT, None)], list[Joint]()
+        names = {0: ROOT}
+        dropped: list[str] = []
+        for body in range(1, model.nbody):
+            name = model.body(body).name or f"body_{body}"
+            parent = int(model.body_parentid[body])
+            if parent not in names or self._is_free(body) or model.body_mocapid[body] >= 0:
+                dropped.append(name)
+                continue
+            names[body] = name
+            between, chain = body_chain(model, self.elements, body, names[parent], name)
+            own = body_link(self.spec, model, self.folder, body, name, self.notes)
+            count = sum(joint.is_movable for joint in chain)
+            if count > 1:
+                self.notes.append(f"body '{name}' has {count} joints: links are put between them")
+            links += links_between(between, count, own)
+            joints += chain
+        if dropped:
+            names_out = ", ".join(dropped)
+            self.notes.append(f"bodies that are free or outside the arm are left out: {names_out}")
+        self._sites(names, links, joints)
+        self._count_ignored()
+        return links, with_mimics(model, joints, self.notes)
+
+    def _is_free(self, body: int) -> bool:
+        first, count = int(self.model.body_jntadr[body]), int(self.model.body_jntnum[body])
+        return any(int(self.model.jnt_type[first + k]) in (0, 1) for k in range(count))
+
+    def _sites(self, names: Mapping[int, str], links: list[Link], joints: list[Joint]) -> None:
+        """Add sites as frames, except those with the name of a body."""
+        model, taken = self.model, {link.name for link in links}
+        for number in range(model.nsite):
+            name, body = model.site(number).name, int(model.site_bodyid[number])
+            if name and name not in taken and body in names:
+                pose = mjcf_pose(model.site_pos[number], model.site_quat[number])
+                links.append(Link(name, None))
+                joints.append(fixed_joint(f"{name}_site", names[body], name, pose))
+                taken.add(name)
+
+    def _count_ignored(self) -> None:
+        model = self.model
+        for count, what in (
+            (model.nu, "actuators are not used: the program drives every joint with its own servo"),
+            (model.ntendon, "tendons are ignored"),
+            (model.nsensor, "sensors are ignored"),
+            (_with_own_dynamics(model), "joints have an armature or a spring, which is ignored"),
+            (int(model.body_geomnum[0]), "geoms of the world body are not part of the robot"),
+        ):
+            if count:
+                self.notes.append(f"{count} {what}")
+
+    def states(self) -> tuple[NamedState, ...]:
+        """Keyframes as joint positions by name."""
+        model = self.model
+        hinges = [j for j in range(model.njnt) if int(model.jnt_type[j]) in (2, 3)]
+        return tuple(
+            NamedState(
+                model.key(number).name or f"key_{number}",
+                "",
+                {
+                    model.joint(j).name: float(model.key_qpos[number][model.jnt_qposadr[j]])
+                    for j in hinges
+                },
+            )
+            for number in range(model.nkey)
+        )
+
+    def excluded(self) -> dict[tuple[str, str], str]:
+        """Pairs of bodies that the file excludes from contact."""
+        pairs: dict[tuple[str, str], str] = {}
+        for signature in self.model.exclude_signature:
+            first, second = int(signature) >> 16, int(signature) & 0xFFFF
+            names = [self.model.body(each).name for each in (first, second)]
+            if all(names) and first and second:
+                pairs[link_pair(names[0], names[1])] = "Excluded"
+        return pairs
+
+
+def _with_own_dynamics(model: Any) -> int:
+    """Number of joints with an armature or a spring."""
+    springs = np.reshape(model.jnt_stiffness, (model.njnt, -1)).any(axis=1)
+    return int((springs | (model.dof_armature[model.jnt_dofadr] > 0)).sum())

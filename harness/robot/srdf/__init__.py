@@ -1,0 +1,1 @@
+"""SRDF read, checked and proposed."""

@@ -1,0 +1,110 @@
+"""Checks an SRDF against its URDF."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+from harness.robot.description import Joint, NamedState, PlanningGroup
+from harness.robot.groups import planning_groups
+from harness.robot.srdf.default_group import DEFAULT_GROUP, default_srdf
+from harness.robot.srdf.srdf import Srdf, has_several_values
+from harness.robot.urdf.urdf import Urdf
+
+
+def checked_srdf(srdf: Srdf, urdf: Urdf, source: str) -> Srdf:
+    """The SRDF without pairs of unknown links.
+
+    Raises:
+        SpecError: It names unknown joints, links or groups; located.
+    """
+    resolved = planning_groups(srdf, urdf.joints, source)
+    root = srdf.root_element
+    if root is None:
+        return srdf
+    joints = {joint.name: joint for joint in urdf.joints}
+    links = {link.name for link in urdf.links} | {"world"}
+    groups = {group.name for group in srdf.groups}
+    notes: list[str] = []
+    virtual = {joint.name for joint in srdf.virtual_joints}
+    for item in root.findall("group_state"):
+        what = f"state '{item.get('name')}'"
+        if "group" in item.attributes and item.get("group") not in groups:
+            item.refuse(*_unknown(what, "group", item.get("group"), groups), at="group")
+        for each in item.findall("joint"):
+            name = each.get("name")
+            if name in virtual:
+                continue
+            if name not in joints:
+                each.refuse(*_unknown(what, "joint", name, joints), at="name")
+            if has_several_values(each):
+                if joints[name].is_movable:
+                    each.refuse(f"{what}: joint '{name}' has one position", at="value")
+                notes.append(f"SRDF: {what} places '{name}', which is fixed: ignored")
+    for item in root.findall("end_effector"):
+        what = f"end effector '{item.get('name')}'"
+        for key, known in (("parent_link", links), ("group", groups), ("parent_group", groups)):
+            value = item.get(key)
+            if value and value not in known:
+                item.refuse(*_unknown(what, key.rpartition("_")[2], value, known), at=key)
+    for item in root.findall("passive_joint"):
+        if item.get("name") not in joints:
+            item.refuse(*_unknown("passive_joint", "joint", item.get("name"), joints), at="name")
+    for joint in srdf.virtual_joints:
+        if joint.kind != "fixed":
+            notes.append(f"SRDF: the {joint.kind} virtual joint '{joint.name}' counts as fixed")
+    known = {
+        pair: reason
+        for pair, reason in srdf.disabled.items()
+        if pair[0] in links and pair[1] in links
+    }
+    if len(known) < len(srdf.disabled):
+        lost = sorted({name for pair in srdf.disabled for name in pair} - links)
+        notes.append(f"SRDF: disable_collisions of unknown links ignored: {', '.join(lost)}")
+    states = tuple(
+        _within(state, joints, notes) for state in _with_groups(srdf.states, resolved, notes)
+    )
+    srdf = replace(srdf, disabled=known, states=states, notes=(*srdf.notes, *notes))
+    if srdf.groups:
+        return srdf
+    default = default_srdf(urdf)
+    note = f"SRDF: no groups; '{DEFAULT_GROUP}' is the longest chain"
+    return replace(srdf, groups=default.groups, notes=(*srdf.notes, note))
+
+
+def _with_groups(
+    states: Iterable[NamedState], groups: Mapping[str, PlanningGroup], notes: list[str]
+) -> Iterable[NamedState]:
+    """The states; one without a group belongs to the first group with all its joints."""
+    for state in states:
+        if state.group:
+            yield state
+            continue
+        names = set(state.positions)
+        group = next((g.name for g in groups.values() if names <= set(g.joint_names)), None)
+        if group is None:
+            notes.append(f"SRDF: state '{state.name}' names no group; ignored")
+            continue
+        notes.append(f"SRDF: state '{state.name}' names no group; taken as of '{group}'")
+        yield replace(state, group=group)
+
+
+def _within(state: NamedState, joints: Mapping[str, Joint], notes: list[str]) -> NamedState:
+    """A state without virtual joints; adds a note on positions outside the limits."""
+    positions = {name: value for name, value in state.positions.items() if name in joints}
+    for name, value in positions.items():
+        joint = joints[name]
+        if joint.is_movable and not joint.lower - 1e-6 <= value <= joint.upper + 1e-6:
+            notes.append(
+                f"SRDF: state '{state.name}' has {name} at {value:g}, outside its limits "
+                f"[{joint.lower:g}, {joint.upper:g}]"
+            )
+    return replace(state, positions=positions)
+
+
+def _unknown(what: str, kind: str, name: str, known: Iterable[str]) -> tuple[str, str]:
+    listed = ", ".join(sorted(known))
+    near = difflib.get_close_matches(name, list(known), 1)
+    hint = (f"did you mean '{near[0]}'? " if near else "") + f"{kind}s: {listed}"
+    return f"{what} names the unknown {kind} '{name}'", hint

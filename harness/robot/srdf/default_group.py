@@ -1,0 +1,85 @@
+"""The planning group of a robot without an SRDF: the longest chain, without the hand's fingers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from harness.robot.description import Joint
+from harness.robot.srdf.srdf import Srdf, SrdfGroup
+from harness.robot.urdf.urdf import Urdf
+
+DEFAULT_GROUP = "arm"
+"""Name of the group of a robot without an SRDF."""
+
+
+def default_srdf(urdf: Urdf, tip_link: str = "") -> Srdf:
+    """One group from the root to a tip: the given link, else the end of the chain of most joints.
+
+    Fingers that mimic each other are not part of a chain. If several chains are longest, the group
+    ends where they branch, as at fingers that move alone; of several arms it is the first.
+    """
+    before = {joint.child: joint for joint in urdf.joints}
+
+    def chain(link: str) -> list[Joint]:
+        found: list[Joint] = []
+        while link in before:
+            found.append(before[link])
+            link = before[link].parent
+        return found[::-1]
+
+    if tip_link in before:
+        tips = [tip_link]
+    else:
+        chains = [chain(link.name) for link in urdf.links]
+        tips = _tips([_without_fingers(each, urdf.joints) for each in chains]) or _tips(chains)
+    if not tips:
+        return Srdf()
+    notes = ["no SRDF: only neighbouring links may touch"]
+    if len(tips) > 1:
+        others = ", ".join(tips[1:])
+        notes.append(
+            f"several arms: the group ends at '{tips[0]}'; other choices of tcp_link: {others}"
+        )
+    group = SrdfGroup(DEFAULT_GROUP, chains=((urdf.root, tips[0]),))
+    return Srdf((group,), notes=tuple(notes))
+
+
+def _without_fingers(chain: Sequence[Joint], joints: Sequence[Joint]) -> Sequence[Joint]:
+    """The chain without its last joints that move together with joints outside the chain.
+
+    A hand closes several fingers by one joint. A joint farther up that others mimic, as in an arm
+    with a parallel linkage, belongs to the arm: joints that move alone follow it.
+    """
+    inside = {joint.name for joint in chain}
+    leaders = {j.mimic.joint for j in joints if j.mimic and j.name not in inside}
+    end = len(chain)
+    for number in range(len(chain) - 1, -1, -1):
+        joint = chain[number]
+        if not joint.is_movable:
+            continue
+        leader = joint.mimic.joint if joint.mimic else joint.name
+        if leader in inside and leader not in leaders:
+            break
+        end = number
+    return chain[:end]
+
+
+def _tips(chains: Sequence[Sequence[Joint]]) -> list[str]:
+    """Last link of the part that the longest chains share; of each, if that part cannot move."""
+
+    def movable(chain: Sequence[Joint]) -> list[str]:
+        return [joint.name for joint in chain if joint.is_movable and joint.mimic is None]
+
+    most = max((len(movable(chain)) for chain in chains), default=0)
+    if most == 0:
+        return []
+    by_last: dict[str, Sequence[Joint]] = {}
+    for each in (chain for chain in chains if len(movable(chain)) == most):
+        last = movable(each)[-1]
+        by_last[last] = max(by_last.get(last, ()), each, key=len)
+    longest = list(by_last.values())
+    if len(longest) > 1:
+        common = [row[0] for row in zip(*longest, strict=False) if len({j.name for j in row}) == 1]
+        if movable(common):
+            longest = [common]
+    return [chain[-1].child for chain in longest]

@@ -1,0 +1,87 @@
+"""Allowed link pairs of a robot without an SRDF: those in contact at the start."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from harness.core.spatial import SE3
+from harness.robot.chain import motion
+from harness.robot.description import Joint, Link
+from harness.robot.solids import coal_geometry
+from harness.robot.srdf.srdf import link_pair
+from harness.robot.tree import carriers
+from harness.robot.urdf.urdf import Urdf
+
+NEARNESS = 0.001
+"""Distance up to which links count as touching [m], since contact at distance 0 is not robust."""
+
+
+def touching_pairs(urdf: Urdf, positions: Mapping[str, float]) -> tuple[tuple[str, str], ...]:
+    """Pairs of links that touch at joint positions, except adjacent and rigidly connected ones.
+
+    Args:
+        urdf: The robot.
+        positions: Positions of the driven joints, by name; mimic joints follow.
+    """
+    import coal  # here: robots with an SRDF do not need it
+
+    request = coal.CollisionRequest()
+    request.security_margin = NEARNESS
+    poses = link_poses(urdf, positions)
+    carrier = carriers(urdf.joints, urdf.root)
+    neighbours = adjacent_pairs(urdf.links, urdf.joints)
+    solids = [
+        (link.name, shape, coal_geometry(shape)) for link in urdf.links for shape in link.collisions
+    ]
+    found: dict[tuple[str, str], None] = {}
+    for later, (second, shape, solid) in enumerate(solids):
+        T_second = coal_transform(poses[second] @ shape.pose)
+        for first, other_shape, other in solids[:later]:
+            pair = link_pair(first, second)
+            if carrier[first] == carrier[second] or pair in neighbours or pair in found:
+                continue
+            T_first = coal_transform(poses[first] @ other_shape.pose)
+            result = coal.CollisionResult()
+            coal.collide(other, T_first, solid, T_second, request, result)
+            if result.isCollision():
+                found[pair] = None
+    return tuple(found)
+
+
+def adjacent_pairs(links: Iterable[Link], joints: Iterable[Joint]) -> dict[tuple[str, str], None]:
+    """Every link with shapes, with its nearest ancestor that has shapes, in link order."""
+    shaped = dict.fromkeys(link.name for link in links if link.collisions)
+    before = {joint.child: joint.parent for joint in joints}
+    found: dict[tuple[str, str], None] = {}
+    for name in shaped:
+        parent = before.get(name)
+        while parent is not None and parent not in shaped:
+            parent = before.get(parent)
+        if parent is not None:
+            found[link_pair(name, parent)] = None
+    return found
+
+
+def link_poses(urdf: Urdf, positions: Mapping[str, float]) -> dict[str, SE3]:
+    """T_root_link of every link."""
+    poses = {urdf.root: SE3.identity()}
+    for joint in urdf.joints:
+        value = positions.get(joint.name, 0.0)
+        if joint.mimic is not None:
+            value = joint.mimic.multiplier * positions.get(joint.mimic.joint, 0.0)
+            value += joint.mimic.offset
+        moved = motion(joint, value) if joint.is_movable else SE3.identity()
+        poses[joint.child] = poses[joint.parent] @ joint.pose @ moved
+    return poses
+
+
+def coal_transform(pose: SE3) -> Any:
+    """A pose as Coal's transform."""
+    import coal
+
+    return coal.Transform3s(np.asarray(pose.rotation), np.asarray(pose.translation))

@@ -1,0 +1,184 @@
+"""SRDF as plain data: groups, states, disabled collision pairs."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from harness.language.files.xml_file import XmlElement, parse_xml
+from harness.robot.description import NamedState
+from harness.robot.urdf.values import number
+
+READ = frozenset(
+    {"group", "group_state", "end_effector", "passive_joint", "virtual_joint", "disable_collisions"}
+)
+
+
+@dataclass(frozen=True)
+class SrdfGroup:
+    """A `<group>`: joints, links (for their parent joints), chains, other groups."""
+
+    name: str
+    joints: tuple[str, ...] = ()
+    links: tuple[str, ...] = ()
+    chains: tuple[tuple[str, str], ...] = ()
+    subgroups: tuple[str, ...] = ()
+    element: XmlElement | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class EndEffector:
+    """A group that is another group's tool."""
+
+    name: str
+    parent_link: str
+    group: str
+    parent_group: str = ""
+
+
+@dataclass(frozen=True)
+class VirtualJoint:
+    """The connection of the robot's root with the world."""
+
+    name: str
+    kind: str
+    parent_frame: str
+    child_link: str
+
+
+@dataclass(frozen=True)
+class Srdf:
+    """A semantic description.
+
+    Attributes:
+        passive: Joints without a drive.
+        disabled: Link pairs (sorted) that are not checked, with the reason.
+        notes: Notes on ignored elements.
+        root_element: The document it was read from.
+    """
+
+    groups: tuple[SrdfGroup, ...] = ()
+    states: tuple[NamedState, ...] = ()
+    end_effectors: tuple[EndEffector, ...] = ()
+    passive: tuple[str, ...] = ()
+    disabled: Mapping[tuple[str, str], str] = field(default_factory=dict[tuple[str, str], str])
+    virtual_joints: tuple[VirtualJoint, ...] = ()
+    notes: tuple[str, ...] = field(default=(), compare=False)
+    root_element: XmlElement | None = field(default=None, compare=False, repr=False)
+
+
+def link_pair(first: str, second: str) -> tuple[str, str]:
+    """The unordered pair, sorted."""
+    return (first, second) if first <= second else (second, first)
+
+
+def parse_srdf(text: str | bytes, source: str) -> Srdf:
+    """Read an SRDF.
+
+    Raises:
+        SpecError: It is not an SRDF, an element lacks an attribute, or a position is not a
+            number; at line and column.
+    """
+    root = parse_xml(text, source)
+    if root.tag != "robot":
+        root.refuse(f"the root element is <{root.tag}>, an SRDF's is <robot>")
+    link = root.find("link")
+    if link is not None:
+        link.refuse("this is a URDF", "its groups, states and allowed pairs are in an SRDF")
+    ignored = Counter(child.tag for child in root.children if child.tag not in READ)
+    return Srdf(
+        tuple(_group(item) for item in root.findall("group")),
+        tuple(
+            NamedState(
+                item.need("name"),
+                item.get("group"),
+                {
+                    joint.need("name"): number(joint, "value")
+                    for joint in item.findall("joint")
+                    if not has_several_values(joint)
+                },
+            )
+            for item in root.findall("group_state")
+        ),
+        tuple(
+            EndEffector(
+                item.need("name"),
+                item.need("parent_link"),
+                item.need("group"),
+                item.get("parent_group"),
+            )
+            for item in root.findall("end_effector")
+        ),
+        tuple(item.need("name") for item in root.walk() if item.tag == "passive_joint"),
+        {
+            link_pair(item.need("link1"), item.need("link2")): item.get("reason")
+            for item in root.findall("disable_collisions")
+        },
+        tuple(
+            VirtualJoint(
+                item.need("name"),
+                item.need("type"),
+                item.need("parent_frame"),
+                item.need("child_link"),
+            )
+            for item in root.findall("virtual_joint")
+        ),
+        tuple(
+            f"SRDF: {count} <{tag}> element{'s' if count > 1 else ''} ignored"
+            for tag, count in sorted(ignored.items())
+        ),
+        root,
+    )
+
+
+def has_several_values(joint: XmlElement) -> bool:
+    """Whether a state has a joint of several axes, such as a floating or planar one."""
+    return len(joint.need("value").split()) > 1
+
+
+def _group(item: XmlElement) -> SrdfGroup:
+    return SrdfGroup(
+        item.need("name"),
+        tuple(joint.need("name") for joint in item.findall("joint")),
+        tuple(link.need("name") for link in item.findall("link")),
+        tuple((c.need("base_link"), c.need("tip_link")) for c in item.findall("chain")),
+        tuple(group.need("name") for group in item.findall("group")),
+        item,
+    )
+
+
+def write_srdf(name: str, srdf: Srdf) -> str:
+    """The SRDF as text."""
+    root = ET.Element("robot", name=name)
+    for group in srdf.groups:
+        element = ET.SubElement(root, "group", name=group.name)
+        for base, tip in group.chains:
+            ET.SubElement(element, "chain", base_link=base, tip_link=tip)
+        for tag, names in (
+            ("joint", group.joints),
+            ("link", group.links),
+            ("group", group.subgroups),
+        ):
+            for item in names:
+                ET.SubElement(element, tag, name=item)
+    for state in srdf.states:
+        element = ET.SubElement(root, "group_state", name=state.name, group=state.group)
+        for joint, position in state.positions.items():
+            ET.SubElement(element, "joint", name=joint, value=repr(float(position)))
+    for tool in srdf.end_effectors:
+        words = {"name": tool.name, "parent_link": tool.parent_link, "group": tool.group}
+        if tool.parent_group:
+            words["parent_group"] = tool.parent_group
+        ET.SubElement(root, "end_effector", words)
+    for joint in srdf.virtual_joints:
+        words = {"name": joint.name, "type": joint.kind}
+        words |= {"parent_frame": joint.parent_frame, "child_link": joint.child_link}
+        ET.SubElement(root, "virtual_joint", words)
+    for joint in srdf.passive:
+        ET.SubElement(root, "passive_joint", name=joint)
+    for (first, second), reason in srdf.disabled.items():
+        ET.SubElement(root, "disable_collisions", link1=first, link2=second, reason=reason)
+    ET.indent(root)
+    return '<?xml version="1.0"?>\n' + ET.tostring(root, encoding="unicode") + "\n"

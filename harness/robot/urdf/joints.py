@@ -1,0 +1,157 @@
+"""A URDF's joints: kinds, axes, limits, mimics."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from harness.language.files.xml_file import XmlElement
+from harness.robot.description import Joint, JointKind, Mimic
+from harness.robot.urdf.values import number, pose, three
+from harness.robot.urdf.write import NO_LIMIT
+
+KINDS: dict[str, JointKind] = {
+    "fixed": "fixed",
+    "revolute": "revolute",
+    "continuous": "continuous",
+    "prismatic": "prismatic",
+}
+FREE = ("floating", "planar")
+
+
+def read_joint(element: XmlElement, notes: list[str]) -> Joint:
+    """A joint.
+
+    Soft limits of a `safety_controller` narrow the position limits, as in MoveIt. A velocity or
+    effort limit of zero is a placeholder, since such a joint could not move: it counts as missing.
+
+    Raises:
+        SpecError: It has a mistake.
+    """
+    name = element.need("name")
+    kind = _kind(element, name)
+    parent, child = element.find("parent"), element.find("child")
+    if parent is None or child is None:
+        element.refuse(f"joint '{name}' has a <parent> and a <child>")
+    axis_element = element.find("axis")
+    axis = np.array((1.0, 0.0, 0.0) if axis_element is None else three(axis_element, "xyz"))
+    length = float(np.linalg.norm(axis))
+    if kind != "fixed" and length < 1e-9:
+        (axis_element or element).refuse(f"joint '{name}' has an axis of no length", at="xyz")
+    lower, upper = _positions(element, name, kind)
+    limit, dynamics = element.find("limit"), element.find("dynamics")
+    mimic = element.find("mimic")
+    moves = kind != "fixed"
+    damping = 0.0 if dynamics is None else number(dynamics, "damping", 0.0)
+    friction = 0.0 if dynamics is None else number(dynamics, "friction", 0.0)
+    return Joint(
+        name,
+        kind,
+        parent.need("link"),
+        child.need("link"),
+        pose(element),
+        axis / length if moves else axis,
+        lower,
+        upper,
+        _rate(limit, "velocity", name, notes) if moves else np.inf,
+        effort=_rate(limit, "effort", name, notes) if moves else np.inf,
+        damping=max(damping, 0.0),
+        friction=max(friction, 0.0),
+        mimic=None
+        if mimic is None or not moves
+        else Mimic(
+            mimic.need("joint"), number(mimic, "multiplier", 1.0), number(mimic, "offset", 0.0)
+        ),
+    )
+
+
+def _kind(element: XmlElement, name: str) -> JointKind:
+    word = element.need("type")
+    if word in FREE:
+        element.refuse(
+            f"joint '{name}' is {word}; an arm has a fixed base",
+            "make it fixed; the scenario's `base` places the robot",
+            at="type",
+        )
+    if word not in KINDS:
+        element.refuse(
+            f"joint '{name}' has the type '{word}'; known are {', '.join(KINDS)}", at="type"
+        )
+    return KINDS[word]
+
+
+def _positions(element: XmlElement, name: str, kind: JointKind) -> tuple[float, float]:
+    limit, safety = element.find("limit"), element.find("safety_controller")
+    lower, upper = -np.inf, np.inf
+    if kind in ("revolute", "prismatic"):
+        if limit is None:
+            if element.find("mimic") is not None:
+                return lower, upper
+            element.refuse(f"joint '{name}' is {kind} and has no <limit>")
+        lower, upper = number(limit, "lower", 0.0), number(limit, "upper", 0.0)
+        if lower > upper:
+            limit.refuse(f"joint '{name}': lower {lower:g} is above upper {upper:g}", at="lower")
+        if lower == upper and element.find("mimic") is None:
+            limit.refuse(
+                f"joint '{name}' cannot move: lower and upper are both {lower:g}",
+                "give its range, or make it fixed or continuous",
+            )
+    if safety is not None and kind != "fixed":
+        soft = (
+            max(lower, number(safety, "soft_lower_limit", -1e9)),
+            min(upper, number(safety, "soft_upper_limit", 1e9)),
+        )
+        if kind != "continuous" and soft[0] < soft[1]:
+            lower, upper = soft
+    return lower, upper
+
+
+def _rate(limit: XmlElement | None, key: str, name: str, notes: list[str]) -> float:
+    if limit is None or key not in limit.attributes:
+        return np.inf
+    if limit.get(key).strip() in ("inf", "+inf"):
+        return np.inf
+    value = number(limit, key)
+    if value >= NO_LIMIT:
+        return np.inf
+    if value < 0:
+        limit.refuse(f"joint '{name}': {key} is {value:g}; it has to be above zero", at=key)
+    if value == 0:
+        notes.append(f"joint '{name}': a limit of 0 for its {key} counts as none")
+        return np.inf
+    return value
+
+
+def resolved_mimics(
+    joints: Sequence[Joint], elements: dict[tuple[str, str], XmlElement]
+) -> tuple[Joint, ...]:
+    """The joints with each mimic resolved to a driven joint.
+
+    Raises:
+        SpecError: A mimic follows an unknown or a fixed joint, or itself in the end.
+    """
+    by_name = {joint.name: joint for joint in joints}
+
+    def followed(joint: Joint) -> Joint:
+        multiplier, offset, seen, mimic = 1.0, 0.0, [joint.name], joint.mimic
+        while mimic is not None:
+            element = elements["joint", seen[-1]].find("mimic") or elements["joint", seen[-1]]
+            if mimic.joint not in by_name or not by_name[mimic.joint].is_movable:
+                word = "fixed" if mimic.joint in by_name else "unknown"
+                element.refuse(
+                    f"joint '{seen[-1]}' mimics the {word} joint '{mimic.joint}'", at="joint"
+                )
+            if mimic.joint in seen:
+                element.refuse(
+                    f"joints mimic each other in a circle: {' - '.join((*seen, mimic.joint))}",
+                    at="joint",
+                )
+            offset += multiplier * mimic.offset
+            multiplier *= mimic.multiplier
+            seen.append(mimic.joint)
+            mimic = by_name[mimic.joint].mimic
+        return replace(joint, mimic=Mimic(seen[-1], multiplier, offset)) if joint.mimic else joint
+
+    return tuple(followed(joint) for joint in joints)

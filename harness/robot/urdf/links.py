@@ -1,0 +1,164 @@
+"""A URDF's links: mass properties and shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from harness.core.errors import RobotError, SpecError
+from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Rgba, Shape, Sphere
+from harness.core.solids import TRIANGLE_SLACK
+from harness.language.files.xml_file import XmlElement
+from harness.robot.description import Inertial, Link
+from harness.robot.mesh_file import SUFFIXES, convex_hull
+from harness.robot.packages import NotFoundError, PackagePath
+from harness.robot.urdf.values import number, pose, positive, rgba, three
+
+DEFAULT_RGBA: Rgba = (0.6, 0.6, 0.6, 1.0)
+SMALLEST_RADIUS = 0.005
+"""Radius of the solid sphere whose inertia is a lower bound of a link's inertia [m]."""
+
+NO_BODY = "no body has the principal moments of inertia"
+"""Beginning of the note on a corrected tensor."""
+
+
+@dataclass(frozen=True, eq=False)
+class LinkReader:
+    """Reads the links of one file.
+
+    Attributes:
+        folder: The folder to which mesh file names are relative.
+        packages: Search path for other mesh file names.
+        materials: Colours of the file's named materials.
+        notes: Collects notes on corrected elements.
+    """
+
+    folder: Path
+    packages: PackagePath
+    materials: Mapping[str, Rgba]
+    notes: list[str] = field(default_factory=list[str])
+
+    def link(self, element: XmlElement) -> Link:
+        """A link.
+
+        Raises:
+            SpecError: It has a mistake.
+        """
+        name = element.need("name")
+        inertial = element.find("inertial")
+        visuals = (self._shape(item, name) for item in element.findall("visual"))
+        collisions = (self._shape(item, name) for item in element.findall("collision"))
+        return Link(
+            name,
+            None if inertial is None else self._inertial(inertial, name),
+            tuple(shape for shape in visuals if shape is not None),
+            tuple(shape for shape in collisions if shape is not None),
+        )
+
+    def _inertial(self, element: XmlElement, link: str) -> Inertial | None:
+        """Mass properties with the tensor in link axes; None for a mass of 0."""
+        mass_element, tensor = element.find("mass"), element.find("inertia")
+        if mass_element is None:
+            element.refuse(f"link '{link}': <inertial> has no <mass>")
+        mass = number(mass_element, "value")
+        if mass < 0:
+            mass_element.refuse(f"link '{link}' weighs {mass:g} kg", at="value")
+        if mass == 0:
+            return None
+        if tensor is None:
+            element.refuse(f"link '{link}': <inertial> has no <inertia>")
+        xx, yy, zz = (number(tensor, key) for key in ("ixx", "iyy", "izz"))
+        xy, xz, yz = (number(tensor, key, 0.0) for key in ("ixy", "ixz", "iyz"))
+        placed = pose(element)
+        inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        if not np.array_equal(placed.rotation, np.eye(3)):
+            inertia = placed.rotation @ inertia @ placed.rotation.T
+        return Inertial(mass, placed.translation, self._of_a_body(inertia, mass, tensor, link))
+
+    def _of_a_body(
+        self, inertia: np.ndarray, mass: float, tensor: XmlElement, link: str
+    ) -> np.ndarray:
+        """The tensor, corrected to a physically possible one."""
+        moments, axes = np.linalg.eigh(inertia)
+        if moments[0] < -1e-3 * abs(moments).max():
+            tensor.refuse(
+                f"link '{link}' has a negative moment of inertia, {moments[0]:.3g} kg m^2",
+                "the tensor is about the centre of mass and positive definite",
+            )
+        least = 0.4 * mass * SMALLEST_RADIUS**2
+        raised = np.maximum(moments, 0.0)
+        if raised[0] < 1e-3 * least:
+            raised = np.maximum(raised, least)
+        lack = raised[2] - raised[0] - raised[1]
+        if lack > TRIANGLE_SLACK * raised[2]:
+            raised = raised + np.array([lack / 2, lack / 2, 0.0]) * (1 + 1e-9)
+        if np.array_equal(raised, moments):
+            return inertia
+        self.notes.append(
+            f"link '{link}': {NO_BODY} "
+            f"{', '.join(f'{value:.3g}' for value in moments)} kg m^2; taken as "
+            f"{', '.join(f'{value:.3g}' for value in raised)}"
+        )
+        return axes @ np.diag(raised) @ axes.T
+
+    def _shape(self, element: XmlElement, link: str) -> Shape | None:
+        geometry = element.find("geometry")
+        if geometry is None or len(geometry.children) != 1:
+            element.refuse(f"link '{link}': <{element.tag}> has one <geometry> with one shape")
+        found = self._geometry(geometry.children[0], link, is_visual=element.tag == "visual")
+        if found is None:
+            return None
+        material, color = element.find("material"), None
+        colour = DEFAULT_RGBA
+        if material is not None:
+            color = material.find("color")
+            known = self.materials.get(material.get("name"), DEFAULT_RGBA)
+            colour = known if color is None else rgba(color)
+        return Shape(found, pose(element), colour, element.get("name"))
+
+    def _geometry(self, item: XmlElement, link: str, *, is_visual: bool) -> Geometry | None:
+        match item.tag:
+            case "box":
+                size = three(item, "size")
+                if min(size) <= 0:
+                    item.refuse(f"link '{link}': a box has a size above zero", at="size")
+                return Box(size)
+            case "cylinder":
+                return Cylinder(positive(item, "radius"), positive(item, "length"))
+            case "sphere":
+                return Sphere(positive(item, "radius"))
+            case "capsule":
+                return Capsule(positive(item, "radius"), positive(item, "length"))
+            case "mesh":
+                return self._mesh(item, link, is_visual=is_visual)
+            case _:
+                hint = "known are box, cylinder, sphere, capsule, mesh"
+                message = f"link '{link}': unknown geometry <{item.tag}>"
+                raise SpecError([item.problem(message, hint)])
+
+    def _mesh(self, item: XmlElement, link: str, *, is_visual: bool) -> Mesh | None:
+        name = item.need("filename")
+        scale = three(item, "scale", (1.0, 1.0, 1.0))
+        if 0 in scale:
+            item.refuse(f"link '{link}': a mesh's scale is not zero", at="scale")
+        if Path(name).suffix.lower() not in SUFFIXES:
+            if is_visual:
+                self.notes.append(
+                    f"link '{link}': the visual '{name}' is not drawn (no STL, OBJ, DAE)"
+                )
+                return None
+            item.refuse(f"link '{link}': '{name}' is not an STL, OBJ or DAE file", at="filename")
+        try:
+            path = self.packages.file(name, self.folder)
+        except NotFoundError as error:
+            item.refuse(f"link '{link}': mesh {error}", at="filename")
+        mesh = Mesh(path, scale)
+        try:
+            if not is_visual:
+                convex_hull(mesh)
+        except RobotError as error:
+            item.refuse(f"link '{link}': mesh {error}", at="filename")
+        return mesh

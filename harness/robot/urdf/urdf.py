@@ -1,0 +1,109 @@
+"""URDF text as links and joints."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from harness.language.files.xml_file import XmlElement, parse_xml
+from harness.robot.description import Joint, Link
+from harness.robot.packages import PackagePath
+from harness.robot.tree import Elements, in_tree_order
+from harness.robot.urdf.joints import read_joint, resolved_mimics
+from harness.robot.urdf.links import LinkReader
+from harness.robot.urdf.ros2_control import with_interfaces
+from harness.robot.urdf.values import rgba
+
+MOST_LINKS = 500
+READ = frozenset({"link", "joint", "material", "ros2_control"})
+
+
+@dataclass(frozen=True, eq=False)
+class Urdf:
+    """A robot's tree: links with parents before children, joints in the order of their children.
+
+    Attributes:
+        notes: Notes on ignored and changed elements.
+        elements: Elements of links and joints.
+        root_element: The document, for readers of optional elements.
+    """
+
+    name: str
+    links: tuple[Link, ...]
+    joints: tuple[Joint, ...]
+    notes: tuple[str, ...] = ()
+    elements: Elements = field(default_factory=dict[tuple[str, str], XmlElement])
+    root_element: XmlElement | None = None
+
+    @property
+    def root(self) -> str:
+        """The link without a parent joint."""
+        return self.links[0].name
+
+
+def parse_urdf(
+    text: str | bytes, folder: Path, source: str, packages: PackagePath | None = None
+) -> Urdf:
+    """Read a URDF.
+
+    In addition to URDF, `<capsule radius length>` is supported.
+
+    Args:
+        text: The document.
+        folder: The folder to which mesh file names are relative.
+        source: Name of the document in messages.
+        packages: Search path for other mesh file names; by default around `folder`.
+
+    Raises:
+        SpecError: The document is not a URDF of one tree; at the line and column.
+    """
+    root = parse_xml(text, source)
+    if root.tag != "robot":
+        root.refuse(f"the root element is <{root.tag}>, a URDF's is <robot>")
+    macro = next((item for item in root.walk() if item.tag.startswith("xacro:")), None)
+    if macro is not None:
+        macro.refuse("this is a xacro file", "name it with `xacro`, not with `urdf`")
+    notes: list[str] = []
+    materials = {
+        item.get("name"): rgba(color)
+        for item in root.findall("material")
+        if (color := item.find("color")) is not None
+    }
+    packages = packages or PackagePath(folder.resolve())
+    reader = LinkReader(folder, packages, materials, notes)
+    elements = _by_name(root)
+    links = [reader.link(item) for item in root.findall("link")]
+    joints = [read_joint(item, notes) for item in root.findall("joint")]
+    if not links:
+        root.refuse("there is no <link> in it: this describes no robot")
+    if len(links) > MOST_LINKS:
+        root.refuse(f"{len(links)} links; at most {MOST_LINKS} are read")
+    joints = with_interfaces(resolved_mimics(joints, elements), root, notes)
+    ordered = in_tree_order(links, joints, source, elements)
+    return Urdf(root.get("name"), *ordered, (*_ignored(root.children), *notes), elements, root)
+
+
+def _by_name(root: XmlElement) -> dict[tuple[str, str], XmlElement]:
+    """Links and joints by kind and name; a duplicate name is a mistake."""
+    elements: dict[tuple[str, str], XmlElement] = {}
+    for item in root.children:
+        if item.tag in ("link", "joint"):
+            key = (item.tag, item.need("name"))
+            if not key[1]:
+                item.refuse(f"a {item.tag} without a name", at="name")
+            if key in elements:
+                line = elements[key].place.line
+                item.refuse(f"{item.tag} '{key[1]}' is there twice, first in line {line}")
+            elements[key] = item
+    return elements
+
+
+def _ignored(children: Sequence[XmlElement]) -> list[str]:
+    """A note for each kind of ignored element."""
+    counts = Counter(child.tag for child in children if child.tag not in READ)
+    return [
+        f"{count} <{tag}> element{'s' if count > 1 else ''} ignored"
+        for tag, count in sorted(counts.items())
+    ]

@@ -1,0 +1,1 @@
+"""Xacro files, rendered in a process of their own."""

@@ -1,0 +1,137 @@
+"""Renders xacro files: bundled ones in this process, others in a restricted process."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from harness.core.errors import Problem, RobotError, SpecError
+from harness.language.files.source import Source
+from harness.language.files.xml_file import XmlElement, read_bounded, read_xml
+from harness.robot.packages import PackagePath
+
+XACRO_ARG = "xacro:arg"
+PROCESSOR_TIME = 8
+"""CPU time limit of a rendering [s]."""
+
+WALL_TIME = 60.0
+"""Time limit of a rendering that uses less CPU time [s]."""
+
+
+def arguments_of(root: XmlElement) -> frozenset[str]:
+    """Names that a xacro document declares as arguments."""
+    return frozenset(item.get("name") for item in root.walk() if item.tag == XACRO_ARG)
+
+
+def render_bundled(path: Path, mappings: Mapping[str, str]) -> str:
+    """The URDF text of a bundled file.
+
+    Raises:
+        RobotError: It cannot be rendered with these arguments.
+    """
+    import xacro  # here: parsing plain URDFs does not need it
+
+    xacro.__dict__["open"] = partial(
+        open, encoding="utf-8"
+    )  # it would read with the locale's encoding
+    try:
+        document: Any = xacro.process_file(str(path), mappings=dict(mappings))
+    except (xacro.XacroException, OSError) as error:
+        raise RobotError(f"{path}: cannot be rendered: {error}") from error
+    return str(document.toxml())
+
+
+def render(path: Path, args: Mapping[str, Any], packages: PackagePath) -> str:
+    """The URDF text of a xacro file, each element marked with its source place.
+
+    Expressions of a xacro file are Python. A separate process evaluates them: it may read only the
+    given folders, may not start processes, and has limited memory and CPU time.
+
+    Raises:
+        SpecError: The file, or one that it includes, cannot be rendered.
+        RobotError: The file does not take one of the arguments.
+    """
+    root = read_xml(path)
+    declared = arguments_of(root)
+    includes = any(item.tag == "xacro:include" for item in root.walk())
+    for key in args:
+        if key not in declared and not includes:
+            known = ", ".join(sorted(declared)) or "none"
+            raise RobotError(
+                f"robot.args: {path.name} takes no argument '{key}'; known are {known}"
+            )
+    order = {
+        "file": str(path),
+        "mappings": {key: _text(value) for key, value in args.items()},
+        "home": str(packages.home),
+        "given": [str(each) for each in packages.given],
+        "processor_time": PROCESSOR_TIME,
+    }
+    answer = _ask(order, path)
+    if "text" in answer:
+        return str(answer["text"])
+    raise SpecError([_problem(answer, path, packages)])
+
+
+def _text(value: object) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _ask(order: Mapping[str, Any], path: Path) -> dict[str, Any]:
+    environment = {"PYTHONPATH": os.pathsep.join(each for each in sys.path if each)}
+    command = [sys.executable, "-X", "utf8", "-m", "harness.robot.xacro.process"]
+    try:
+        done = subprocess.run(
+            command,
+            input=json.dumps(order),
+            capture_output=True,
+            text=True,
+            encoding="utf-8",
+            errors="replace",
+            timeout=WALL_TIME,
+            env=environment,
+            check=False,
+        )
+    except subprocess.TimeoutExpired as error:
+        raise SpecError([_endless(path)]) from error
+    if done.returncode < 0:
+        raise SpecError([_endless(path)])
+    try:
+        return dict(json.loads(done.stdout))
+    except ValueError as error:
+        last = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
+        message = f"cannot be rendered: {last}"
+        raise SpecError([Problem(str(path), 0, 0, message)]) from error
+
+
+def _endless(path: Path) -> Problem:
+    message = "cannot be rendered: it takes more time or memory than any robot does"
+    return Problem(str(path), 1, 1, message, "look for a macro or expression without an end")
+
+
+def _problem(answer: Mapping[str, Any], path: Path, packages: PackagePath) -> Problem:
+    """The process's message, at the text in the file that it refers to."""
+    if "problem" in answer:
+        return Problem(**answer["problem"])
+    named = str(answer.get("file") or path)
+    if not packages.may_read(Path(named)):
+        named = str(path)
+    message, words = str(answer["message"]), [str(word) for word in answer.get("words", [])]
+    try:
+        lines = read_bounded(Path(named)).decode("utf-8", errors="replace").splitlines()
+    except SpecError:
+        return Problem(named, 0, 0, message)
+    source = Source(named, tuple(lines))
+    for word in words:
+        for number, line in enumerate(lines, 1):
+            column = line.find(word)
+            if word and column >= 0:
+                text = source.line(number)
+                return Problem(named, number, column + 1, message, "", text, len(word))
+    return Problem(named, 1, 1, message, "", source.line(1))

@@ -1,0 +1,1 @@
+"""Tools for a robot's owner: checks, an SRDF proposal, a first scenario, built-in solvers."""

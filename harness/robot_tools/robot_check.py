@@ -1,0 +1,137 @@
+"""Looks a robot over: limits, masses, kinematics in both libraries, self-collisions, reach, IK."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.planning.collision.pair_statistics import (
+    REASONS,
+    SelfTouches,
+    random_positions,
+    self_touches,
+)
+from harness.planning.ik.kinematics import PinocchioKinematics
+from harness.planning.ik.trial import try_ik
+from harness.reporting.robot_report import Finding, GroupLine, RobotReport
+from harness.robot.description import Joint, RobotDescription
+from harness.robot_tools import robot_findings as look_at
+from harness.session.record import robot_record
+
+KINEMATIC_SAMPLES = 20
+IK_SAMPLES = 100
+
+
+@dataclass(frozen=True, eq=False)
+class Checked:
+    """A robot that was looked over.
+
+    Attributes:
+        report: For people and machines.
+        touches: Which links touched at random configurations.
+    """
+
+    report: RobotReport
+    touches: SelfTouches
+
+
+def check_robot(
+    description: RobotDescription,
+    source: str,
+    *,
+    samples: int = 2000,
+    seed: int = 0,
+    propose: bool = False,
+) -> Checked:
+    """Look a robot over.
+
+    Args:
+        description: The robot.
+        source: What the report calls where it is from.
+        samples: Random configurations for self-collisions and reach.
+        seed: Of the configurations, and of numeric inverse kinematics.
+        propose: Whether the report proposes pairs that need not be checked.
+    """
+    positions = random_positions(description, samples, np.random.default_rng(seed))
+    kinematics = PinocchioKinematics(description)
+    touches = self_touches(description, positions)
+    findings = tuple(_findings(description, kinematics, touches, positions, seed))
+    told = {detail for finding in findings for detail in finding.details}
+    driven = [joint for joint in description.movable_joints if joint.mimic is None]
+    report = RobotReport(
+        name=description.name,
+        source=source,
+        joints=robot_record(description, kinematics).joints,
+        followers={joint.name: _follows(joint) for joint in description.movable_joints},
+        effort_sources=tuple(dict.fromkeys(j.effort_source for j in driven if j.effort_source)),
+        groups=_groups(description),
+        arm_group=description.arm_group,
+        tcp_link=description.tcp_link,
+        gripper=_gripper(description),
+        findings=findings,
+        notes=tuple(note for note in description.notes if note not in told),
+        proposal=_proposal(touches) if propose else {},
+    )
+    return Checked(report, touches)
+
+
+def _findings(
+    description: RobotDescription,
+    kinematics: PinocchioKinematics,
+    touches: SelfTouches,
+    positions: FloatArray,
+    seed: int,
+) -> Iterator[Finding]:
+    yield look_at.forward_kinematics(description, kinematics, positions[:KINEMATIC_SAMPLES])
+    yield look_at.masses(description)
+    yield look_at.limits(description)
+    yield look_at.states(description)
+    yield look_at.self_collisions(touches)
+    if description.arm_group and description.tcp_link:
+        free = positions[touches.is_free]
+        yield look_at.reach(description, kinematics, free)
+        if len(free):
+            yield look_at.inverse_kinematics(try_ik(kinematics, free[:IK_SAMPLES], seed))
+
+
+def _groups(description: RobotDescription) -> tuple[GroupLine, ...]:
+    return tuple(
+        GroupLine(
+            name,
+            group.joint_names,
+            f"{group.base_link} to {group.tip_link}" if group.tip_link else "",
+            tuple(description.states_of(name)),
+        )
+        for name, group in description.groups.items()
+    )
+
+
+def _proposal(touches: SelfTouches) -> dict[str, tuple[tuple[str, str], ...]]:
+    proposed = touches.proposed()
+    by_reason = {
+        reason: tuple(pair for pair, other in proposed.items() if other == reason)
+        for reason in REASONS
+    }
+    return {reason: pairs for reason, pairs in by_reason.items() if pairs}
+
+
+def _follows(joint: Joint) -> str:
+    if joint.mimic is None:
+        return ""
+    offset = f" + {joint.mimic.offset:g}" if joint.mimic.offset else ""
+    return f"follows {joint.mimic.joint} times {joint.mimic.multiplier:g}{offset}"
+
+
+def _gripper(description: RobotDescription) -> str:
+    gripper = description.gripper
+    if gripper is None:
+        return ""
+    sides = [" and ".join(links) for links in gripper.sides.values()]
+    unit = "N" if description.joint_by_name[gripper.joint].kind == "prismatic" else "N m"
+    return (
+        f"{gripper.joint} closes {' against '.join(sides)},"
+        f" {1e3 * gripper.widths[:, 1].max():.0f} mm apart, at most {gripper.max_effort:g} {unit}"
+    )

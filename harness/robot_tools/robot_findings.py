@@ -1,0 +1,154 @@
+"""What is looked at in a robot, one function a finding."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.planning.collision.pair_statistics import SelfTouches
+from harness.planning.collision.scene import CoalScene
+from harness.planning.ik.kinematics import PinocchioKinematics
+from harness.planning.ik.trial import IkTrial
+from harness.reporting.robot_report import Finding
+from harness.robot.description import RobotDescription
+from harness.robot.link_masses import mass_notes, mass_problems
+from harness.simulation.agreement import link_poses_in_physics
+
+AGREEMENT = 1e-9
+"""How near the two libraries come [m], and in parts of a quaternion and of the mass."""
+
+ENOUGH_SOLVED = 0.9
+TOO_OFTEN = 0.9
+"""Part of the configurations that collide from which a description is wrong and not crowded."""
+
+PLACEHOLDER_EFFORT = 1000.0
+
+
+def forward_kinematics(
+    description: RobotDescription, kinematics: PinocchioKinematics, positions: FloatArray
+) -> Finding:
+    """Link poses and the mass in Pinocchio's model and in MuJoCo's, positions (N, n)."""
+    links = description.link_names[1:]  # `world` is nobody's
+    ours = kinematics.link_poses(positions, links)
+    theirs, mass = link_poses_in_physics(description, positions)
+    shift = np.linalg.norm(ours[..., :3] - theirs[..., :3], axis=-1)
+    apart = (ours[..., 3:] - theirs[..., 3:], ours[..., 3:] + theirs[..., 3:])
+    turn = np.minimum(*(np.linalg.norm(each, axis=-1) for each in apart))
+    most = float(shift.max(initial=0.0))
+    agrees = max(most, float(turn.max(initial=0.0))) <= AGREEMENT
+    said = _mass(description)
+    weighs = abs(mass - said) <= AGREEMENT * max(1.0, said)
+    text = (
+        f"Pinocchio and MuJoCo differ by at most {most:.1g} m"
+        f" ({len(positions)} configurations, {len(links)} links)"
+    )
+    details: list[str] = []
+    if not agrees:
+        _, worst = np.unravel_index(int((shift + turn).argmax()), shift.shape)
+        details.append(f"most at {links[worst]}")
+    if not weighs:
+        details.append(f"MuJoCo has {mass:.9g} kg, the description {said:.9g} kg")
+    values = {"position_error": most, "mass_in_physics": mass}
+    return Finding("forward kinematics", text, agrees and weighs, tuple(details), values)
+
+
+def masses(description: RobotDescription) -> Finding:
+    """Whether masses and inertias are those of bodies, and what looks like a placeholder."""
+    problems, notes = mass_problems(description), mass_notes(description)
+    moving = [link for link in description.links if link.name not in description.static_links]
+    total = _mass(description)
+    heavy = sum(link.inertial.mass for link in moving if link.inertial)
+    weightless = [link.name for link in moving if link.inertial is None and link.collisions]
+    if weightless:
+        notes.append(f"no <inertial>: {', '.join(weightless)}")
+    text = f"{total:.4g} kg, {heavy:.4g} kg of it moving"
+    values = {"mass": total, "moving_mass": heavy, "problems": len(problems)}
+    return Finding("masses", text, not problems, (*problems, *notes), values)
+
+
+def limits(description: RobotDescription) -> Finding:
+    """Which limits are missing, or stand for "I do not know"; readers refuse those without room."""
+    notes: list[str] = []
+    for joint in description.movable_joints:
+        if joint.mimic is not None:
+            continue
+        if not np.isfinite(joint.effort):
+            notes.append(f"{joint.name} has no effort limit")
+        elif joint.effort >= PLACEHOLDER_EFFORT:
+            notes.append(f"{joint.name}: an effort of {joint.effort:g} is a placeholder")
+    count = len(description.movable_joints)
+    text = f"{count} joint{'s move' if count != 1 else ' moves'}"
+    return Finding("limits", text, details=tuple(notes))
+
+
+def states(description: RobotDescription) -> Finding:
+    """Whether the start and the named states are free of self-collision, inside the limits."""
+    scene = CoalScene(description)
+    start = description.start_positions()
+    looked_at = {"the start": start}
+    for state in description.named_states:
+        given = dict(zip(description.joint_names, start, strict=True)) | dict(state.positions)
+        row = np.array([given[name] for name in description.joint_names])
+        looked_at[f"{state.name} ({state.group})"] = description.with_mimics(row)
+    problems: dict[str, list[str]] = {}
+    for name, row in looked_at.items():
+        found = [f"{touch.first} touches {touch.second}" for touch in scene.touches(row)[:1]]
+        found += [
+            f"{joint.name} at {value:.4g} is outside {joint.lower:.4g} to {joint.upper:.4g}"
+            for joint, value in zip(description.movable_joints, row, strict=True)
+            if joint.mimic is None and not joint.lower - 1e-9 <= value <= joint.upper + 1e-9
+        ]
+        if found:
+            problems[name] = found
+    text = f"{len(looked_at) - 1} and the start are free" if len(looked_at) > 1 else "none"
+    if problems:
+        text = f"{len(problems)} of {len(looked_at)} cannot be taken"
+    details = tuple(f"{name}: {each}" for name, found in problems.items() for each in found)
+    return Finding("named states", text, not problems, details)
+
+
+def self_collisions(touches: SelfTouches) -> Finding:
+    """How often the robot touches itself, and where most."""
+    allowed = len(touches.description.allowed_collisions)
+    frequent = touches.most_frequent(3)
+    text = (
+        f"{touches.rate:.1%} of {len(touches.touched)} random configurations;"
+        f" {allowed} pairs are allowed"
+    )
+    values = {
+        "rate": touches.rate,
+        "most_frequent": [[*pair, rate] for pair, rate in frequent],
+        "allowed_pairs": allowed,
+    }
+    details = tuple(f"{first} - {second}: {rate:.1%}" for (first, second), rate in frequent)
+    return Finding("self-collisions", text, touches.rate < TOO_OFTEN, details, values)
+
+
+def reach(
+    description: RobotDescription, kinematics: PinocchioKinematics, positions: FloatArray
+) -> Finding:
+    """How far the TCP comes, at positions free of self-collision, shape (N, n)."""
+    if not len(positions):
+        return Finding("reach", "no configuration is free of self-collision", is_good=False)
+    links = (description.base_link, description.tcp_link)
+    poses = kinematics.link_poses(positions, links)[:, :, :3]
+    away = float(np.linalg.norm(poses[:, 1] - poses[:, 0], axis=1).max())
+    low, high = poses[:, 1].min(axis=0), poses[:, 1].max(axis=0)
+    sides = zip("xyz", low, high, strict=True)
+    box = ", ".join(f"{axis} {first:.2f} to {last:.2f}" for axis, first, last in sides)
+    text = f"{description.tcp_link} comes {away:.3g} m from {description.base_link}; {box} m"
+    values = {"reach": away, "workspace": [low.tolist(), high.tolist()]}
+    return Finding("reach", text, details=(), values=values)
+
+
+def inverse_kinematics(trial: IkTrial) -> Finding:
+    """How many of the poses that can be taken are solved, and by what."""
+    text = f"{trial.solver} solves {trial.solved} of {trial.poses} poses that can be taken"
+    if trial.solved:
+        text += f", to {trial.worst:.1g} m"
+    values = {"solver": trial.solver, "success_rate": trial.rate}
+    return Finding("inverse kinematics", text, trial.rate >= ENOUGH_SOLVED, (), values)
+
+
+def _mass(description: RobotDescription) -> float:
+    return sum(link.inertial.mass for link in description.links if link.inertial)

@@ -1,0 +1,146 @@
+"""Which robot a person means: a bundled name, a robot's file or folder, or a scenario's robot."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from harness.core.errors import RobotError
+from harness.core.types import FloatArray
+from harness.language.files.mistakes import did_you_mean
+from harness.language.files.xml_file import XmlElement, read_xml
+from harness.language.reading.load import load_scenario
+from harness.language.scenario import RobotSpec
+from harness.robot.description import RobotDescription
+from harness.robot.find_file import find_file
+from harness.robot.load import load_robot
+
+ROBOT_YAML = "robot.yaml"
+KINDS = {".urdf": "urdf", ".xacro": "xacro", ".xml": "mjcf", ".mjcf": "mjcf"}
+XACRO_PREFIX = "xacro:"
+OPTIONS = {
+    "srdf": "--srdf",
+    "packages": "--package-path",
+    "gripper": "--gripper",
+    "args": "--args",
+    "group": "--group",
+    "tcp_link": "--tcp-link",
+}
+"""Fields that a scenario's own robot leaves no room for, by what the command line calls them."""
+
+
+@dataclass(frozen=True)
+class RobotSource:
+    """A robot as the command line says it.
+
+    Attributes:
+        word: A name, a file, a robot's folder or the robot.yaml in it, or `package://name/path`.
+        srdf: With a robot's file; empty for none.
+        packages: Folders where package:// is looked up.
+        gripper: A bundled gripper to be mounted; empty for none.
+        args: Of a xacro file.
+        tcp_link: Instead of the arm group's tip; empty for that.
+        group: The arm's; empty for the one of most joints.
+    """
+
+    word: str
+    srdf: str = ""
+    packages: Sequence[str] = ()
+    gripper: str = ""
+    args: Mapping[str, str] = field(default_factory=dict[str, str])
+    tcp_link: str = ""
+    group: str = ""
+
+    @cached_property
+    def kind(self) -> str:
+        """`urdf`, `xacro`, `mjcf`, `scenario` or `model`; of XML what it says, however it is named.
+
+        Raises:
+            SpecError: The file is no XML that can be read.
+        """
+        path = Path(self.word)
+        if path.name == ROBOT_YAML:
+            return "model"
+        if path.suffix.lower() in (".yaml", ".yml"):
+            return "scenario"
+        kind = KINDS.get(path.suffix.lower(), "model")
+        root = self._root() if kind in ("urdf", "mjcf") else None
+        if root is None or root.tag not in ("robot", "mujoco"):
+            return kind
+        if root.tag == "mujoco":
+            return "mjcf"
+        is_xacro = any(item.tag.startswith(XACRO_PREFIX) for item in root.walk())
+        return "xacro" if is_xacro else "urdf"
+
+    @property
+    def has_no_srdf(self) -> bool:
+        """Whether it is a robot's file with no SRDF beside it."""
+        return self.kind in KINDS.values() and not self.srdf
+
+    @property
+    def own_name(self) -> str:
+        """What a URDF file that can be read calls its robot; else empty."""
+        root = self._root() if self.kind == "urdf" else None
+        return "" if root is None else root.get("name")
+
+    def words(self) -> dict[str, Any]:
+        """What a scenario's `robot:` would say, not of a scenario."""
+        path = Path(self.word)
+        word = str(path.parent) if path.name == ROBOT_YAML else self.word
+        words: dict[str, Any] = {self.kind: word}
+        if self.args:
+            words["args"] = dict(self.args)
+        if self.packages:
+            words["packages"] = tuple(self.packages)
+        for key in ("srdf", "gripper", "group", "tcp_link"):
+            if getattr(self, key):
+                words[key] = getattr(self, key)
+        return words
+
+    def _root(self) -> XmlElement | None:
+        """The root element of a robot's file; None where there is no file."""
+        try:
+            path = find_file(self.word, "urdf", Path(), [Path(each) for each in self.packages])
+        except RobotError:
+            return None
+        return read_xml(path)
+
+
+def load(source: RobotSource) -> RobotDescription:
+    """The robot, composed.
+
+    Raises:
+        SpecError: A file says what cannot be meant.
+        RobotError: The robot is not known, or its files cannot be used.
+    """
+    if source.kind == "scenario":
+        path = Path(source.word)
+        for option in OPTIONS:
+            if getattr(source, option):
+                raise RobotError(f"'{path}' says its robot itself: {OPTIONS[option]} is for others")
+        return load_robot(load_scenario(path).scenario.robot, path.parent)
+    return load_robot(RobotSpec.model_validate(source.words()))
+
+
+def positions_of(description: RobotDescription, state: str) -> FloatArray:
+    """Joint positions of a named state, in description order; where it starts for none.
+
+    Raises:
+        RobotError: It has no such state.
+    """
+    start = description.start_positions()
+    if not state:
+        return start
+    found = [each for each in description.named_states if each.name == state]
+    if not found:
+        names = [each.name for each in description.named_states]
+        raise RobotError(f"there is no state '{state}'; {did_you_mean(state, names, 'states')}")
+    given = dict(zip(description.joint_names, start, strict=True))
+    for each in found:
+        given |= each.positions
+    return description.with_mimics(np.array([given[name] for name in description.joint_names]))

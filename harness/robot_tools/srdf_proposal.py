@@ -1,0 +1,40 @@
+"""An SRDF for a robot: its groups and states, and the pairs that samples show need no checking."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from harness.planning.collision.pair_statistics import SelfTouches
+from harness.robot.import_robot import RENAMED_ROOT
+from harness.robot.srdf.srdf import Srdf, link_pair, parse_srdf, write_srdf
+
+WORLD = "world"
+
+
+def proposed_srdf(touches: SelfTouches, name: str) -> str:
+    """The SRDF as text: what the robot has, with the proposed pairs in place of its own.
+
+    Args:
+        touches: Which links touched at random configurations.
+        name: Of the robot, as its URDF has it.
+    """
+    description = touches.description
+    srdf = parse_srdf(description.srdf, description.name)
+    disabled = {
+        link_pair(_own(first), _own(second)): str(reason)
+        for (first, second), reason in touches.proposed().items()
+    }
+    return write_srdf(name, _with_own_root(replace(srdf, disabled=disabled)))
+
+
+def _own(link: str) -> str:
+    """A link as the robot's file calls it: a root called as our world has another name here."""
+    return WORLD if link == RENAMED_ROOT else link
+
+
+def _with_own_root(srdf: Srdf) -> Srdf:
+    groups = tuple(
+        replace(group, chains=tuple((_own(base), _own(tip)) for base, tip in group.chains))
+        for group in srdf.groups
+    )
+    return replace(srdf, groups=groups)

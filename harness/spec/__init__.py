@@ -1,1 +1,0 @@
-"""What a scenario, world or robot file says."""

@@ -1,0 +1,1 @@
+"""Objects of the world, and worlds read from other formats."""

@@ -1,0 +1,1 @@
+"""Worlds read from MoveIt's .scene text."""

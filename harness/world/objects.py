@@ -1,0 +1,205 @@
+"""Objects of a file made whole: shapes, mass, inertia, friction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from harness.core.errors import RobotError
+from harness.core.geometry import (
+    Box,
+    Capsule,
+    Cylinder,
+    Friction,
+    Geometry,
+    Mesh,
+    Plane,
+    Rgba,
+    Shape,
+    Sphere,
+)
+from harness.core.solids import is_inertia_of_a_body, solid_of
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.core.world import Light, World, WorldObject
+from harness.language.world import GEOMETRIES, FrictionSpec, ObjectSpec, ShapeSpec, WorldSpec
+from harness.robot.mesh_file import hull_solid
+from harness.world.markers import plate, printed
+
+DEFAULT_DENSITY = 1000.0  # [kg/m^3]
+DEFAULT_COLOR: Rgba = (0.62, 0.66, 0.72, 1.0)
+
+
+class ObjectUnusableError(ValueError):
+    """An object lacks something that only its author can say."""
+
+
+def resolve_object(spec: ObjectSpec, pose: SE3, base_dir: Path) -> WorldObject:
+    """The object with every number known.
+
+    Args:
+        spec: What the file says; its own pose is not read.
+        pose: T_world_object.
+        base_dir: Folder that mesh files are relative to.
+
+    Raises:
+        ObjectUnusableError: A dynamic object of planes, one without shapes, mass and inertia, or
+            a mesh file that is not there or cannot be used.
+    """
+    parts = spec.shapes or ((spec,) if _has_geometry(spec) else ())
+    shapes = tuple(_shape(part, spec.color, base_dir) for part in parts)
+    mass, center, inertia = 0.0, np.array(spec.center_of_mass, dtype=float), np.zeros((3, 3))
+    if not spec.static:
+        with np.errstate(over="ignore", invalid="ignore"):  # the physics refuses what overflows
+            mass, center, inertia = _mass_properties(spec, shapes)
+    return WorldObject(
+        name=spec.name,
+        shapes=shapes,
+        pose=pose,
+        is_static=spec.static,
+        mass=mass,
+        center_of_mass=center,
+        inertia=inertia,
+        friction=_friction(spec.friction),
+        in_planning=spec.in_ in ("planning", "both"),
+        in_simulation=spec.in_ in ("simulation", "both"),
+        visuals=_looks(spec, parts, base_dir),
+    )
+
+
+def _looks(
+    spec: ObjectSpec, parts: Sequence[ObjectSpec | ShapeSpec], base_dir: Path
+) -> tuple[Shape, ...]:
+    """What pictures show instead of the shapes; nothing where the shapes themselves will do."""
+    if not spec.visuals and all(part.marker is None for part in parts):
+        return ()
+    looks: list[Shape] = []
+    for part in spec.visuals or parts:
+        shape = _shape(part, spec.color, base_dir)
+        looks += [shape] if part.marker is None else printed(part.marker, shape.pose, shape.name)
+    return tuple(looks)
+
+
+def resolve_world(spec: WorldSpec, objects: tuple[WorldObject, ...]) -> World:
+    """The world around resolved objects."""
+    return World(
+        name=spec.world,
+        objects=objects,
+        gravity=spec.physics.gravity,
+        timestep=spec.physics.timestep,
+        lights=tuple(
+            Light(light.direction, light.diffuse[:3], light.casts_shadow) for light in spec.lights
+        ),
+    )
+
+
+def _has_geometry(spec: ObjectSpec) -> bool:
+    return any(getattr(spec, kind) is not None for kind in GEOMETRIES)
+
+
+def _geometry(spec: ObjectSpec | ShapeSpec, base_dir: Path) -> Geometry:
+    if spec.box is not None:
+        return Box(spec.box.size)
+    if spec.cylinder is not None:
+        return Cylinder(spec.cylinder.radius, spec.cylinder.length)
+    if spec.sphere is not None:
+        return Sphere(spec.sphere.radius)
+    if spec.capsule is not None:
+        return Capsule(spec.capsule.radius, spec.capsule.length)
+    if spec.marker is not None:
+        return plate(spec.marker)
+    if spec.mesh is not None:
+        path = base_dir / spec.mesh.file
+        if not path.is_file():
+            raise ObjectUnusableError(f"there is no mesh file '{spec.mesh.file}' beside the file")
+        scale = spec.mesh.scale
+        return Mesh(path, scale if isinstance(scale, tuple) else (scale, scale, scale))
+    return Plane()
+
+
+def _shape(spec: ObjectSpec | ShapeSpec, color: Rgba | None, base_dir: Path) -> Shape:
+    pose = spec.pose.se3() if isinstance(spec, ShapeSpec) else SE3.identity()
+    own = spec.color or color or DEFAULT_COLOR
+    is_own = isinstance(spec, ShapeSpec) and spec.friction is not None
+    friction = _friction(spec.friction) if is_own else None
+    return Shape(_geometry(spec, base_dir), pose, own, spec.name or "", friction)
+
+
+def _friction(spec: float | FrictionSpec | None) -> Friction:
+    if spec is None:
+        return Friction()
+    if isinstance(spec, FrictionSpec):
+        return Friction(spec.sliding, spec.torsional, spec.rolling)
+    return Friction(sliding=spec)
+
+
+def _mass_properties(
+    spec: ObjectSpec, shapes: tuple[Shape, ...]
+) -> tuple[float, FloatArray, FloatArray]:
+    """Mass [kg], centre of mass [m] and inertia about it [kg m^2], from the file or from solids."""
+    if any(isinstance(shape.geometry, Plane) for shape in shapes):
+        raise ObjectUnusableError("a plane has no mass: say `static: true`")
+    if not shapes and (spec.mass is None or spec.inertia is None):
+        raise ObjectUnusableError(
+            "what moves and has no shape needs `mass` and `inertia`, or `static: true`"
+        )
+    solids = [] if spec.inertia is not None and spec.mass is not None else _solids(shapes)
+    volume = sum(solid.volume for solid in solids)
+    mass = spec.mass if spec.mass is not None else DEFAULT_DENSITY * volume
+    given_center = np.array(spec.center_of_mass, dtype=float)
+    if spec.inertia is not None:
+        i = spec.inertia
+        tensor = np.array([[i.ixx, i.ixy, i.ixz], [i.ixy, i.iyy, i.iyz], [i.ixz, i.iyz, i.izz]])
+        _check_inertia(tensor)
+        return mass, given_center, tensor
+    density = mass / volume
+    centroid = np.sum([solid.volume / volume * solid.centroid for solid in solids], axis=0)
+    center = given_center if np.any(given_center) else centroid
+    inertia = np.zeros((3, 3))
+    for solid in solids:
+        offset = solid.centroid - center
+        inertia += density * solid.inertia
+        inertia += density * solid.volume * (offset @ offset * np.eye(3) - np.outer(offset, offset))
+    return mass, center, inertia
+
+
+@dataclass(frozen=True, eq=False)
+class _Solid:
+    """A shape's volume [m^3], centroid [m] and inertia at density 1 about it [m^5]."""
+
+    volume: float
+    centroid: FloatArray
+    inertia: FloatArray
+
+
+def _solids(shapes: Sequence[Shape]) -> list[_Solid]:
+    """Each shape in the object's axes; of a mesh its convex hull, which is what touches."""
+    found: list[_Solid] = []
+    for shape in shapes:
+        centroid = np.zeros(3)
+        solid = solid_of(shape.geometry)
+        if isinstance(shape.geometry, Mesh):
+            try:
+                volume, centroid, unit = hull_solid(shape.geometry)
+            except RobotError as error:
+                raise ObjectUnusableError(str(error)) from error
+        elif solid is not None:
+            volume, unit = solid
+        else:
+            continue
+        rotation = shape.pose.rotation
+        found.append(_Solid(volume, shape.pose.apply(centroid), rotation @ unit @ rotation.T))
+    return found
+
+
+def _check_inertia(tensor: FloatArray) -> None:
+    if not is_inertia_of_a_body(tensor):
+        moments = np.linalg.eigvalsh(tensor)
+        raise ObjectUnusableError(
+            "no body has this inertia: its principal moments are "
+            + ", ".join(f"{moment:.6g}" for moment in moments)
+            + " kg m^2, and each must be positive and no more than the sum of the others"
+        )

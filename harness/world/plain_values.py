@@ -1,0 +1,41 @@
+"""Poses and numbers for world files, without rounding errors."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from harness.core.spatial import SE3, rotation_from_quat_wxyz, rotation_from_rpy
+from harness.core.types import FloatArray
+from harness.language.poses import Pose
+
+DECIMALS = 12
+"""Decimals of metres and quaternion components; finer differences are rounding errors."""
+
+
+def rounded(value: float) -> float:
+    """A number rounded to `DECIMALS`, without negative zero."""
+    return round(float(value), DECIMALS) + 0.0
+
+
+def significant(value: float) -> float:
+    """A mass or moment rounded to twelve significant digits."""
+    return float(f"{value:.12g}") + 0.0
+
+
+def pose_spec(pose: SE3) -> Pose:
+    """A pose for a file; an identity rotation is omitted."""
+    x, y, z = (rounded(value) for value in pose.translation)
+    if np.allclose(pose.rotation, np.eye(3), rtol=0, atol=1e-12):
+        return Pose(xyz=(x, y, z))
+    a, b, c, d = (rounded(value) for value in pose.quat_wxyz)
+    return Pose(xyz=(x, y, z), quat_wxyz=(a, b, c, d))
+
+
+def facing(normal: FloatArray) -> FloatArray:
+    """The shortest rotation from z to a unit vector, shape (3, 3)."""
+    x, y, z = normal
+    if z < -1 + 1e-12:
+        return rotation_from_rpy((math.pi, 0.0, 0.0))
+    return rotation_from_quat_wxyz((1 + z, -y, x, 0.0))

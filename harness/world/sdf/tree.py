@@ -1,0 +1,210 @@
+"""Reads SDF files into scopes: worlds, models, and the models that they include."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from harness.core.errors import SpecError
+from harness.language.files.xml_file import XmlElement, read_xml
+from harness.world.notes import Notes
+from harness.world.sdf.elements import note_what_is_left
+from harness.world.sdf.model_path import ModelPath, model_file
+from harness.world.sdf.scope import WORLD, Named, Scope
+from harness.world.sdf.values import PlacedPose, is_flag, is_true, pose_of, text_of
+
+OLDEST, NEWEST = (1, 4), (1, 11)
+MOST_MODELS = 2000
+MOST_INCLUDES_DEEP = 30
+MERGED = "_merged__"
+
+
+@dataclass(frozen=True, eq=False)
+class Light:
+    """A light of the world, and its pose there."""
+
+    element: XmlElement
+    pose: PlacedPose
+
+
+class SdfTree:
+    """The scopes of a file and of the files that it includes.
+
+    Attributes:
+        root: The `<world>`, or the `<sdf>` of a file that has models alone.
+        world: The world's scope.
+        lights: Lights in file order, those of included files last.
+        notes: Notes on elements that are left out.
+    """
+
+    def __init__(self, path: Path, model_path: ModelPath) -> None:
+        """Read a file.
+
+        Raises:
+            SpecError: It is not SDF of a supported version, or has a mistake; located.
+        """
+        self.notes = Notes()
+        self._model_path = model_path
+        self._files: dict[Path, XmlElement] = {}
+        self._count = 0
+        sdf = self._sdf(path)
+        worlds = sdf.findall("world")
+        for other in worlds[1:]:
+            self.notes.add(other.place, "a second <world> is left out")
+        self.root = worlds[0] if worlds else sdf
+        note_what_is_left(sdf, "sdf", self.notes)
+        if worlds:
+            note_what_is_left(self.root, "world", self.notes)
+        self.world = Scope("", self.root, path.parent)
+        self.lights = [Light(light, pose_of(light)) for light in self.root.findall("light")]
+        self._fill(self.world, (path.resolve(),))
+
+    def _sdf(self, path: Path) -> XmlElement:
+        """The `<sdf>` of a file."""
+        known = self._files.get(path.resolve())
+        if known is not None:
+            return known
+        root = read_xml(path)
+        sdf = root.find("sdf") if root.tag in ("gazebo", "sdf-root") else root
+        if sdf is None or sdf.tag != "sdf":
+            root.refuse(f"the root element is <{root.tag}>; that of an SDF file is <sdf>")
+        self._check_version(sdf)
+        self._files[path.resolve()] = sdf
+        return sdf
+
+    def _check_version(self, sdf: XmlElement) -> None:
+        text = sdf.need("version")
+        parts = text.strip().split(".")
+        if len(parts) != 2 or not all(part.isdigit() for part in parts):
+            sdf.refuse(f"`{text}` is not a version of SDF", "such as 1.9", at="version")
+        version = (int(parts[0]), int(parts[1]))
+        if version < OLDEST:
+            hint = "`gz sdf -p FILE` converts it to a newer version"
+            sdf.refuse(f"SDF {text} is older than 1.4", hint, at="version")
+        if version > NEWEST:
+            self.notes.add(sdf.place, f"SDF {text} is read as 1.11")
+
+    def _fill(self, scope: Scope, files: tuple[Path, ...]) -> None:
+        """Read the children of a scope's element."""
+        for child in scope.element.children:
+            match child.tag:
+                case "link":
+                    self._name(scope, Named("link", child, pose_of(child)))
+                case "joint":
+                    self._name(scope, self._joint(child, scope))
+                case "frame":
+                    note_what_is_left(child, "frame", self.notes)
+                    base = child.get("attached_to").strip()
+                    self._name(scope, Named("frame", child, pose_of(child), base))
+                case "model":
+                    self._model(scope, child, files)
+                case "include":
+                    self._include(scope, child, files)
+
+    def _name(self, scope: Scope, item: Named) -> str:
+        name = item.element.need("name").strip()
+        self._claim(scope, name, item)
+        return name
+
+    def _claim(self, scope: Scope, name: str, item: Named) -> None:
+        element = item.element
+        if not name or not name.isprintable() or len(name) > 80:
+            element.refuse(
+                f"`{name[:80]!r}` is not a name of 1 to 80 printable characters", at="name"
+            )
+        if name in (WORLD, "__model__", "__root__"):
+            element.refuse(f"'{name}' is a reserved name", "choose another name", at="name")
+        if name in scope.named:
+            first = scope.named[name].element.place.line
+            element.refuse(f"'{name}' is defined twice; first in line {first}", at="name")
+        scope.named[name] = item
+
+    def _joint(self, element: XmlElement, scope: Scope) -> Named:
+        note_what_is_left(element, "joint", self.notes)
+        child = text_of(element, "child")
+        if not child or not text_of(element, "parent"):
+            element.refuse("a <joint> has a <parent> and a <child>")
+        base = "" if child == WORLD or scope.parent is None else child
+        return Named("joint", element, pose_of(element), base)
+
+    def _model(self, parent: Scope, element: XmlElement, files: tuple[Path, ...]) -> None:
+        """A model written in the file itself."""
+        scope = Scope(
+            element.need("name").strip(),
+            element,
+            parent.folder,
+            parent,
+            is_flag(element, "static") or parent.is_static,
+            element.get("placement_frame").strip(),
+            element.get("canonical_link").strip(),
+        )
+        self._name(parent, Named("model", element, pose_of(element)))
+        self._add(parent, scope, files)
+
+    def _add(self, parent: Scope, scope: Scope, files: tuple[Path, ...]) -> None:
+        self._count += 1
+        if self._count > MOST_MODELS:
+            scope.element.refuse(f"more than {MOST_MODELS} models")
+        note_what_is_left(scope.element, "model", self.notes)
+        parent.nested[scope.name] = scope
+        self._fill(scope, files)
+        if not scope.placement_frame:
+            return
+        scope.locate(scope.placement_frame, scope.element)
+
+    def _include(self, parent: Scope, element: XmlElement, files: tuple[Path, ...]) -> None:
+        """A model of another file, with the include's elements in place of its own."""
+        note_what_is_left(element, "include", self.notes)
+        uri = element.find("uri")
+        if uri is None:
+            element.refuse("an <include> has a <uri>")
+        path = self._model_path.find(uri.text.strip(), uri, parent.folder)
+        if path.is_dir():
+            path = model_file(path, uri)
+        if path.resolve() in files:
+            chain = " -> ".join(file.name for file in (*files, path))
+            uri.refuse(f"includes form a cycle: {chain}")
+        if len(files) > MOST_INCLUDES_DEEP:
+            uri.refuse(f"includes are nested more than {MOST_INCLUDES_DEEP} deep")
+        sdf = self._included(path, uri)
+        given = element.find("pose") is not None
+        if parent.parent is None and not sdf.findall("model"):
+            for light in sdf.findall("light"):
+                self.lights.append(Light(light, pose_of(element if given else light)))
+            if sdf.findall("light"):
+                return
+        model = self._model_of(sdf, path, uri)
+        name = text_of(element, "name") or model.need("name").strip()
+        is_merged = is_true(element, element.get("merge", "false"))
+        frame = text_of(element, "placement_frame") or (
+            "" if given else model.get("placement_frame").strip()
+        )
+        scope = Scope(
+            f"{MERGED}{name}" if is_merged else name,
+            model,
+            path.parent,
+            parent,
+            is_flag(element, "static", is_flag(model, "static")) or parent.is_static,
+            frame,
+            model.get("canonical_link").strip(),
+            is_merged=is_merged,
+        )
+        own = pose_of(model)
+        pose = pose_of(element) if given else PlacedPose(own.pose, "", own.element)
+        self._claim(parent, scope.name, Named("model", element, pose))
+        self._add(parent, scope, (*files, path.resolve()))
+
+    def _included(self, path: Path, uri: XmlElement) -> XmlElement:
+        """The `<sdf>` of an included file."""
+        try:
+            return self._sdf(path)
+        except SpecError as error:
+            raise SpecError([*error.problems, uri.problem("which is included here")]) from error
+
+    def _model_of(self, sdf: XmlElement, path: Path, uri: XmlElement) -> XmlElement:
+        models = sdf.findall("model")
+        if not models:
+            uri.refuse(f"there is no <model> in {path}", "an included file needs one")
+        for other in models[1:]:
+            self.notes.add(other.place, "a second <model> of an included file is left out")
+        return models[0]

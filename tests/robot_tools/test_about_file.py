@@ -1,0 +1,68 @@
+"""What a scenario file allows and probably does not intend: check, run and report all say it."""
+
+import json
+
+import pytest
+
+import harness
+from harness.cli.main import main
+from harness.observation.findings import NOTHING_EXPECTED
+
+HEAD = "scenario: Notes\nrobot: open_manipulator_x\nsteps:\n"
+SILENT = {
+    "expect": "  - wait: 0.05 s\nexpect: [within_limits]\n",
+    "expect of a step": "  - {wait: 0.05 s, expect: [within_limits]}\n",
+    "expected error": "  - {move_to: {joints: {joint1: 4}}, expect_error: GOAL_STATE_INVALID}\n",
+}
+
+
+def written(folder, text):
+    path = folder / "notes.scenario.yaml"
+    path.write_text(HEAD + text)
+    return path
+
+
+def test_a_scenario_that_expects_nothing_passes_and_everything_says_so(tmp_path, capsys):
+    path = written(tmp_path, "  - wait: 0.05 s\n")
+    assert main(["check", str(path)]) == 0
+    assert f"note: {NOTHING_EXPECTED}" in capsys.readouterr().out
+    assert main(["run", str(path), "--report-dir", str(tmp_path / "r")]) == 0
+    printed = capsys.readouterr().out
+    assert f"note: {NOTHING_EXPECTED}" in printed
+    assert "expects nothing" in printed
+    assert "0 of 0" not in printed
+    report = next((tmp_path / "r").rglob("run.json")).parent
+    found = json.loads((report / "run.json").read_text())["findings"]
+    assert [each["message"] for each in found if each["kind"] == "nothing_expected"] == [
+        NOTHING_EXPECTED
+    ]
+    page = (report / "report.html").read_text()
+    assert "the scenario expects nothing" in page
+    assert "none is stated" in page
+
+
+@pytest.mark.parametrize("text", SILENT.values(), ids=SILENT)
+def test_a_scenario_that_expects_something_has_no_such_note(tmp_path, text):
+    path = written(tmp_path, text)
+    result = harness.run(path, report_dir=tmp_path / "r")
+    assert result.passed
+    assert "nothing_expected" not in {finding.kind for finding in result.run.findings}
+    assert not any("expects nothing" in note for note in result.case.notes)
+
+
+def test_an_angle_that_looks_like_degrees_is_noted_with_its_place(tmp_path, capsys):
+    text = "  - wait: 0.05 s\nobjects:\n  - {name: a, box: {size: [0.1, 0.1, 0.1]}, static: true,"
+    text += " pose: {xyz: [0.5, 0, 0.5], rpy: [0, 0, 90]}}\nexpect: [within_limits]\n"
+    path = written(tmp_path, text)
+    assert main(["check", str(path)]) == 0
+    said = "6:98: 90 is an angle in radians, 5156.6 degrees; write `90 deg` for degrees"
+    assert said in capsys.readouterr().out
+    result = harness.run(path)
+    assert any(said in note for note in result.case.notes)
+    assert any(said in finding.message for finding in result.run.findings)
+
+
+def test_a_joint_goal_in_degrees_is_out_of_reach_with_a_hint(tmp_path, capsys):
+    path = written(tmp_path, "  - move_to: {joints: {joint1: 90}}\nexpect: [within_limits]\n")
+    assert main(["check", str(path)]) == 1
+    assert "4:32: 90 is an angle in radians" in capsys.readouterr().out
