@@ -28,7 +28,7 @@ class PoseGoal:
     """A link at a pose.
 
     Attributes:
-        link: Which link, rigidly behind the group's last joint.
+        link: A link that is rigidly attached after the group's last joint.
         pose: T_world_link.
         position_tolerance: Radius around the target [m].
         orientation_tolerance: Largest rotation about each axis [rad].
@@ -178,7 +178,7 @@ class SequenceItem:
 
 @dataclass(frozen=True)
 class CartesianPathOptions:
-    """What is asked of a Cartesian path.
+    """The requirements on a Cartesian path.
 
     Attributes:
         max_step: Between the poses that are solved [m].
@@ -405,7 +405,7 @@ class MotionPlanner(Protocol):
         Args:
             group: A chain group.
             start: In description order.
-            link: Rigidly behind the group's last joint.
+            link: A link that is rigidly attached after the group's last joint.
             twist: Unit translation or rotation in world axes, shape (6,): linear, then angular.
             distances: Least and most [m or rad]; equal for a fixed distance.
             options: How to plan.
@@ -427,7 +427,7 @@ class MotionPlanner(Protocol):
         group: str,
         start: FloatArray,
         goals: Sequence[PoseGoal | PositionGoal],
-        wanted: CartesianPathOptions,
+        path_options: CartesianPathOptions,
         options: PlanningOptions,
     ) -> MotionPlan:
         """Plan straight lines through waypoints, as far as they go.
@@ -474,7 +474,7 @@ class GripperResult:
 class Faults(Protocol):
     """What can be broken in the physics while a run goes on.
 
-    Each call returns what stood before, so that a receipt can tell a fault from no change.
+    Each call returns what stood before, so that a receipt can distinguish a fault from no change.
     """
 
     def set_friction(self, name: str, sliding: float) -> float:
@@ -506,7 +506,7 @@ class Simulator(Protocol):
     """The physics; time only moves inside these calls, and every sample of it is recorded.
 
     A call that would take the run beyond `LONGEST_RUN`, or its record beyond what the memory is
-    meant for, raises StepFailed TIMED_OUT.
+    sized for, raises StepFailed TIMED_OUT.
     """
 
     @property

@@ -110,7 +110,7 @@ def between_fingers(run: Run, name: str) -> BoolArray:
 def _presses_from_both_sides(run: Run, name: str) -> BoolArray:
     """Samples at which two finger sides press an object against each other, shape (N,).
 
-    Where no direction was recorded (an older run) nothing speaks against it.
+    Where no direction was recorded (an older run) the press counts.
     """
     sides = gripper_of(run).sides
     pressures: list[FloatArray] = []

@@ -86,7 +86,7 @@ class Predicate(Expectation, PredicateFields):
     """A condition that holds or does not hold at each sample of a run.
 
     Attributes:
-        is_opposed: Whether its measures show what speaks against it: contacts of a collision.
+        is_opposed: Whether its measures show its violation: contacts of a collision.
     """
 
     word: ClassVar[str] = ""

@@ -28,7 +28,7 @@ class Evidence:
         measures: The tightest first.
         margin: In `unit`, where it says more than the signal's value; else None.
         unit: Of `margin`.
-        is_moment: Whether the text speaks of the sample, rather than of all the time judged.
+        is_moment: Whether the text is about the sample, rather than of all the time judged.
     """
 
     text: str
@@ -43,11 +43,11 @@ class MarginSignal:
     """How far a predicate is from flipping at each sample of a window.
 
     Attributes:
-        values: Not negative where the predicate holds; NaN where nobody can say, shape (n,).
+        values: Not negative where the predicate holds; NaN where it is unknown, shape (n,).
         unit: Of the values.
         evidence: What the sample at an index of the window shows.
-        applies: Samples of which the predicate speaks (default all): a distance to an object says
-            nothing before the object is there. `always` skips the others, nothing holds at them.
+        applies: Samples at which the predicate is defined (default all): distance to an object has
+            no value before the object exists. `always` skips the others, nothing holds at them.
         progress: Chooses the sample to show among equal margins.
     """
 
@@ -189,9 +189,9 @@ def all_of(
         parts: At least one.
         text: What to say of a sample, given its index and its tightest measure.
         present: Samples at which there is something to judge; NaN elsewhere.
-        applies: Samples of which it speaks, as in `MarginSignal`.
+        applies: Samples at which it is defined, as in `MarginSignal`.
         shown: How many measures a verdict shows.
-        is_moment: Whether the text speaks of the sample.
+        is_moment: Whether the text is about the sample.
     """
     rows: FloatArray = np.stack([part.shares() for part in parts])
     values: FloatArray = rows.min(axis=0)  # NaN in any part is NaN

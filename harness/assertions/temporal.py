@@ -23,7 +23,7 @@ FOREVER = 1e9
 
 @dataclass(frozen=True)
 class Decision:
-    """What a reduction came to.
+    """The result of a reduction over time.
 
     Attributes:
         value: Signed so that the expectation holds where it is not negative (never: positive).
@@ -37,7 +37,7 @@ class Decision:
 
 
 class TooShort(Exception):
-    """No sample of the window leaves room for the time that is asked for."""
+    """No sample of the window leaves room for the required time."""
 
 
 def later(times: FloatArray) -> FloatArray:
@@ -110,7 +110,7 @@ def eventually(
             margins the one with most samples that hold is chosen.
 
     Raises:
-        TooShort: No sample that may begin it has `hold` seconds behind it.
+        TooShort: No sample that may begin it is followed by `hold` seconds.
     """
     starts = np.arange(len(times))
     if within is not None:
@@ -208,7 +208,7 @@ def until(
         The decision, and whether it was a sample of the second that decided.
 
     Raises:
-        TooShort: No sample at which the second may begin has `hold` seconds behind it.
+        TooShort: No sample at which the second may begin is followed by `hold` seconds.
     """
     starts = np.arange(len(times))
     if within is not None:

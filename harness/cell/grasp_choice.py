@@ -79,9 +79,9 @@ def _most_promising(approaches: Sequence[Approach], search: Search, cell: Cell) 
     progress = [_progress(approach, search, cell) for approach in approaches]
     best = approaches[int(np.argmax(progress))]
     for goal, options in ((best.at, search.options), (best.before, cell.current.options)):
-        wanted = resolve_goal(GoalFields(**goal.keys), search.group, cell)
+        joint_goal = resolve_goal(GoalFields(**goal.keys), search.group, cell)
         try:
-            cell.planner.check_goal(search.group, search.start, wanted, options)
+            cell.planner.check_goal(search.group, search.start, joint_goal, options)
         except PlanningFailed as failure:
             failure.facts["is_start_of_approach"] = goal is best.before
             raise
@@ -132,10 +132,10 @@ def _ends(approach: Approach, search: Search, cell: Cell) -> Iterator[FloatArray
 
 def _solutions(goal: TcpGoal, search: Search, cell: Cell) -> list[FloatArray]:
     """The whole robot at a goal, nearest to the start first."""
-    wanted = resolve_goal(GoalFields(**goal.keys), search.group, cell)
-    if isinstance(wanted, JointGoal):
+    joint_goal = resolve_goal(GoalFields(**goal.keys), search.group, cell)
+    if isinstance(joint_goal, JointGoal):
         raise TypeError("an approach leads to a pose or a position")
-    solutions = cell.kinematics.solve(search.group, wanted, search.start, search.options.seed)
+    solutions = cell.kinematics.solve(search.group, joint_goal, search.start, search.options.seed)
     return [_with_arm(positions, search.start, search.group, cell) for positions in solutions]
 
 

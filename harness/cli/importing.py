@@ -1,4 +1,4 @@
-"""`harness import`: files of other programs as files of ours."""
+"""`harness import`: files of other programs as harness files."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from harness.suite.discovery import UsageError
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write a world file or a robot's folder; what of the other file is left out is told."""
+    """Write a world file or a robot's folder; what is left out of the other file is reported."""
     of_a_robot = arguments.kind == "srdf"
     return guarded(lambda: _robot(arguments) if of_a_robot else _world(arguments))
 

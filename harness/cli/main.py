@@ -192,12 +192,10 @@ def _parser() -> argparse.ArgumentParser:
     options.for_view(command("view", "open the page of a run"))
     options.for_judge(command("judge", "judge a saved run again"))
     options.for_grade(command("grade", "grade a recording of another program by a scenario"))
-    options.for_compare(command("compare", "tell what changed from one saved run to another"))
+    options.for_compare(command("compare", "report what changed from one saved run to another"))
     options.for_new(command("new", "write a commented scenario that passes"))
     options.for_export(command("export", "write a saved run as a rosbag2, and its robot as a URDF"))
-    options.for_import(
-        command("import", "write files of other programs as ours", module="importing")
-    )
+    options.for_import(command("import", "convert files of other programs", module="importing"))
     options.for_robot(command("robot", "look a robot over, or draw it"))
     options.for_ik_test(
         command("ik-test", "test a function that solves inverse kinematics", module="ik_test")

@@ -154,7 +154,7 @@ def for_list(listing: argparse.ArgumentParser) -> None:
 def for_view(view: argparse.ArgumentParser) -> None:
     """Of `harness view`."""
     view.add_argument("run", metavar="RUN", help="the run's report folder, or a file in it;"
-                      " '#t=10.1' behind it opens that moment")  # fmt: skip
+                      " '#t=10.1' after it opens that moment")  # fmt: skip
     view.add_argument("--rebuild", action="store_true", help="write the page anew")
     view.add_argument("--no-open", action="store_true", help="only say where the page is")
 
@@ -238,7 +238,7 @@ def for_import(importing: argparse.ArgumentParser) -> None:
 def for_ik_test(test: argparse.ArgumentParser) -> None:
     """Of `harness ik-test`."""
     add = test.add_argument
-    add("solver", metavar="SOLVER", help="module:function or file.py:function; `own` is ours")
+    add("solver", metavar="SOLVER", help="module:function or file.py:function; `own` is built in")
     add("--robot", metavar="ROBOT", required=True, help=ROBOT)
     add_robot_options(test)
     add("--link", metavar="LINK", default="", help="that is placed (default: the TCP)")

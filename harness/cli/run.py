@@ -53,7 +53,7 @@ def _run(arguments: argparse.Namespace) -> int:
             suite.collect(server)
             _write(arguments, suite)
             _show_interruption(arguments, suite, time.monotonic() - start)
-            return _tell_lines(arguments, suite)
+            return _print_lines(arguments, suite)
         from harness.cli.progress import ProgressLines
         from harness.reporting.terminal import Style
 
@@ -69,7 +69,7 @@ def _run(arguments: argparse.Namespace) -> int:
         output().status(lambda: "  writing the results")
     page = _write(arguments, suite)
     output().status(None)
-    _tell(arguments, suite, time.monotonic() - start, page)
+    _print_outcome(arguments, suite, time.monotonic() - start, page)
     return suite.exit_code
 
 
@@ -123,7 +123,7 @@ def _write(arguments: argparse.Namespace, suite: SuiteRun) -> Path | None:
     return page
 
 
-def _tell_lines(arguments: argparse.Namespace, suite: SuiteRun) -> int:
+def _print_lines(arguments: argparse.Namespace, suite: SuiteRun) -> int:
     """A line for each thing that went wrong: for editors, or as GitHub's annotations."""
     from harness.reporting.suite.cause import short_lines
     from harness.reporting.suite.github import error_annotations
@@ -148,7 +148,7 @@ def _case_names(arguments: argparse.Namespace, jobs: Sequence[CaseJob]) -> list[
     return [f"{name} #{number % arguments.repeat + 1}" for number, name in enumerate(names)]
 
 
-def _tell(
+def _print_outcome(
     arguments: argparse.Namespace, suite: SuiteRun, seconds: float, page: Path | None
 ) -> None:
     """Failures, rates, tables and the last lines."""
@@ -157,7 +157,7 @@ def _tell(
     from harness.reporting.terminal import Style, repeats, report_link, summary
 
     style = Style.of(sys.stdout)
-    _tell_failures(arguments, suite, style)
+    _print_failures(arguments, suite, style)
     say("")
     if arguments.repeat > 1:
         for runs in suite.repetitions():
@@ -166,7 +166,7 @@ def _tell(
         for index, said in suite.differences.items():
             say(f"  run {index % arguments.repeat + 1} of {suite.jobs[index].file}: {said}")
     else:
-        _tell_rates(suite, style)
+        _print_rates(suite, style)
     rates = missed(suite.rates)
     rate_text = f"; {style.outcome('failed', rates)}" if rates else ""
     if suite.results:
@@ -200,7 +200,7 @@ def _show_interruption(arguments: argparse.Namespace, suite: SuiteRun, seconds: 
         complain("the same command with --resume runs the rest")
 
 
-def _tell_failures(arguments: argparse.Namespace, suite: SuiteRun, style: Style) -> None:
+def _print_failures(arguments: argparse.Namespace, suite: SuiteRun, style: Style) -> None:
     from harness.reporting.terminal import failure
     from harness.suite.header import source_lines
 
@@ -223,7 +223,7 @@ def _tell_failures(arguments: argparse.Namespace, suite: SuiteRun, style: Style)
         say("", f"... and {shown_failures - MOST_FAILURES} more that did not pass")
 
 
-def _tell_rates(suite: SuiteRun, style: Style) -> None:
+def _print_rates(suite: SuiteRun, style: Style) -> None:
     from harness.reporting.sampled import rate_line, table_lines
 
     for group in suite.rates:

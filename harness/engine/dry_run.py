@@ -218,11 +218,11 @@ class DryPlanner:
         group: str,
         start: FloatArray,
         goals: Sequence[PoseGoal | PositionGoal],
-        wanted: CartesianPathOptions,
+        path_options: CartesianPathOptions,
         options: PlanningOptions,
     ) -> MotionPlan:
         options = replace(options, path_only=True)
-        return self._planner.plan_cartesian_path(group, start, goals, wanted, options)
+        return self._planner.plan_cartesian_path(group, start, goals, path_options, options)
 
     def plan_relative(
         self,

@@ -35,7 +35,7 @@ class Graded:
 
 @dataclass(frozen=True)
 class Grade:
-    """What a recording came to.
+    """The grade of a recording.
 
     Attributes:
         run: The recording, as far as it goes.
@@ -116,7 +116,7 @@ def graded(verdicts: Sequence[Verdict]) -> tuple[Graded, ...]:
 
 
 def _honest(verdict: Verdict) -> Verdict:
-    """What failed only because a number is missing was not observed; in a run of ours it fails."""
+    """A failure for a missing number alone is not an observation; a simulated run fails."""
     if verdict.status != "failed" or math.isfinite(verdict.margin):
         return verdict
     reason = f"{verdict.reason}: the recording has a gap there"

@@ -133,7 +133,7 @@ def _solver(test: IkTest, chain: Chain) -> Solver:
 
 
 def _probe(trial: Trial) -> None:
-    """Ask for a few poses within reach, and refuse a function whose answers cannot be read.
+    """Query a few poses within reach, and refuse a function whose answers cannot be read.
 
     Raises:
         UnusableSolver: None of its answers has the shape of joint positions.
@@ -142,7 +142,7 @@ def _probe(trial: Trial) -> None:
     rng = np.random.default_rng(0)
     states = [chain.home, *rng.uniform(chain.lower, chain.upper, (4, chain.dof))]
     for state in states:
-        outcome = trial.ask(Target(chain.link_pose(state), state))
+        outcome = trial.query(Target(chain.link_pose(state), state))
         if outcome.kind == "unreadable":
             raise UnusableSolver(
                 f"{trial.solver.name} {outcome.text}; it must return {chain.dof} joint positions "
@@ -179,7 +179,7 @@ class _Search:
         times: list[float] = []
 
         def visit(target: Target) -> bool:
-            outcome = self._trial.ask(target)
+            outcome = self._trial.query(target)
             if outcome.kind in ("answered", "refused"):
                 times.append(outcome.seconds)
             return not self._trial.has_hung
@@ -191,11 +191,11 @@ class _Search:
         return Speed(float(median), float(slow), max(times), len(times))
 
     def _learn_offset(self) -> None:
-        """Whether answers are off by the same wherever asked."""
+        """Whether answers are off by the same at every target."""
         trial, misses = self._trial, []
 
         def visit(target: Target) -> bool:
-            for answer in trial.ask(target).answers:
+            for answer in trial.query(target).answers:
                 if trial.misses(target, answer) is not None:
                     misses.append((target.pose, trial.chain.link_pose(answer)))
             return not trial.has_hung

@@ -24,7 +24,7 @@ class Finding:
         shown: Cases that showed it.
         tried: Cases that were tried.
         call: The example as a call in Python.
-        target: That was asked for.
+        target: The target of the example.
         answer: Joint positions that came back, or None.
         reached: Pose of the link there, shape (7,), xyz and quat wxyz; None without an answer.
         picture: Name of its file in the report folder; empty without one.
@@ -84,7 +84,7 @@ class PropertyResult:
 
 @dataclass(frozen=True)
 class Speed:
-    """Wall time of calls for targets within reach, told and never judged [s]."""
+    """Wall time of calls for targets within reach, reported and never judged [s]."""
 
     median: float
     slow: float
@@ -99,7 +99,7 @@ class IkReport:
     Attributes:
         solver: Name of the function.
         robot: Name of the arm.
-        task: What the function was asked for.
+        task: What the function solves for.
         link: That it placed.
         joint_names: In the order of its answers.
         home: Where examples are shrunk to, shape (dof,).

@@ -94,7 +94,7 @@ def shrink(
         return flaw is not None
 
     limits = settings(QUIET, max_examples=count, phases=[Phase.generate, Phase.shrink])
-    # Enough; none; or a function that answers differently when asked again.
+    # Enough; none; or a function that answers differently when called again.
     ends = (_Enough, HypothesisException, ExceptionGroup)
     with _whatever_is_loaded(), suppress(*ends):
         find(strategy, condition, settings=limits, random=Random(number))

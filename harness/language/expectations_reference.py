@@ -6,7 +6,7 @@ from harness.core.registry import OWN_PACKAGE, Registry, registry
 from harness.language.annotations import keys_of
 from harness.language.expectation import KIND, ExpectationFields, PredicateFields, Quantity
 from harness.language.formula.formula import SIGNALS
-from harness.language.language import BESIDE_CHECK, EXPECTATIONS, PREDICATES, TEMPORAL
+from harness.language.language import EXPECTATIONS, KEYS_BY_PREDICATE, PREDICATES, TEMPORAL
 from harness.language.reference import (
     VALUES,
     contents,
@@ -39,7 +39,7 @@ margin: how far that was from the limit, in its unit, positive where it holds. A
 several quantities holds where all of them do. They are compared as shares of their limits (a share
 that cannot exceed 1, as a part of what lies between its limit and 1); the tightest decides, and the
 margin is its own. What was never observed does not pass: a step that was not reached, or an object
-that was not there, is `not reached`, and what nobody recorded is `not observable`.
+that was not there, is `not reached`, and what was not recorded is `not observable`.
 
 A step that fails unexpectedly ends the run. What could still have come true then is `not reached`,
 and names that step: `lifted` and `eventually`, and everything that is judged at the end. What no
@@ -47,7 +47,7 @@ continuation could make good has failed: an `always` that was violated, a deadli
 
 The pictures are real runs: what the deciding quantity measured, its limit, green where the
 predicate holds, and the sample that decided; on the left an expectation that passes, on the right
-one that does not. What naive checks make of such runs is told in [VERDICTS.md](VERDICTS.md)."""
+one that does not. [VERDICTS.md](VERDICTS.md) shows what naive checks make of such runs."""
 PLAN_TEXT = """The plan is compared with the physics in every report, as findings. What must not
 differ can be expected, too:
 
@@ -88,9 +88,9 @@ Where a signal is missing it is not observable."""
 def expectations_reference() -> str:
     """Every temporal word and predicate, and when a bare one is judged."""
     registered: Registry[type[ExpectationFields]] = registry(KIND)
-    beside = table((key, keys_of(PredicateFields)[key]) for key in BESIDE_CHECK)
+    shared = table((key, keys_of(PredicateFields)[key]) for key in KEYS_BY_PREDICATE)
     parts = ["# Expectations", EXPECTATIONS_HEAD, VALUES, contents(PREDICATES)]
-    parts += ["These keys may stand inside or next to every word:", beside]
+    parts += ["These keys may stand inside or next to every word:", shared]
     parts += ["## Temporal words", words({w: sentence(m) for w, m in TEMPORAL.items()})]
     parts += [UNTIL_TEXT, *_formula_section(), "## Plan against physics", PLAN_TEXT]
     for word, model in PREDICATES.items():
@@ -98,7 +98,7 @@ def expectations_reference() -> str:
         package = registered.package_of(word)
         is_own = package == OWN_PACKAGE
         notes = [] if is_own else [f"This expectation comes from the package `{package}`."]
-        parts += section(word, model, BESIDE_CHECK, (*notes, JUDGED[model.judged]))
+        parts += section(word, model, KEYS_BY_PREDICATE, (*notes, JUDGED[model.judged]))
         parts += [_measured(model.quantities), *([_picture(word)] if is_own else [])]
     parts += part_sections(PREDICATES.values())
     return "\n\n".join(parts) + "\n"

@@ -15,7 +15,7 @@ from harness.core.registry import OWN_PACKAGE
 from harness.language.annotations import is_model, keys_of
 from harness.language.base import SpecModel
 from harness.language.expectation import ExpectationFields
-from harness.language.language import BESIDE_VERB
+from harness.language.language import KEYS_BY_VERB
 from harness.language.scenario import Scenario
 from harness.language.step import STEPS, Step
 from harness.language.units import MEANINGS, SHARE
@@ -47,14 +47,14 @@ def scenario_reference() -> str:
 
 def steps_reference() -> str:
     """Every verb: what it does, its keys with type, unit and default."""
-    next_to = table((key, keys_of(Step)[key]) for key in BESIDE_VERB)
+    next_to = table((key, keys_of(Step)[key]) for key in KEYS_BY_VERB)
     parts = ["# Steps", STEPS_HEAD, VALUES, contents(STEPS)]
     parts += ["These keys may stand next to every verb:", next_to]
     parts.append(f"Error codes are {', '.join(f'`{code}`' for code in get_args(ErrorCode))}.")
     for verb, model in STEPS.items():
         package = STEPS.package_of(verb)
         notes = [] if package == OWN_PACKAGE else [f"This step comes from the package `{package}`."]
-        parts += section(verb, model, BESIDE_VERB, notes)
+        parts += section(verb, model, KEYS_BY_VERB, notes)
     parts += part_sections(STEPS.values())
     return "\n\n".join(parts) + "\n"
 
@@ -65,10 +65,10 @@ def contents(words: Iterable[str]) -> str:
 
 
 def section(
-    word: str, model: type[SpecModel], beside: Collection[str], notes: Iterable[str]
+    word: str, model: type[SpecModel], shared: Collection[str], notes: Iterable[str]
 ) -> list[str]:
     """A word's heading, definition, notes and keys."""
-    fields = [(key, field) for key, field in keys_of(model).items() if key not in beside]
+    fields = [(key, field) for key, field in keys_of(model).items() if key not in shared]
     parts = [f"## `{word}`", sentence(model), *notes]
     if model.short and not any(f.is_required() for key, f in fields if key != model.short):
         parts.append(f"`- {word}: x` is short for `- {word}: {{{model.short}: x}}`.")

@@ -17,7 +17,7 @@ VARIATION_KEYS = ("parametrize", "randomize", "samples", "redraw_overlaps", "exp
 
 def _is_finite_quantity(value: object) -> object:
     if not math.isfinite(split_quantity(value)[0]):
-        raise ValueError("a finite number is wanted")
+        raise ValueError("a finite number is expected")
     return value
 
 

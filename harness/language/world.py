@@ -59,7 +59,7 @@ class PlaneSpec(SpecModel):
 
 
 class MeshSpec(SpecModel):
-    """A triangle mesh file beside the world or scenario file."""
+    """A triangle mesh file next to the world or scenario file."""
 
     file: str = Field(description="Path from the file that names it.")
     scale: Annotated[
@@ -129,7 +129,7 @@ class InertiaSpec(SpecModel):
 
 
 class ObjectSpec(SpecModel):
-    """An object: one geometry beside its keys, or several under `shapes`.
+    """An object: one geometry next to its keys, or several under `shapes`.
 
     One with `visuals` alone is seen and touches nothing.
     """

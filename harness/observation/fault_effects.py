@@ -15,7 +15,7 @@ MOVING = 1e-3
 """A body faster than this moves [m/s]."""
 
 COMMANDED = 1e-4
-"""A set point that changed by more was told to move [rad or m]."""
+"""A set point that changed by more was commanded to move [rad or m]."""
 
 
 def with_receipts(
@@ -123,12 +123,12 @@ class _Record:
 
     def _joint_stall(self, fault: dict[str, Any], rows: slice) -> tuple[bool, str]:
         joint = self.joints.index(fault["target"])
-        asked = float(np.ptp(self.signals.joint_commands[rows, joint]))
-        if asked <= COMMANDED:
-            return False, "it was not told to move afterwards"
+        commanded = float(np.ptp(self.signals.joint_commands[rows, joint]))
+        if commanded <= COMMANDED:
+            return False, "it was not commanded to move afterwards"
         moved = float(np.ptp(self.signals.joint_positions[rows, joint]))
         unit = "m" if self.robot.joints[joint].kind == "prismatic" else "rad"
-        return True, f"told to move by {asked:.3g} {unit}, it moved by {moved:.2g} {unit}"
+        return True, f"commanded to move by {commanded:.3g} {unit}, it moved by {moved:.2g} {unit}"
 
     def _push(self, fault: dict[str, Any], rows: slice) -> tuple[bool, str]:
         speed = self._speed(fault["target"], rows)
@@ -151,7 +151,7 @@ class _Record:
         commands = self.signals.joint_commands[rows]
         moved = np.nan_to_num(np.ptp(commands, axis=0)) > COMMANDED
         if not moved.any():
-            return False, "no joint was told to move afterwards"
+            return False, "no joint was commanded to move afterwards"
         errors = np.abs(self.signals.joint_positions[rows] - commands)[:, moved]
         return (
             True,

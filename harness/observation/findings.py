@@ -35,7 +35,7 @@ def noted(problem: Problem) -> str:
     return f"{problem.path}:{problem.line}:{problem.column}: {problem.message}; {problem.hint}"
 
 
-def told(notes: Sequence[str]) -> tuple[Finding, ...]:
+def notes_of_files(notes: Sequence[str]) -> tuple[Finding, ...]:
     """What of the robot's and the world's files was left out or assumed."""
     return tuple(Finding(kind="note", message=note) for note in notes)
 

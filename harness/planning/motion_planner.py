@@ -155,11 +155,11 @@ class VerifiedPlanner:
         group: str,
         start: FloatArray,
         goals: Sequence[PoseGoal | PositionGoal],
-        wanted: CartesianPathOptions,
+        path_options: CartesianPathOptions,
         options: PlanningOptions,
     ) -> MotionPlan:
         """Plan straight lines through waypoints, as far as they go."""
-        return plan_waypoints(self._links(group, start, options), goals, wanted)
+        return plan_waypoints(self._links(group, start, options), goals, path_options)
 
     @explained
     def check_goal(

@@ -16,7 +16,7 @@ STAGES: tuple[StageName, ...] = (
     "path",
     "time parameterisation",
 )
-"""In the order in which they are told."""
+"""In the order in which they are reported."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Stage:
 
 
 def stages_of(explanation: Mapping[str, Any]) -> tuple[Stage, ...]:
-    """The stages in a step's explanation; none where it tells of none."""
+    """The stages in a step's explanation; none where it has none."""
     entries = cast(Iterable[Mapping[str, Any]], explanation.get("stages", ()))
     return tuple(
         Stage(

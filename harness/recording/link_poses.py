@@ -21,12 +21,12 @@ def link_poses(
         joint_positions: Columns in the order of `robot.joints`, shape (N, n).
         links: Which to return; all when None.
     """
-    wanted = None if links is None else _with_carriers(robot, links)
+    needed = None if links is None else _with_carriers(robot, links)
     columns = {joint.name: column for column, joint in enumerate(robot.joints)}
     poses: dict[str, FloatArray] = {}
     for placement in robot.placements:
         parent = poses.setdefault(placement.parent, IDENTITY[None])
-        if wanted is not None and placement.link not in wanted:
+        if needed is not None and placement.link not in needed:
             continue
         moved = joint_positions[:, columns[placement.joint]] if placement.joint else None
         poses[placement.link] = compose(parent, placement_poses(placement, moved))
@@ -35,11 +35,11 @@ def link_poses(
 
 def _with_carriers(robot: RobotRecord, links: Collection[str]) -> set[str]:
     """The links, and all that they hang on: the others cost memory for nothing."""
-    wanted = set(links)
+    needed = set(links)
     for placement in reversed(robot.placements):
-        if placement.link in wanted:
-            wanted.add(placement.parent)
-    return wanted
+        if placement.link in needed:
+            needed.add(placement.parent)
+    return needed
 
 
 def placement_poses(placement: LinkPlacement, positions: FloatArray | None) -> FloatArray:

@@ -265,7 +265,7 @@ class Measure:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What an expectation came to.
+    """The result of an expectation.
 
     Attributes:
         expectation: Its text, one line: `never: collision between robot and Table`.
@@ -330,7 +330,7 @@ class CaptureRecord:
         camera: Name of one of `Run.cameras`.
         time: Simulation time [s].
         sample: Index into the signals.
-        step: Id of the `capture` step; empty when an expectation wanted to look.
+        step: Id of the `capture` step; empty when an expectation needed the picture.
         backend: Who drew them: `rays`, the same on every machine.
         files: Path in `Run.files` by kind: `color` (PNG or JPEG, with the camera's noise), `depth`
             (.npz, array `depth` of float32 metres along the optical axis, shape (height, width),
@@ -406,7 +406,7 @@ class Signals:
         clearance_links: Which robot link was nearest, index into the robot's link_names, (N,) each,
             for keys of `clearances` that start with `robot`; -1 where none.
         planned_clearances: As `clearances`, had the arm been at its commands; recorded when an
-            expectation asks for them.
+            expectation needs them.
     """
 
     times: FloatArray
@@ -458,14 +458,14 @@ class Run:
         resolved: Text of the resolved scenario; runs again to the same digest.
         versions: Of every library that could change a number.
         ended_early: Why the run stopped before its last step; empty when it did not.
-        unrecorded: Names of `Signals`' fields that nobody recorded, as a bag has no contacts, and
+        unrecorded: Names of `Signals`' fields that were not recorded, as a bag has no contacts, and
             `attachments` and `steps`; an expectation that needs one is not observable.
         meshes: The triangles of mesh files, for pictures where the files are not.
         cameras: Every camera of robot, world and scenario.
         captures: Pictures taken, in order of time.
         videos: Of the cameras that were recorded all along.
         files: Content of the pictures and videos by path in the run's folder; a saved run reads
-            each when it is asked for.
+            each on first use.
     """
 
     scenario: str

@@ -77,17 +77,17 @@ class StoredRun:
 
     def changes(self) -> list[str]:
         """What was changed in the folder after the run was written; one sentence each."""
-        told: list[str] = []
+        changes: list[str] = []
         if self.content_digest != self.digest:
-            told.append(
+            changes.append(
                 "signals, trajectories or verdicts were changed after the run was written:"
                 f" their digest is {self.content_digest[:12]}, {RUN} states {self.digest[:12]}"
             )
         if self.is_edited:
-            told.append(
+            changes.append(
                 f"{RUN} or {RESOLVED} was changed after the run was written: the checksum differs"
             )
-        return told
+        return changes
 
 
 def write_run(
@@ -99,7 +99,7 @@ def write_run(
     wall_times: Mapping[str, float],
     extra: Callable[[Path], tuple[str, ...]] | None = None,
 ) -> tuple[str, ...]:
-    """Write a run's folder under a temporary name beside it, then put it in its place.
+    """Write a run's folder under a temporary name next to it, then move it into place.
 
     Args:
         folder: Its final name; an older run there is replaced, anything else is not touched.
@@ -437,7 +437,7 @@ def _refuse_foreign(folder: Path) -> None:
 
 
 def _fresh_sibling(folder: Path, purpose: str) -> Path:
-    """A new, hidden folder beside the final one, on the same file system."""
+    """A new, hidden folder next to the final one, on the same file system."""
     number = 0
     while True:
         sibling = folder.parent / f".{folder.name}.{purpose}.{os.getpid()}.{number}"

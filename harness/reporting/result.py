@@ -1,4 +1,4 @@
-"""What a case came to, as plain data: what the terminal, pytest and later pages tell of it."""
+"""The result of a case as plain data, for the terminal, pytest and the pages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a check of a robot found, and the page that tells it."""
+"""What a check of a robot found, and the page that shows it."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class RobotReport:
 
     Attributes:
         name: Of the robot.
-        source: The file or name it was asked for by.
+        source: The file or name that was given.
         joints: Movable joints, mimic ones included.
         followers: What mimic joints follow, by joint: `finger_left times -1`.
         effort_sources: Where effort limits are from, each once.

@@ -29,9 +29,9 @@ class Rate:
         low: Lower end of Wilson's interval.
         high: Upper end.
         confidence: Of the interval.
-        at_least: Asked rate; None when none was.
-        verdict: `shown` when the rate is at least what was asked, `refuted` when it is not, `open`
-            when these samples cannot tell.
+        at_least: Required rate; None when the file requires none.
+        verdict: `shown` when the rate is at least the required one, `refuted` when not, `open`
+            when these samples do not decide.
         stopped_early: Whether the sequential test ended the sampling.
         overlapping: Samples that were run although objects overlap at their start.
         redrawn: Samples that were drawn again because objects overlapped.
@@ -108,11 +108,11 @@ def rate_text(name: str, rate: Rate) -> str:
         is_shown = rate.verdict == "shown"
         line += "" if is_shown else "; every one must pass, as the file has no `expect_rate`"
     else:
-        asked = f"at least {rate.at_least:.1%}"
+        required = f"at least {rate.at_least:.1%}"
         line += {
-            "shown": f": {asked} is confirmed",
-            "refuted": f": {asked} is refuted",
-            "open": f": {asked} is not confirmed: take more samples, or require less",
+            "shown": f": {required} is confirmed",
+            "refuted": f": {required} is refuted",
+            "open": f": {required} is not confirmed: take more samples, or require less",
         }[rate.verdict]
     if rate.stopped_early:
         line += "; the sequential test needed no more"
@@ -128,7 +128,7 @@ def rate_text(name: str, rate: Rate) -> str:
 def table_lines(
     cases: Sequence[tuple[Mapping[str, Any], bool]], style: Style = PLAIN
 ) -> Iterator[str]:
-    """Passed of all, by each quantity that varies; the worst rows tell where to look.
+    """Passed of all, by each quantity that varies; the worst rows show where to look.
 
     Args:
         cases: What varied in each case, and whether it passed.

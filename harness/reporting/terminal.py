@@ -188,7 +188,7 @@ def causes(result: CaseResult, source: Sequence[str] = ()) -> list[str]:
         if verdict.status != "passed"
     ]
     if result.outcome == "error" or not found:
-        found.append(printable_lines(result.message.rstrip()) or "no cause was told")
+        found.append(printable_lines(result.message.rstrip()) or "no cause was reported")
     return found
 
 
@@ -248,7 +248,7 @@ def measure_text(measure: Measure) -> str:
 
 
 def _unit(unit: str) -> str:
-    """A unit as it is written behind a number; of a plain number, nothing."""
+    """A unit as it is written after a number; of a plain number, nothing."""
     return "" if unit == "1" else unit
 
 
@@ -260,8 +260,8 @@ def summary(results: Sequence[CaseResult], seconds: float, style: Style = PLAIN)
         for outcome in OUTCOMES
         if counts[outcome]
     ]
-    told = ", ".join(parts) or "nothing was run"
-    return f"{told} of {_plural(len(results), 'case')} in {seconds:.1f} s"
+    counts = ", ".join(parts) or "nothing was run"
+    return f"{counts} of {_plural(len(results), 'case')} in {seconds:.1f} s"
 
 
 def repeats(results: Iterable[CaseResult], style: Style = PLAIN) -> str:
@@ -270,8 +270,8 @@ def repeats(results: Iterable[CaseResult], style: Style = PLAIN) -> str:
     if len(digests) == 1:
         [(digest, count)] = digests.items()
         return f"{style.mark(True)} {count} runs, one digest: {digest}"
-    told = "; ".join(f"{count} x {digest}" for digest, count in digests.items())
-    return f"{style.mark(False)} {digests.total()} runs, {len(digests)} digests: {told}"
+    repeated = "; ".join(f"{count} x {digest}" for digest, count in digests.items())
+    return f"{style.mark(False)} {digests.total()} runs, {len(digests)} digests: {repeated}"
 
 
 def _joined(lines: Iterable[str]) -> str:

@@ -17,7 +17,7 @@ Solutions = Sequence[FloatArray]
 
 
 def own_solver(robot: RobotSource, link: str = "") -> Callable[..., Any]:
-    """A solver of what an arm can be asked for: a pose, a position and pitch, or a position.
+    """A solver of what an arm can reach: a pose, a position and pitch, or a position.
 
     Args:
         robot: The arm.

@@ -57,10 +57,10 @@ def first_scenario(source: RobotSource, file: Path) -> FirstScenario:
     Args:
         source: The robot.
         file: Where it will be: robots' files are named from its folder, and candidates are
-            written beside it, and away again.
+            written next to it, and removed again.
 
     Raises:
-        SpecError: A file of the robot says what cannot be meant.
+        SpecError: A file of the robot is invalid.
         RobotError: The robot is not known, or its files cannot be used.
     """
     description = load(source)

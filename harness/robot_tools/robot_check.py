@@ -59,7 +59,7 @@ def check_robot(
     kinematics = PinocchioKinematics(description)
     touches = self_touches(description, positions)
     findings = tuple(_findings(description, kinematics, touches, positions, seed))
-    told = {detail for finding in findings for detail in finding.details}
+    reported = {detail for finding in findings for detail in finding.details}
     driven = [joint for joint in description.movable_joints if joint.mimic is None]
     report = RobotReport(
         name=description.name,
@@ -72,7 +72,7 @@ def check_robot(
         tcp_link=description.tcp_link,
         gripper=_gripper(description),
         findings=findings,
-        notes=tuple(note for note in description.notes if note not in told),
+        notes=tuple(note for note in description.notes if note not in reported),
         proposal=_proposal(touches) if propose else {},
     )
     return Checked(report, touches)

@@ -79,7 +79,7 @@ class RobotSource:
 
     @property
     def has_no_srdf(self) -> bool:
-        """Whether it is a robot's file with no SRDF beside it."""
+        """Whether it is a robot's file with no SRDF next to it."""
         return self.kind in KINDS.values() and not self.srdf
 
     @property
@@ -115,7 +115,7 @@ def load(source: RobotSource) -> RobotDescription:
     """The robot, composed.
 
     Raises:
-        SpecError: A file says what cannot be meant.
+        SpecError: A file is invalid.
         RobotError: The robot is not known, or its files cannot be used.
     """
     if source.kind == "scenario":

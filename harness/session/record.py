@@ -9,7 +9,7 @@ from importlib.metadata import version
 from harness.cell.program import Program
 from harness.engine.execute import Execution
 from harness.observation.fault_effects import with_receipts
-from harness.observation.findings import findings_of, overlap_findings, told
+from harness.observation.findings import findings_of, notes_of_files, overlap_findings
 from harness.ports import Kinematics, Touch
 from harness.recording.run import (
     Finding,
@@ -130,7 +130,7 @@ def run_record(
         allowed_contacts=tuple(sorted(program.description.allowed_collisions)),
         findings=(
             *about_file,
-            *told(notes),
+            *notes_of_files(notes),
             *overlap_findings(overlaps),
             *findings_of(steps),
             *findings,

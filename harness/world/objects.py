@@ -114,7 +114,7 @@ def _geometry(spec: ObjectSpec | ShapeSpec, base_dir: Path) -> Geometry:
     if spec.mesh is not None:
         path = base_dir / spec.mesh.file
         if not path.is_file():
-            raise ObjectUnusableError(f"there is no mesh file '{spec.mesh.file}' beside the file")
+            raise ObjectUnusableError(f"there is no mesh file '{spec.mesh.file}' next to the file")
         scale = spec.mesh.scale
         return Mesh(path, scale if isinstance(scale, tuple) else (scale, scale, scale))
     return Plane()

@@ -42,7 +42,7 @@ def test_every_name_that_robot_and_world_do_not_have_is_told_with_its_line(tmp_p
         15: "'later'",
         20: "'same'",
         21: "'opn'",
-        22: "the steps up to here ask for 702 s",
+        22: "the steps up to here request 702 s",
         23: "'nothing'",
     }
     assert [line for line, _ in found] == list(expected)
@@ -103,7 +103,7 @@ def test_objects_with_one_name_are_told_in_scenario_and_world(tmp_path):
         (
             3,
             "world 'own': two objects are called 'cup'; object 'cup': a plane has no mass: say"
-            " `static: true`; object 'pot': there is no mesh file 'pot.stl' beside the file",
+            " `static: true`; object 'pot': there is no mesh file 'pot.stl' next to the file",
         ),
         (8, "another object is called 'ball'"),
     ]

@@ -49,7 +49,7 @@ def test_a_tool_of_another_length_is_told_in_the_links_axes():
         return correct(x + ahead * np.cos(heading), y + ahead * np.sin(heading), z + up, pitch)[:1]
 
     finding = found(longer)["reaches"]
-    assert finding.kind == "is off by (-10.0, 0.0, 0.0) mm in the link's own axes, wherever asked"
+    assert finding.kind == "is off by (-10.0, 0.0, 0.0) mm in the link's own axes, at every target"
     assert np.array_equal(finding.target.joint_positions, HOME)
 
 
@@ -114,7 +114,7 @@ def test_an_answer_that_depends_on_what_was_asked_before_is_found():
     def ik(x, y, z, pitch):
         return [[*rest, q4 + 1e-12 * next(counter)] for *rest, q4 in correct(x, y, z, pitch)]
 
-    assert found(ik)["determinism"].kind == "answers differently when asked again"
+    assert found(ik)["determinism"].kind == "answers differently when called again"
 
 
 def test_a_way_left_out_is_found_only_where_all_are_claimed():
@@ -152,7 +152,7 @@ def test_the_assertion_of_a_test_tells_findings_in_numbers():
         check_ik(ik, OM, examples=20)
     text = str(caught.value)
     x, y, z = (round(float(value), 9) + 0.0 for value in HOME_TIP)
-    assert "is off by (0.0, 0.0, -17.0) mm in the world's axes, wherever asked" in text
+    assert "is off by (0.0, 0.0, -17.0) mm in the world's axes, at every target" in text
     assert f"call        ik(x={x!r}, y={y!r}, z={z!r}, pitch=0.0)" in text
     assert "reached by  home" in text
 

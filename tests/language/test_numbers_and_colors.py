@@ -98,7 +98,7 @@ def test_percentages_stand_wherever_a_share_does():
         ("samples: 3\nexpect_rate: 120 %", "must be at most 1"),
         ("samples: 3\nexpect_rate: 90 percent", "no unit is called `percent`"),
         ("samples: 3\nexpect_rate: most", "is a number or a percentage, not `most`"),
-        (with_pose("{xyz: [0, 0, 5 %]}"), "`5 %` is a share; a length is meant"),
+        (with_pose("{xyz: [0, 0, 5 %]}"), "`5 %` is a share; a length is expected"),
     ],
 )
 def test_what_is_no_share_is_refused(lines, message):

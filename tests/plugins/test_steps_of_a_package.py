@@ -90,7 +90,7 @@ def test_every_output_has_the_steps_of_a_plug_in(plugged_in):
     wrong.write_text(SCENARIO.replace("about: red_box", "abuot: red_box").replace("40 ms", "4 m"))
     problems = said("check", "wrong.scenario.yaml", code=2)
     assert "wrong.scenario.yaml:11:33: unknown key `abuot` in `remark`" in problems
-    assert "`4 m` is a length; a time is meant" in problems
+    assert "`4 m` is a length; a time is expected" in problems
     wrong.write_text(SCENARIO.replace("red_box", "red_bax").replace("joint1", "joint9"))
     problems = said("check", "wrong.scenario.yaml", code=2)
     assert "11:40: there is no object 'red_bax'" in problems

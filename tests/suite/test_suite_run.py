@@ -186,7 +186,7 @@ def test_a_mistake_in_one_value_is_told_of_its_cases_alone(varied):
     path = varied(GRID.replace("0.2 s]", "0.2 m]"))
     done = harness("check", path, cwd=path.parent)
     assert done.returncode == 2
-    assert f"{path}:5:11: `0.2 m` is a length; a time is meant" in done.stdout
+    assert f"{path}:5:11: `0.2 m` is a length; a time is expected" in done.stdout
     assert "[0.05_s-1]: ok" in done.stdout
     ran = harness("run", path, "--no-report", cwd=path.parent)
     assert ran.returncode == 2

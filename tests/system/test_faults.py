@@ -52,8 +52,8 @@ def test_faults_that_change_nothing_are_findings_with_their_reason(tmp_path):
             "no_effect",
             "the gripper pressed on nothing afterwards",
         ),
-        ("joint_stall", "wrist_3_joint"): ("no_effect", "it was not told to move afterwards"),
-        ("command_latency", ""): ("no_effect", "no joint was told to move afterwards"),
+        ("joint_stall", "wrist_3_joint"): ("no_effect", "it was not commanded to move afterwards"),
+        ("command_latency", ""): ("no_effect", "no joint was commanded to move afterwards"),
         ("push", "red_box"): ("no_effect", "it did not move: friction or a hand held it"),
     }
     told = [f.message for f in saved.findings if f.kind == "fault_without_effect"]
@@ -78,7 +78,7 @@ def test_a_fault_that_is_set_back_in_time_had_no_effect(tmp_path):
         "friction": ("no_effect", "nothing pulled at it before it was set again"),
         "gripper_effort": ("no_effect", "the gripper pressed on nothing before it was set again"),
         "sensor_noise": ("no_effect", "no time passed before it was set again"),
-        "command_latency": ("no_effect", "no joint was told to move before it was set again"),
+        "command_latency": ("no_effect", "no joint was commanded to move before it was set again"),
     }
     assert {fault["receipt"] for fault in mended} == {"landed"}
     told = [found for found in saved.findings if found.kind == "fault_without_effect"]

@@ -35,7 +35,7 @@ def test_both_mistakes_are_found_each_with_its_smallest_example(tmp_path, monkey
     home = load_chain("open_manipulator_x").home
 
     assert height["property"] == turn["property"] == "reaches"
-    assert height["kind"] == "is off by (0.0, 0.0, -17.0) mm in the world's axes, wherever asked"
+    assert height["kind"] == "is off by (0.0, 0.0, -17.0) mm in the world's axes, at every target"
     assert height["asked_joint_positions"] == home.tolist()
     assert np.subtract(height["reached"], height["asked"])[:3] == pytest.approx([0, 0, -0.017])
 

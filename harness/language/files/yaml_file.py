@@ -46,7 +46,7 @@ def read_text(
         mode = path.stat()
         if not stat.S_ISREG(mode.st_mode):
             found = "a folder" if stat.S_ISDIR(mode.st_mode) else "not a regular file"
-            raise SpecError([Problem(name, 0, 0, f"this is {found}; a {kind} is wanted")])
+            raise SpecError([Problem(name, 0, 0, f"this is {found}; a {kind} is expected")])
         if mode.st_size > largest:
             size = f"{mode.st_size / 1e6:.1f} MB; at most {largest / 1e6:.0f} MB are read"
             raise SpecError([Problem(name, 0, 0, f"the file has {size}")])
@@ -138,7 +138,7 @@ class _Composer:
         self.source = source
         self.problems: list[Problem] = []
         self._anchors: dict[str, Located] = {}
-        self._sizes: dict[str, tuple[int, int]] = {}  # values and depth behind an anchor
+        self._sizes: dict[str, tuple[int, int]] = {}  # values and depth of an anchor
         self._count = 0
 
     def document(self, text: str) -> Located | None:

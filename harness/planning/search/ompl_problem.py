@@ -19,7 +19,7 @@ _BEYOND = np.pi  # [rad] how far a continuous joint may leave the range of start
 class FreeStates:
     """Says which states are free, and counts them; only the ends are when the budget has ended.
 
-    So planners that draw whole batches come to their end, and none lacks a start or a goal.
+    So planners that draw whole batches terminate, and none lacks a start or a goal.
     """
 
     def __init__(self, checker: MotionChecker, ends: FloatArray, end: int) -> None:

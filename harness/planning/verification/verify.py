@@ -23,7 +23,7 @@ VERIFIED_RESOLUTION = FINAL_RESOLUTION / 3
 """Between states checked on the trajectory that is commanded: finer than any planner's [rad]."""
 
 UNPADDED_RESOLUTION = FINAL_RESOLUTION / 8
-"""The same where no padding takes up what a corner may cut off another between two states: checked
+"""The same where no padding covers what a corner may cut off another between two states: checked
 at `VERIFIED_RESOLUTION`, 3 of 210 paths on meshes were still up to 0.1 mm deep in between [rad]."""
 
 ENOUGH_PADDING = 0.001

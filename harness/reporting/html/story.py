@@ -1,4 +1,4 @@
-"""Steps, verdicts, findings and surroundings of a run, as the page tells them."""
+"""Steps, verdicts, findings and surroundings of a run, as the page shows them."""
 
 from __future__ import annotations
 

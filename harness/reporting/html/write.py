@@ -52,14 +52,18 @@ def _pictures(folder: Path, stored: StoredRun) -> list[Picture]:
         {*failed[:PICTURES], *_spread(rest, PICTURES - len(failed))},
         key=lambda number: (executed[number].end_time, number),
     )
-    told = [(stills[n], f"{executed[n].summary}, t = {executed[n].end_time:.2f} s") for n in chosen]
-    told += [
+    captioned = [
+        (stills[n], f"{executed[n].summary}, t = {executed[n].end_time:.2f} s") for n in chosen
+    ]
+    captioned += [
         (folder / step.explanation["picture"], f"why: {step.summary}")
         for step in executed
         if step.status == "failed" and "picture" in step.explanation
     ]
     return [
-        Picture(caption, small) for file, caption in told if (small := _small(file)) is not None
+        Picture(caption, small)
+        for file, caption in captioned
+        if (small := _small(file)) is not None
     ]
 
 

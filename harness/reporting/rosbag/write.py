@@ -57,7 +57,7 @@ class BagOptions:
 def write_bag(folder: Path, stored: StoredRun, options: BagOptions | None = None) -> None:
     """Write a run as a rosbag2; equal runs and options give equal bytes.
 
-    The bag's files are called as the folder is. Beside them lie the URDF, a layout for Foxglove
+    The bag's files are called as the folder is. Next to them lie the URDF, a layout for Foxglove
     and a configuration for RViz.
 
     Args:

@@ -32,7 +32,7 @@ def cause_of(result: CaseResult) -> Cause | None:
     if result.outcome == "passed":
         return None
     if result.outcome == "error":
-        last = (result.message.strip().splitlines() or ["no cause was told"])[-1]
+        last = (result.message.strip().splitlines() or ["no cause was reported"])[-1]
         return Cause(f"error: {_short(last)}", last)
     if result.outcome == "invalid":
         for problem in result.problems:
@@ -47,7 +47,7 @@ def cause_of(result: CaseResult) -> Cause | None:
             said = f"{verdict.expectation}: {verdict.status}"
             said += f": {verdict.reason}" if verdict.reason else ""
             return Cause(f"{verdict.status}: {verdict.expectation}", said, verdict.line)
-    return Cause("failed", result.message or "no cause was told")
+    return Cause("failed", result.message or "no cause was reported")
 
 
 def short_lines(results: Iterable[CaseResult]) -> Iterator[str]:

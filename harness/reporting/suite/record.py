@@ -19,7 +19,7 @@ class SuiteCase:
     """A case with what its file says of it.
 
     Attributes:
-        result: What it came to.
+        result: The result of the case.
         values: What varies, path -> value.
         tags: Of the file.
         verifies: Requirements that the file names.

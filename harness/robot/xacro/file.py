@@ -73,7 +73,7 @@ def render(path: Path, args: Mapping[str, Any], packages: PackagePath) -> str:
         "given": [str(each) for each in packages.given],
         "processor_time": PROCESSOR_TIME,
     }
-    answer = _ask(order, path)
+    answer = _request(order, path)
     if "text" in answer:
         return str(answer["text"])
     raise SpecError([_problem(answer, path, packages)])
@@ -83,7 +83,7 @@ def _text(value: object) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def _ask(order: Mapping[str, Any], path: Path) -> dict[str, Any]:
+def _request(order: Mapping[str, Any], path: Path) -> dict[str, Any]:
     environment = {"PYTHONPATH": os.pathsep.join(each for each in sys.path if each)}
     command = [sys.executable, "-X", "utf8", "-m", "harness.robot.xacro.process"]
     try:
