@@ -15,13 +15,13 @@ HEAD = """# Verdicts that cannot lie
 
 Each of these scenes is run in the physics by the test suite (`tests/adversarial`). The naive check
 is one that success functions are full of, and it passes in every one of them; our expectations,
-judged from the same recording, do not. What holds is told too, so that nothing is refused
+judged from the same recording, do not. What holds is reported too, so that nothing is refused
 wholesale. This page is written from the runs: `python -m tests.adversarial.table`.
 
 | scene | the naive check: passes | ours: does not pass | holds |
 | --- | --- | --- | --- |
 """
-SPOILT = """
+CORRUPTED = """
 Recordings lie as well. `tests/assertions/test_mutations.py` traces which signals each predicate
 reads, shifts, freezes and drops each of them and fills it with NaN, and no mutant may go on
 passing (`pytest -m mutation`).
@@ -53,7 +53,7 @@ def without_numbers(text):
 
 def page(rows):
     """The whole page."""
-    return HEAD + "\n".join(rows) + "\n" + SPOILT
+    return HEAD + "\n".join(rows) + "\n" + CORRUPTED
 
 
 def main():

@@ -199,7 +199,7 @@ def test_new_writes_a_file_and_never_over_another(folder, capsys):
     assert "\nsteps:\n" in written
 
 
-def test_new_wants_the_name_that_folders_and_pytest_look_for(folder, capsys):
+def test_new_requires_the_name_that_folders_and_pytest_look_for(folder, capsys):
     assert main(["new", "first.yaml"]) == 2
     assert "try 'first.scenario.yaml'" in capsys.readouterr().err
     assert list(folder.iterdir()) == []

@@ -115,7 +115,7 @@ def colour(verdict):
 
 
 def drawn(word, panels):
-    """The picture of a predicate as SVG: an expectation that passes beside one that does not."""
+    """The picture of a predicate as SVG: an expectation that passes next to one that does not."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.4, 2.7), layout="constrained")
         for axes, (text, run, placed, verdict) in zip(figure.subplots(1, 2), panels, strict=True):
@@ -129,7 +129,7 @@ def drawn(word, panels):
 
 
 def _small(svg):
-    """The same with a digit behind the point, which is a tenth of a pixel, and fewer lines."""
+    """The same with a digit after the point, which is a tenth of a pixel, and fewer lines."""
     svg = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", svg, flags=re.DOTALL)
     svg = re.sub(r"font-family: [^;\"]*", "font-family: sans-serif", svg)
     svg = re.sub(r' transform="rotate\(-0 [^)]*\)"', "", svg)

@@ -20,12 +20,12 @@ robot:
 
 `package://name/path` is looked up in the robot's own package (the folder with its `package.xml`),
 the folders of `packages`, of the option `--package-path` and of HARNESS_PACKAGE_PATH and what lies
-in them, beside the robot's package, and among installed Python packages. A robot whose file has no
+in them, next to the robot's package, and among installed Python packages. A robot whose file has no
 `package.xml` around it may lie in a folder of that name, at most three levels up. Nothing outside
 of these folders is read.
 
 Below: what of each file is *read*, *ignored* or *refused* (an error at its line and column, exit
-code 2). *Told* means that `harness check` and every run say so. Each row is a test
+code 2). *Reported* means that `harness check` and every run say so. Each row is a test
 (`tests/robot/test_formats.py`). SDF worlds and MoveIt's `.scene` files have a
 [page of their own](../worlds/FORMATS.md); other files of a MoveIt configuration
 (`ompl_planning.yaml`, controllers, launch files) are not read: a scenario's `planning` says what

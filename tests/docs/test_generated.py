@@ -36,7 +36,7 @@ def test_the_schema_command_writes_the_committed_schema(tmp_path):
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
-def test_a_bundled_file_names_a_schema_beside_it_and_validates(path):
+def test_a_bundled_file_names_a_schema_next_to_it_and_validates(path):
     text = path.read_text(encoding="utf-8")
     named = MODELINE.match(text)
     assert named, f"{path.name} does not begin with the line that editors read"

@@ -47,17 +47,17 @@ def test_the_order_is_picture_commands_scenario_report_links():
     assert places == sorted(places)
 
 
-def test_every_page_beside_scenarios_robots_and_worlds_is_linked():
+def test_every_page_next_to_scenarios_robots_and_worlds_is_linked():
     linked = set(LINK.findall(README))
-    told = {page.relative_to(ROOT).as_posix() for page in PAGES[1:] if page.parent != ROOT}
-    assert told <= linked
+    reported = {page.relative_to(ROOT).as_posix() for page in PAGES[1:] if page.parent != ROOT}
+    assert reported <= linked
 
 
 def test_every_long_run_has_its_command():
     declared = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     markers = declared["tool"]["pytest"]["ini_options"]["markers"]
-    told = re.findall(r"(?m)^python -m pytest -m (\w+)", README)
-    assert sorted(told) == sorted(marker.partition(":")[0] for marker in markers)
+    reported = re.findall(r"(?m)^python -m pytest -m (\w+)", README)
+    assert sorted(reported) == sorted(marker.partition(":")[0] for marker in markers)
 
 
 def test_the_gallery_shows_every_lesson_and_the_page_and_says_how_it_was_made():
@@ -101,8 +101,8 @@ def test_files_named_in_commands_exist():
 
 def test_every_lesson_has_its_line():
     lessons = ROOT / "scenarios/lessons"
-    told = re.findall(r"\]\(([^)/]+\.scenario\.yaml)\)", (lessons / "README.md").read_text())
-    assert told == sorted(path.name for path in Path(lessons).glob("*.scenario.yaml"))
+    reported = re.findall(r"\]\(([^)/]+\.scenario\.yaml)\)", (lessons / "README.md").read_text())
+    assert reported == sorted(path.name for path in Path(lessons).glob("*.scenario.yaml"))
 
 
 def test_the_sample_of_a_refused_file_names_each_mistake():

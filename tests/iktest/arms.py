@@ -1,4 +1,4 @@
-"""A correct solver, and ways to spoil it."""
+"""A correct solver, and ways to break it."""
 
 from harness.iktest.find_function import find_function
 from tests.docs.generated import ROOT

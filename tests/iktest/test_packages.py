@@ -37,7 +37,7 @@ def flawed(name):
 
 @pytest.mark.parametrize("name", ["eaik", "ikpy", "ikpy_checked"])
 def test_solvers_that_repeat_break_what_the_page_says(packages, name):
-    """Which properties, not how often: beside singularities that is the processor's."""
+    """Which properties, not how often: near singularities that depends on the processor."""
     report = packages.report_of(name)
     assert {each.name for each in report.properties if each.flawed} == flawed(name)
 

@@ -168,7 +168,7 @@ def test_a_value_of_the_wrong_shape_is_written_out_in_the_right_one(
 
 
 @pytest.mark.parametrize(
-    ("content", "meant"),
+    ("content", "keyword"),
     [
         ("set_named_target: up", "move_to"),
         ("sleep: 1 s", "wait"),
@@ -178,9 +178,9 @@ def test_a_value_of_the_wrong_shape_is_written_out_in_the_right_one(
         ("add_object: {name: a, box: {dimensions: [1 cm, 1 cm, 1 cm]}}", "size"),
     ],
 )
-def test_a_word_of_another_program_is_answered_with_the_word_of_this_one(content, meant):
+def test_a_word_of_another_program_is_answered_with_the_word_of_this_one(content, keyword):
     (problem,) = problems(f"{HEAD}  - {content}\n")
-    assert problem.hint.startswith(f"did you mean `{meant}`? ")
+    assert problem.hint.startswith(f"did you mean `{keyword}`? ")
 
 
 @pytest.mark.parametrize(

@@ -78,7 +78,7 @@ def test_the_picture_shows_the_arm(walked):
     assert white > 0.005
 
 
-def test_the_scenario_asks_for_the_robot_that_the_page_shows(walked):
+def test_the_scenario_names_the_robot_that_the_page_shows(walked):
     [robot] = [text for language, text in BLOCKS if language == "yaml"]
     written = (walked[0] / "panda/first.scenario.yaml").read_text(encoding="utf-8")
     assert robot in written

@@ -1,4 +1,4 @@
-"""CIRC: on its circle, turning evenly, under Cartesian limits; no circle is told from one."""
+"""CIRC: on its circle, turning evenly, under Cartesian limits; points on no circle are refused."""
 
 import numpy as np
 import pytest

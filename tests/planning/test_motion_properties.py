@@ -96,7 +96,7 @@ boxes = st.lists(
     block=st.floats(0.04, 0.08),
     seed=st.integers(0, 2**32 - 1),
 )
-def a_motion_round_a_block_ends_where_asked_and_comes_out_the_same_again(
+def a_motion_round_a_block_ends_at_its_goal_and_comes_out_the_same_again(
     model, off, boxes, swing, target, block, seed
 ):
     options = replace(OPTIONS, seed=seed)
@@ -281,8 +281,8 @@ def a_cartesian_path_keeps_its_precision(model, off, corners, precision):
     problem = Problem(model, off)
     points = through(problem, corners)
     goals = [PositionGoal(problem.link, point) for point in points[1:]]
-    wanted = CartesianPathOptions(0.005, precision, 0.2, JumpThreshold(0.5, 0.1))
-    plan = problem.plan("plan_cartesian_path", goals, wanted)
+    path_options = CartesianPathOptions(0.005, precision, 0.2, JumpThreshold(0.5, 0.1))
+    plan = problem.plan("plan_cartesian_path", goals, path_options)
     if plan is None:
         return False
     track = [pose.translation for pose in problem.poses(plan)]

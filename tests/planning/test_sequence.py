@@ -188,8 +188,8 @@ def test_a_jump_threshold_ends_a_path_where_a_joint_steps_farther(cell):
     goals = [near(cell, 0.1, 0, 0)]
     free = cell.planner.plan_cartesian_path(ARM, cell.state, goals, PATH, HALF)
     tight = JumpThreshold(0.9 * free.result["largest_joint_step"], 0.1)
-    wanted = CartesianPathOptions(0.005, 0.001, 1.0, tight)
-    refused = failure(cell.planner.plan_cartesian_path, ARM, cell.state, goals, wanted, HALF)
+    path_options = CartesianPathOptions(0.005, 0.001, 1.0, tight)
+    refused = failure(cell.planner.plan_cartesian_path, ARM, cell.state, goals, path_options, HALF)
     assert "would jump" in refused.message
     assert refused.facts["reason"] == "jump"
 

@@ -191,7 +191,7 @@ def test_the_signals_are_the_same_bytes_every_time_and_plain_numpy(tmp_path):
         assert {entry.date_time for entry in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
 
 
-def test_a_newer_run_replaces_an_older_one_with_nothing_left_beside(tmp_path):
+def test_a_newer_run_replaces_an_older_one_with_nothing_left_next_to_it(tmp_path):
     written(tmp_path / "run")
     (tmp_path / "run" / "images").mkdir()
     written(tmp_path / "run", replace(full_run(), seed=5))
@@ -234,7 +234,7 @@ def test_when_writing_breaks_off_the_older_run_stays_and_nothing_half_written(tm
     assert read_run(tmp_path / "run").outcome == "failed"
 
 
-def test_a_place_that_cannot_be_made_is_told(tmp_path):
+def test_a_place_that_cannot_be_made_is_reported(tmp_path):
     (tmp_path / "file").write_text("x")
     with pytest.raises(HarnessError, match=r"cannot be written to .*file"):
         write_run(tmp_path / "file" / "run", full_run(), (), "passed", "", {})
@@ -252,7 +252,7 @@ def test_a_folder_with_other_files_is_never_replaced(tmp_path):
     assert names_in(tmp_path) == ["home"]
 
 
-def test_what_is_no_run_or_a_damaged_one_is_told(tmp_path):
+def test_what_is_no_run_or_a_damaged_one_is_reported(tmp_path):
     with pytest.raises(HarnessError, match=r"is no run: it has no run\.json"):
         read_run(tmp_path)
     folder = tmp_path / "run"

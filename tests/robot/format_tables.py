@@ -30,7 +30,7 @@ FILES = {
     "arm.xml": MJCF,
     "calibration.yaml": calibration_text(),
 }
-BESIDE = {
+NEXT_TO_THEM = {
     "part.stl": ASCII_STL,
     "part.obj": TETRAHEDRON,
     "part.dae": COLLADA,
@@ -39,7 +39,7 @@ BESIDE = {
     **PARTS,
     **{f"parts/{name}": text for name, text in PARTS.items()},
 }
-"""Files that a row may speak of."""
+"""Files that a row may name."""
 
 MOVEIT = {"joint_limits": "limits.yaml", "kinematics": "kinematics.yaml"}
 OTHER_WORDS: dict[str, dict[str, Any]] = {
@@ -59,11 +59,11 @@ TABLES: dict[str, tuple[str, str, tuple[Row, ...]]] = {
     "arm.xacro": (
         "xacro",
         "`robot: {xacro: ..., args: {...}}`; rendered by the xacro library, without ROS, in a"
-        " process of its own.\nMistakes are told at the file and line they are written in,"
+        " process of its own.\nMistakes are reported at the file and line they are written in,"
         " included files too.",
         XACRO_ROWS,
     ),
-    "arm.srdf": ("SRDF", "`robot: {srdf: ...}`, beside any of the others", SRDF_ROWS),
+    "arm.srdf": ("SRDF", "`robot: {srdf: ...}`, with any of the others", SRDF_ROWS),
     "arm.xml": ("MJCF", "`robot: {mjcf: ...}`", MJCF_ROWS),
     "limits.yaml": (
         "MoveIt: joint_limits.yaml",

@@ -91,7 +91,7 @@ def test_ur_type_is_a_model_as_the_course_writes_it():
     assert robot(ur_type="ur3e").name == "ur3e"
 
 
-def test_a_folder_beside_the_scenario_is_a_robot(tmp_path):
+def test_a_folder_next_to_the_scenario_is_a_robot(tmp_path):
     shutil.copytree(data_folder("robots") / "open_manipulator_x", tmp_path / "mine")
     spec = RobotSpec.model_validate({"model": "mine"})
     mine = load_robot(spec, tmp_path)

@@ -1,4 +1,4 @@
-"""xacro files of people: rendered without ROS, inside bounds, mistakes told at their place."""
+"""xacro files of people: rendered without ROS, inside bounds, mistakes reported at their place."""
 
 import time
 
@@ -58,7 +58,7 @@ def test_a_xacro_file_is_rendered_with_its_arguments(tmp_path):
         assert "harness-place" not in arm.urdf
 
 
-def test_a_mistake_of_a_macro_is_told_in_the_file_that_has_it(tmp_path):
+def test_a_mistake_of_a_macro_is_reported_in_the_file_that_has_it(tmp_path):
     write(tmp_path, limb=LIMB.replace('lower="-2"', 'lower="low"'))
     with pytest.raises(SpecError) as caught:
         load(tmp_path)
@@ -123,7 +123,7 @@ def test_an_expression_starts_and_writes_nothing(tmp_path):
     assert not (tmp_path / "made").exists()
 
 
-def test_an_argument_that_the_file_does_not_take_is_told(tmp_path):
+def test_an_argument_that_the_file_does_not_take_is_reported(tmp_path):
     write(
         tmp_path,
         ARM.replace('<xacro:include filename="$(find parts)/limb.xacro"/>', LIMB[len(HEAD) : -9]),

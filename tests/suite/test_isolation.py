@@ -54,7 +54,7 @@ def test_every_case_has_a_process_of_its_own(server):
     assert f"pid {os.getpid()}" not in digests
 
 
-def test_a_case_in_this_process_tells_the_same(server):
+def test_a_case_in_this_process_reports_the_same(server):
     def without_pid(results):
         return [(index, result.file, result.outcome) for index, result in results]
 
@@ -125,9 +125,9 @@ def test_the_hard_cap_can_come_from_the_environment(server, monkeypatch):
     assert "after 0.25 s" in outcome(server, jobs.never_returns_from_native_code).message
 
 
-def test_what_a_case_leaves_behind_ends_with_it(server, tmp_path):
+def test_what_a_case_leaves_running_ends_with_it(server, tmp_path):
     file = tmp_path / "pid"
-    assert outcome(server, jobs.leaves_a_process_behind, file=file).outcome == "passed"
+    assert outcome(server, jobs.leaves_a_process_running, file=file).outcome == "passed"
     assert wait_until_gone(int(file.read_text()))
 
 
@@ -141,7 +141,7 @@ def test_what_a_case_prints_stays_out_of_this_process(server, capfd):
 def test_closing_the_server_ends_running_cases(tmp_path):
     file = tmp_path / "pid"
     with WarmServer(LIGHT) as server:
-        server.start(jobs.tells_its_pid_and_sleeps, CaseJob(file))
+        server.start(jobs.reports_its_pid_and_sleeps, CaseJob(file))
         pid = int(wait_for_text(file))
         assert is_alive(pid)
     assert wait_until_gone(pid)
@@ -154,7 +154,7 @@ def test_a_caller_that_is_killed_leaves_no_process(tmp_path):
         "from harness.suite.cases import *\n"
         "server = WarmServer(('json',))\n"
         "list(run_isolated([CaseJob(Path(sys.argv[1]))], server,"
-        " function=jobs.tells_its_pid_and_sleeps))\n"
+        " function=jobs.reports_its_pid_and_sleeps))\n"
     )
     root = Path(__file__).parents[2]
     caller = subprocess.Popen([sys.executable, "-c", code, str(file)], cwd=root)
@@ -166,7 +166,7 @@ def test_a_caller_that_is_killed_leaves_no_process(tmp_path):
 
 def test_a_server_that_dies_makes_its_cases_errors_and_leaves_no_process(server, tmp_path):
     file = tmp_path / "pid"
-    number = server.start(jobs.tells_its_pid_and_sleeps, CaseJob(file))
+    number = server.start(jobs.reports_its_pid_and_sleeps, CaseJob(file))
     pid = int(wait_for_text(file))
     os.kill(server.pid, signal.SIGKILL)
     ended = []
@@ -177,7 +177,7 @@ def test_a_server_that_dies_makes_its_cases_errors_and_leaves_no_process(server,
     assert outcome(server, jobs.passes).outcome == "passed"  # on a new server
 
 
-def test_a_missing_module_is_told_by_name():
+def test_a_missing_module_is_reported_by_name():
     with (
         WarmServer(("json", "no_such_module_at_all")) as server,
         pytest.raises(ServerStartError, match="No module named 'no_such_module_at_all'") as caught,
@@ -194,17 +194,17 @@ def test_server_and_child_have_one_thread_with_every_solver_imported():
 
 def test_every_child_finds_what_the_server_has_prepared(server):
     server.prepare(jobs.remember, "this")
-    assert outcome(server, jobs.tells_what_is_remembered).title == "this"
+    assert outcome(server, jobs.reports_what_is_remembered).title == "this"
     server.prepare(jobs.remember, "and that")
-    assert outcome(server, jobs.tells_what_is_remembered).title == "this and that"
+    assert outcome(server, jobs.reports_what_is_remembered).title == "this and that"
 
 
 def test_a_preparation_that_fails_leaves_the_server_at_work(server):
     server.prepare(jobs.remember, "this")
     server.prepare(jobs.forget_by_mistake)
-    assert outcome(server, jobs.tells_what_is_remembered).title == ""
+    assert outcome(server, jobs.reports_what_is_remembered).title == ""
 
 
 def test_bundled_robots_that_scenarios_name_are_read_once_for_all(server):
     server.prepare(read_ahead, frozenset({"Pick", "open_manipulator_x", "rh_p12_rn_a"}))
-    assert outcome(server, jobs.tells_robots_already_read).title == "2"
+    assert outcome(server, jobs.reports_robots_already_read).title == "2"

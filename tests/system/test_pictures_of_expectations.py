@@ -1,4 +1,4 @@
-"""The reference's pictures of expectations tell what becomes of them in real runs."""
+"""The reference's pictures of expectations show their results in real runs."""
 
 import html
 import re
