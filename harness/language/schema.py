@@ -158,12 +158,12 @@ def _without_null(schema: Schema) -> Schema:
 
 
 def _with_references(schema: Schema) -> Schema:
-    """Where a number, list or word stands, `${name}` may; where a unit fits, text with one."""
+    """Allow `${name}` for a number, list or word, and text with a unit for a number."""
     units: tuple[str, ...] | None = schema.pop("units", None)
     around = {key: schema.pop(key) for key in ("description", "default") if key in schema}
     if units is not None:
         unit = f"{' or '.join(units)} (as text: {written(units)})"
-        unit = "As a number, or a percentage" if units == SHARE else f"In {unit}"
+        unit = "It is a number or a percentage" if units == SHARE else f"The unit is {unit}"
         around["description"] = f"{around.get('description', '')} {unit}.".strip()
         pattern = EXPRESSION if "rad" in units else PERCENTAGE if units == SHARE else QUANTITY
         return {**around, "anyOf": [schema, {"type": "string", "pattern": pattern}]}
@@ -200,7 +200,10 @@ def _with_short_form(definition: Schema, model: type[SpecModel]) -> Schema:
 
 def _accept_ur_type(robot: Schema) -> None:
     properties = robot["anyOf"][0]["properties"]
-    properties["ur_type"] = {"type": "string", "description": "As `model`: the course's word."}
+    properties["ur_type"] = {
+        "type": "string",
+        "description": "The model; the course's word for `model`.",
+    }
 
 
 def _language(

@@ -81,7 +81,7 @@ def test_every_output_has_the_steps_of_a_plug_in(plugged_in):
     verbs = schema["$defs"]["Step"]["anyOf"][0]["properties"]
     assert verbs["remark"]["description"].startswith("Write a sentence")
     pause = schema["$defs"]["Remark"]["anyOf"][0]["properties"]["pause"]
-    assert pause["description"] == "The step takes this long [s]. In s (as text: s, ms)."
+    assert pause["description"] == "The step takes this long [s]. The unit is s (as text: s, ms)."
     assert said("check", "remarks.scenario.yaml") == "remarks.scenario.yaml: ok\n"
     explained = said("explain", "remarks.scenario.yaml")
     assert re.search(r"5  remark the arm stands where it starts  \[seed \d+\]", explained)
