@@ -65,10 +65,10 @@ def bodies_touching(
     """Debounced force of every body that ever touched an object, sorted by name [N].
 
     Args:
-        run: What happened.
-        name: The object.
+        run: The run with its recorded signals.
+        name: The name of the object.
         among: Only these bodies; default any.
-        but: Not these bodies.
+        but: Bodies that are left out.
     """
     touching = {b if a == name else a for a, b in run.signals.contact_forces if name in (a, b)}
     others = sorted(

@@ -68,7 +68,7 @@ class Expectation(ExpectationFields):
         """What became of it, without its text and its place in the file.
 
         Args:
-            run: What happened.
+            run: The run with its recorded signals.
             step: The id of the step under which it stands; empty for the whole run.
 
         Raises:

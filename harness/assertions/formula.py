@@ -128,7 +128,7 @@ class Evaluation:
     """The bounds of every part of a formula over one window, each calculated once.
 
     Args:
-        window: The samples.
+        window: The samples of the window.
         is_open: Whether the window goes on after its last sample in a way that is not known.
     """
 

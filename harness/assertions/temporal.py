@@ -103,7 +103,7 @@ def eventually(
 
     Args:
         values: Margins, shape (n,), n > 0, without NaN.
-        times: Of the samples [s], shape (n,).
+        times: The times of the samples [s], shape (n,).
         hold: Must be held so long without a break [s].
         within: Latest beginning after the first sample [s].
         progress: Chooses the deciding sample among equal margins, shape (n,); among spans of equal
@@ -200,7 +200,7 @@ def until(
     Args:
         first: Margins of what must hold before, shape (n,), n > 0, without NaN.
         second: Margins of what must come, shape (n,), without NaN.
-        times: Of the samples [s], shape (n,).
+        times: The times of the samples [s], shape (n,).
         hold: The second must be held so long without a break [s].
         within: Latest beginning of the second after the first sample [s].
 

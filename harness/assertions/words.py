@@ -47,7 +47,7 @@ def terms_of(
         word: The temporal word, or the `judged` word of a bare predicate.
         fields: The temporal word, if there is one, and the predicate.
         step: The step where the expectation stands.
-        is_opposed: As in `Terms`.
+        is_opposed: Whether the measures show a violation, as in `Terms`.
 
     Raises:
         NotObservable: It names two steps.
@@ -67,7 +67,7 @@ def one_step(during: tuple[str | None, ...], step: str) -> str:
     """The step that an expectation is judged over.
 
     Args:
-        during: As its parts say it.
+        during: The `during` of each part, or None.
         step: Where it stands, if none of them does.
 
     Raises:

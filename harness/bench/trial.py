@@ -29,7 +29,7 @@ class Trial:
     """The result of one planning attempt.
 
     Attributes:
-        planner: The `planner_id`.
+        planner: The `planner_id` of the trial.
         seed: Seed of the scenario; `harness run --seed` plans the same motion.
         error_code: Code of the failure; empty when planning succeeded.
         state_checks: States checked for collision, including shortening and verification.
@@ -72,9 +72,9 @@ def try_plan(
     """Plan once, and measure the result.
 
     Args:
-        planner: Plans in `scene`.
+        planner: The planner, which plans in `scene`.
         scene: The planning scene at the start of the motion.
-        group: The planning group.
+        group: The name of the planning group.
         start: Joint positions in description order.
         goal: Goal of the motion.
         options: Options with the planner and the step's seed.

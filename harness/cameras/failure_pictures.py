@@ -39,9 +39,9 @@ def draw_failure(
     it. Objects are where they were when the step failed, attached ones move with their link.
 
     Args:
-        description: The robot.
+        description: The description of the robot.
         world_objects: All objects of the scenario.
-        run: The run.
+        run: The run with its recorded signals.
         step: A failed step that has an explanation.
         file: The file to write; its folder exists.
         backend: `auto`, `egl`, `osmesa` or `rays`.

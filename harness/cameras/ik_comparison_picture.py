@@ -40,9 +40,9 @@ def draw_ik_comparison(
     The frame's axes x, y, z are red, green, blue; an orange line connects the link with it.
 
     Args:
-        description: The robot.
+        description: The description of the robot.
         link: The link whose pose the target fixes.
-        target: Target T_world_link.
+        target: The target pose T_world_link.
         expected: Joint positions that reach the target, description order; None when unknown.
         reached: The answer's joint positions; None draws the arm at `expected` alone.
         file: The file to write; its folder exists.

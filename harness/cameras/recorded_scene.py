@@ -26,9 +26,9 @@ def poses_at(
     Simulated objects have their pose in the physics, others their pose in the planning scene.
 
     Args:
-        description: The robot.
+        description: The description of the robot.
         world_objects: All objects of the scenario.
-        run: The run.
+        run: The run with its recorded signals.
         sample: Index into the signals.
         step: Selects one of several steps that share the sample. Changes by steps without duration
             at the moment a motion ends are not part of the motion's end.

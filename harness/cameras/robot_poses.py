@@ -13,7 +13,7 @@ def link_poses(description: RobotDescription, joint_positions: FloatArray) -> di
     """T_world_link of every link.
 
     Args:
-        description: The robot.
+        description: The description of the robot.
         joint_positions: Joint positions in description order, shape (n,).
     """
     poses = {"world": SE3.identity()}

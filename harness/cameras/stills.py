@@ -63,7 +63,7 @@ def save_stills(
     Args:
         description: The robot, with its visuals.
         world_objects: All objects of the scenario.
-        run: The run.
+        run: The run with its recorded signals.
         folder: Folder of the files, which is created if needed; files are numbered by step.
         backend: `auto`, `egl`, `osmesa` or `rays`.
         activity: Called for each picture.

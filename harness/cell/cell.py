@@ -42,7 +42,7 @@ class Belief:
 
     Attributes:
         sample: Index into the recorded samples.
-        link: That carries it; empty when it stands in the world.
+        link: The link that carries it; empty when it stands in the world.
         pose: T_link_object, or T_world_object; None when it is in the scene no more.
     """
 

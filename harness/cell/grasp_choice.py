@@ -23,9 +23,9 @@ class Approach:
     """A straight motion of the TCP to where something is grasped or put down.
 
     Attributes:
-        before: Where it begins.
-        at: Where it ends.
-        number: Of the grasp or turn, from 0; approaches of several lengths share it.
+        before: The goal at which the approach begins.
+        at: The goal at which the approach ends.
+        number: The number of the grasp or turn, from 0; approaches of several lengths share it.
     """
 
     before: TcpGoal
@@ -38,9 +38,9 @@ class Search:
     """How approaches are tried.
 
     Attributes:
-        group: The planning group.
+        group: The name of the planning group.
         start: The whole robot before, description order.
-        options: Of the straight approach.
+        options: The options of the straight approach.
         may_end: Whether it may end at these positions of the whole robot.
         then: Whether what follows can be carried out from there; preferred, not required.
     """

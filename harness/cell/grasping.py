@@ -172,7 +172,7 @@ def _equal_turns(geometry: Geometry, vertical: int, fits: Sequence[bool]) -> lis
 
     Args:
         geometry: The shape to grasp.
-        vertical: Which of its axes points up.
+        vertical: The index of the axis that points up.
         fits: Whether its narrow level side fits between the pads, then its wide one.
     """
     upright = isinstance(geometry, Cylinder | Capsule) and vertical == 2

@@ -33,7 +33,7 @@ class Problems:
         """Collect nothing yet.
 
         Args:
-            lines: Of the file.
+            lines: The lines of the file.
             missing: What could not be loaded; something stands in for it.
         """
         self._lines = lines
@@ -68,7 +68,7 @@ class Problems:
         Args:
             loc: Where the name stands.
             what: It should be the name of.
-            name: That nothing has.
+            name: A name that nothing else has.
             known: Names that something has.
             is_key: The name is a key, not a value.
             start: The name is a part of the text there and begins at this character, from 0.
@@ -99,14 +99,14 @@ class Scope:
     """Names that a step or an expectation may use.
 
     Attributes:
-        description: The robot.
+        description: The description of the robot.
         objects: Every object known so far, by name, whether it is in the scene now or not.
         present: Objects in the scene at this point of the file, as far as the file says.
         attached: Objects attached at this point.
         added: Objects that steps added and nothing removed.
         cameras: Every camera, by name.
         requested_time: Simulated time that steps have requested as a number [s].
-        problems: Where to report.
+        problems: The problems, to which mistakes are added.
         link_pose: T_world_link at joint positions in description order.
     """
 

@@ -37,8 +37,8 @@ class _RunEndedError(Exception):
     """A step failed in a way that nothing expected; carries the failure up through nesting.
 
     Attributes:
-        failure: Of the innermost step.
-        summary: Of that step.
+        failure: The failure of the innermost step.
+        summary: The summary of that step.
     """
 
     def __init__(self, failure: StepFailed, summary: str) -> None:
@@ -117,7 +117,7 @@ def execute_program(
     Args:
         program: What to do.
         scene: Empty; the world's objects are added here.
-        kinematics: Of the program's robot.
+        kinematics: The kinematics of the program's robot.
         planner: Plans in `scene`.
         simulator: At the start state, with every object of the program prepared and the world's
             present.

@@ -24,8 +24,8 @@ class Graded:
     """An expectation's verdict, and what it is worth.
 
     Attributes:
-        points: That can be had; 0 where others have points and this one none.
-        earned: Of them.
+        points: The points that can be earned; 0 where only other rows have points.
+        earned: The points that were earned.
     """
 
     verdict: Verdict

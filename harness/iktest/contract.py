@@ -29,7 +29,7 @@ class Word:
     Attributes:
         says: What its argument is.
         fixes: Parts of the target that it fixes: x, y, z, pitch, turn; or none.
-        value: Of a target T_world_link and a seed.
+        value: The value of a target T_world_link and a seed.
     """
 
     says: str

@@ -37,12 +37,12 @@ class IkTest:
         solver: `module:function`, `file.py:function` or `own`, called in a process of its own
             that is ended when it hangs; or a function, called in this process.
         robot: A bundled name, a folder, a file; or with more words about it.
-        link: That is placed; by default the TCP.
+        link: The link that is placed; by default the TCP.
         branches: The function claims to answer every way to reach a target.
         examples: Cases of each property.
-        seed: Of the cases; the same seed draws the same ones.
-        position_tolerance: That answers may miss their targets by [m].
-        orientation_tolerance: The same of orientation or pitch [rad].
+        seed: The seed of the cases; the same seed draws the same ones.
+        position_tolerance: The largest position error of an answer [m].
+        orientation_tolerance: The largest orientation or pitch error of an answer [rad].
         patience: Wall time after which a call counts as hanging [s].
         report_dir: Where pictures and `ik_test.json` go; None writes nothing.
     """
@@ -115,8 +115,8 @@ def check_ik(
     """Test a function, for tests: raise AssertionError with everything that was found.
 
     Args:
-        solver: As in `IkTest`.
-        robot: As in `IkTest`.
+        solver: The solver, as in `IkTest`.
+        robot: The robot, as in `IkTest`.
         **options: Other attributes of `IkTest`.
     """
     __tracebackhide__ = True

@@ -32,12 +32,12 @@ class Property:
     """Something that must hold for every case.
 
     Attributes:
-        name: One word.
-        says: The property.
+        name: The name in one word.
+        says: The property in a sentence.
         cases: What it is tried on.
         flaws: What is wrong with a case.
-        size: Of a case, for the smallest.
-        share: Of the examples that other properties get.
+        size: The size of a case, for the smallest.
+        share: The share of the examples that other properties get.
     """
 
     name: str

@@ -17,7 +17,7 @@ class Finding:
     """A way in which a function is wrong, with its smallest example.
 
     Attributes:
-        number: From 1.
+        number: The number of the finding, from 1.
         property: Name of the property that it breaks.
         kind: What it does, in words.
         detail: The numbers of the example.
@@ -66,9 +66,9 @@ class PropertyResult:
     """What became of a property.
 
     Attributes:
-        name: One word.
-        says: The property.
-        tried: Cases.
+        name: The name in one word.
+        says: The property in a sentence.
+        tried: The number of cases tried.
         flawed: Cases that break it.
         findings: Numbers of the findings that they show, those of earlier properties included.
         note: Why it was not tried; else empty.
@@ -100,13 +100,13 @@ class IkReport:
         solver: Name of the function.
         robot: Name of the arm.
         task: What the function solves for.
-        link: That it placed.
-        joint_names: In the order of its answers.
+        link: The link that the function placed.
+        joint_names: The joint names in the order of its answers.
         home: Where examples are shrunk to, shape (dof,).
-        properties: In the order tried.
-        findings: In the order found.
-        speed: Of its calls; None when it answered none.
-        seed: Of the cases.
+        properties: The properties in the order tried.
+        findings: The findings in the order found.
+        speed: The speed of its calls; None when it answered none.
+        seed: The seed of the cases.
         seconds: Wall time of all.
     """
 

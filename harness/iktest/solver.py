@@ -28,7 +28,7 @@ class Solver(Protocol):
     """A function under test.
 
     Attributes:
-        name: For people.
+        name: A name for people.
         words: Names of the parameters that it is given.
     """
 
@@ -70,10 +70,10 @@ class Isolated:
         """Start the process.
 
         Args:
-            name: As `find_function` takes it, or `own`.
-            robot: The arm.
+            name: The name as `find_function` takes it, or `own`.
+            robot: The arm to be solved.
             tip: The link that is placed; empty for the TCP.
-            dof: Its joints.
+            dof: The number of the arm's joints.
             patience: Wall time that an answer may take [s].
 
         Raises:

@@ -46,14 +46,14 @@ class Trial:
     """A function under test.
 
     Attributes:
-        chain: Of the arm.
+        chain: The chain of the arm.
         task: What the function solves for.
-        solver: The function.
-        position_tolerance: That an answer may miss its target by [m].
-        orientation_tolerance: The same of orientation or pitch [rad].
+        solver: The function under test.
+        position_tolerance: The largest position error of an answer [m].
+        orientation_tolerance: The largest orientation or pitch error of an answer [rad].
         offset: Error that all answers share, once it is known.
         last_cost: Cost of the calls since it was last read.
-        has_hung: Whether it ever was.
+        has_hung: Whether a call ever hung.
     """
 
     chain: Chain

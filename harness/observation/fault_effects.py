@@ -83,7 +83,7 @@ class _Record:
 
         Args:
             fault: What was set, and what it was before.
-            step: The `inject`.
+            step: The record of the `inject` step.
             set_again: Sample at which the same was set to something else; what happens from there
                 on is none of this fault's doing.
         """

@@ -20,7 +20,7 @@ def about_file(program: Program, notes: Sequence[Problem]) -> tuple[Finding, ...
     """What the scenario file allows and probably does not intend.
 
     Args:
-        program: The compiled scenario.
+        program: The program of the run.
         notes: Places in the file, as the language found them.
     """
     found = [Finding("note", noted(problem)) for problem in notes]

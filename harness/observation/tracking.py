@@ -33,7 +33,7 @@ def plan_against_physics(run: Run, planned: Signals, distances: Distances) -> tu
     """What differed between belief and physics, and by how much, in every run.
 
     Args:
-        run: With clearances observed.
+        run: The run, with its clearances observed.
         planned: The run's signals `as_commanded`.
         distances: Measures clearances at every sample it is given.
     """

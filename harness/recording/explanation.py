@@ -24,9 +24,9 @@ class Stage:
     """One stage of planning a motion.
 
     Attributes:
-        name: Which.
-        status: What became of it.
-        text: That in one sentence, with its numbers.
+        name: The name of the stage.
+        status: The outcome of the stage.
+        text: The result in one sentence, with its numbers.
         code: Its failure's name in moveit_msgs/MoveItErrorCodes; empty unless it failed.
         details: A line each: an inverse kinematics' branch and what removed it, a pair too near.
     """

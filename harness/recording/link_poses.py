@@ -17,9 +17,9 @@ def link_poses(
     """T_world_link at every sample, shape (N, 7) each; (1, 7) of links that cannot move.
 
     Args:
-        robot: The robot.
+        robot: The record of the robot.
         joint_positions: Columns in the order of `robot.joints`, shape (N, n).
-        links: Which to return; all when None.
+        links: The links to return; all when None.
     """
     needed = None if links is None else _with_carriers(robot, links)
     columns = {joint.name: column for column, joint in enumerate(robot.joints)}
@@ -47,7 +47,7 @@ def placement_poses(placement: LinkPlacement, positions: FloatArray | None) -> F
 
     Args:
         placement: How the link hangs.
-        positions: Of its joint [rad or m], shape (N,); None when it has none.
+        positions: The positions of its joint [rad or m], shape (N,); None when it has none.
     """
     pose = np.array([placement.pose])
     return pose if positions is None else compose(pose, _motion(placement, positions))

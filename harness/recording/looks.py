@@ -16,9 +16,9 @@ class Look:
     """One camera at one recorded sample.
 
     Attributes:
-        camera: Its name.
+        camera: The name of the camera.
         sample: Index into the signals.
-        kinds: Which pictures.
+        kinds: The kinds of pictures.
         step: Id of the `capture` step; empty when an expectation needs the picture.
     """
 

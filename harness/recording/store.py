@@ -58,7 +58,7 @@ class StoredRun:
     """What a run's folder holds.
 
     Attributes:
-        digest: As run.json states it.
+        digest: The digest as run.json states it.
         wall_times: Seconds of each part; never judged.
         is_edited: Whether run.json or the resolved scenario was changed after it was written.
     """
@@ -103,10 +103,10 @@ def write_run(
 
     Args:
         folder: Its final name; an older run there is replaced, anything else is not touched.
-        run: What happened.
-        verdicts: What that means.
-        outcome: Of the case.
-        digest: Of run and verdicts.
+        run: The run with its recorded signals.
+        verdicts: The verdicts about the run.
+        outcome: The outcome of the case.
+        digest: The digest of run and verdicts.
         wall_times: Seconds of each part.
         extra: Adds more files to the folder it is given, before anyone sees it; returns notes.
 

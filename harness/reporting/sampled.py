@@ -24,11 +24,11 @@ class Rate:
     """How many samples passed, and what that shows.
 
     Attributes:
-        passed: Of `total`.
+        passed: The number of `total` that passed.
         total: Samples that count: up to where the sequential test ended the sampling.
         low: Lower end of Wilson's interval.
-        high: Upper end.
-        confidence: Of the interval.
+        high: The upper end of the interval.
+        confidence: The confidence of the interval.
         at_least: Required rate; None when the file requires none.
         verdict: `shown` when the rate is at least the required one, `refuted` when not, `open`
             when these samples do not decide.
@@ -58,9 +58,9 @@ class SampledRate:
     """The rate of one parametrised case.
 
     Attributes:
-        file: As the user named it.
+        file: The path as the user named it.
         group: Name of the parametrised case; empty when there is one.
-        rate: Of its samples.
+        rate: The rate of its samples.
         outcome: `passed` when the rate is confirmed.
     """
 
@@ -132,7 +132,7 @@ def table_lines(
 
     Args:
         cases: What varied in each case, and whether it passed.
-        style: Of the terminal.
+        style: The style of the terminal.
     """
     paths = dict.fromkeys(path for values, _ in cases for path in values)
     for path in paths:

@@ -20,7 +20,7 @@ class Chain:
     """A planning group's joints from the world to a link; other joints are at their start position.
 
     Attributes:
-        description: The robot.
+        description: The description of the robot.
         link: The link at the chain's end.
         joint_names: Joints of the group, from base to tip.
         lower: Lower position limits, shape (dof,) [rad or m]; -pi for a continuous joint.

@@ -41,10 +41,10 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
     """The robot in the form of a folder with a robot.yaml.
 
     Args:
-        spec: The scenario's `robot:`.
-        urdf: The robot.
-        srdf: Checked against it.
-        path: The robot's file.
+        spec: The `robot:` of the scenario.
+        urdf: The tree of the robot.
+        srdf: The SRDF to be checked against it.
+        path: The path of the robot's file.
         source: Name of the SRDF in messages.
 
     Raises:

@@ -70,7 +70,7 @@ def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
     """The robot of a scenario, composed and with its options applied.
 
     Args:
-        spec: The scenario's `robot:`.
+        spec: The `robot:` of the scenario.
         base_dir: The scenario's folder, to which paths in `model` and `gripper` are relative.
 
     Raises:

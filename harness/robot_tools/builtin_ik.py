@@ -20,8 +20,8 @@ def own_solver(robot: RobotSource, link: str = "") -> Callable[..., Any]:
     """A solver of what an arm can reach: a pose, a position and pitch, or a position.
 
     Args:
-        robot: The arm.
-        link: That is placed; by default the TCP.
+        robot: The arm to be solved.
+        link: The link that is placed; by default the TCP.
     """
     chain = Chain.of(load(robot), link=link)
     name = chain.description.arm_group

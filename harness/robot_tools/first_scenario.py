@@ -43,7 +43,7 @@ class FirstScenario:
     """A scenario that was checked.
 
     Attributes:
-        text: Of the file.
+        text: The text of the file.
         trouble: What `harness check` still says of it; empty when nothing.
     """
 
@@ -55,7 +55,7 @@ def first_scenario(source: RobotSource, file: Path) -> FirstScenario:
     """A scenario that `harness check` finds nothing wrong with, if one can be found.
 
     Args:
-        source: The robot.
+        source: The source of the robot.
         file: Where it will be: robots' files are named from its folder, and candidates are
             written next to it, and removed again.
 

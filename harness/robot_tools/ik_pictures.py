@@ -15,11 +15,11 @@ def draw_ik_example(
     """Draw an arm where an answer puts it, translucent where the target is reached.
 
     Args:
-        chain: Of the arm.
+        chain: The chain of the arm.
         target: The requested pose; its frame is drawn.
         answer: The group's positions; None draws what reaches the target alone.
-        file: JPEG to write.
-        caption: Below the picture.
+        file: The JPEG file to write.
+        caption: The caption below the picture.
     """
     from harness.cameras.ik_comparison_picture import draw_ik_comparison
 

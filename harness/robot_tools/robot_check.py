@@ -30,8 +30,8 @@ class Checked:
     """A robot that was looked over.
 
     Attributes:
-        report: For people and machines.
-        touches: Which links touched at random configurations.
+        report: The report for people and machines.
+        touches: The links that touched at random configurations.
     """
 
     report: RobotReport
@@ -49,10 +49,10 @@ def check_robot(
     """Look a robot over.
 
     Args:
-        description: The robot.
+        description: The description of the robot.
         source: What the report calls where it is from.
         samples: Random configurations for self-collisions and reach.
-        seed: Of the configurations, and of numeric inverse kinematics.
+        seed: The seed of the configurations, and of numeric inverse kinematics.
         propose: Whether the report proposes pairs that need not be checked.
     """
     positions = random_positions(description, samples, np.random.default_rng(seed))

@@ -40,10 +40,10 @@ class RobotSource:
 
     Attributes:
         word: A name, a file, a robot's folder or the robot.yaml in it, or `package://name/path`.
-        srdf: With a robot's file; empty for none.
+        srdf: The SRDF next to a robot's file; empty for none.
         packages: Folders where package:// is looked up.
         gripper: A bundled gripper to be mounted; empty for none.
-        args: Of a xacro file.
+        args: The args of a xacro file.
         tcp_link: Instead of the arm group's tip; empty for that.
         group: The arm's; empty for the one of most joints.
     """

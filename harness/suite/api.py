@@ -36,8 +36,8 @@ class ScenarioResult:
     Attributes:
         case: Outcome, verdicts, problems, digest and times, as the terminal and reports show them.
         run: Everything recorded; None where nothing ran.
-        text: Of the scenario file; of a model, the file that says the same, whose lines messages
-            count.
+        text: The text of the scenario file; of a model, the file that says the same, whose lines
+            messages count.
     """
 
     case: CaseResult
@@ -104,7 +104,7 @@ def run_scenario(
             working directory.
         overrides: Dotted path -> value, as `--set` has them: `{"robot.model": "ur5e"}`.
         seed: Instead of the scenario's.
-        case: Which one, where it is parametrised.
+        case: The name of the case, where the file is parametrised.
         report_dir: Where its report is written; None: nowhere.
         runner: Runs the job; by default in this process.
 

@@ -33,7 +33,7 @@ class CaseJob:
     """One case to be run.
 
     Attributes:
-        file: As the user names it.
+        file: The path as the user names it.
         overrides: Dotted path in the file -> new value, as YAML text.
         seed: Instead of the file's.
         report_dir: Where its report goes; None writes none.
@@ -146,7 +146,7 @@ def run_isolated(
 
     Args:
         jobs: What to run, in this order.
-        server: Forks the processes.
+        server: The server that forks the processes.
         workers: How many run at the same time.
         hard_cap: Wall seconds a case may take before it is ended as an error.
         watch: Hears (index, event) of running cases.

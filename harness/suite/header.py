@@ -22,9 +22,9 @@ class Header:
 
     Attributes:
         title: Its `scenario`; the file's name where there is none.
-        tags: Its `tags`.
-        line: Of the title, from 1.
-        variation: Its cases.
+        tags: The `tags` of the file.
+        line: The line of the title, from 1.
+        variation: The variation of the file.
         verifies: Requirements that it names.
     """
 

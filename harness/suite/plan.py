@@ -50,8 +50,8 @@ class PlannedCase:
 
     Attributes:
         job: How to run it.
-        header: Of its file.
-        case: Which one it is.
+        header: The header of its file.
+        case: The name of the case.
     """
 
     job: CaseJob

@@ -50,7 +50,7 @@ class SuiteRun:
     Attributes:
         plan: Cases, in file order.
         jobs: Their runs: with repetitions, `repeat` of each case side by side.
-        results: By index into `jobs`; of samples, those that count.
+        results: The results by index into `jobs`; of samples, those that count.
         resumed: How many results are from an earlier run.
         is_interrupted: Whether Ctrl-C or SIGTERM ended it early.
         unfinished: The last event of each run that has begun and not ended, by index into `jobs`.

@@ -55,9 +55,9 @@ class Variation:
         randomize: Path -> distribution; empty where nothing is random.
         samples: How many of each parametrised case; 0: no samples.
         at_least: Success rate to be shown; None: every sample must pass.
-        confidence: With which.
+        confidence: The confidence of the rate.
         stop_early: Whether a sequential test may end the sampling.
-        seed: Of the file.
+        seed: The seed of the file.
         redraw_overlaps: Whether a sample is drawn again while objects overlap at the start.
     """
 
@@ -164,9 +164,9 @@ class Redraw:
     """Draws a sample again.
 
     Attributes:
-        variation: Of its file.
+        variation: The variation of its file.
         case: The parametrised case it is a sample of.
-        index: Its number.
+        index: The number of the sample.
         base: The seed of all samples.
     """
 

@@ -42,7 +42,7 @@ def resolve_object(spec: ObjectSpec, pose: SE3, base_dir: Path) -> WorldObject:
 
     Args:
         spec: What the file says; its own pose is not read.
-        pose: T_world_object.
+        pose: The pose T_world_object of the object.
         base_dir: Folder that mesh files are relative to.
 
     Raises:

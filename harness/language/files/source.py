@@ -26,7 +26,7 @@ class Source:
     """A text that values come from: a file, or an option of the command line.
 
     Attributes:
-        path: As the user named it.
+        path: The path as the user named it.
         lines: Its lines; empty for an option, whose problems have no line.
     """
 

@@ -33,9 +33,9 @@ class XmlElement:
     """An element.
 
     Attributes:
-        tag: With its prefix as written; namespaces are not resolved.
-        attributes: By name as written.
-        place: Of its start tag.
+        tag: The tag with its prefix as written; namespaces are not resolved.
+        attributes: The attributes by name as written.
+        place: The place of its start tag.
         text: All of its own character data.
     """
 
@@ -102,7 +102,7 @@ def read_xml(path: Path, named: str = "") -> XmlElement:
     """The root element of a file.
 
     Args:
-        path: The file.
+        path: The path of the file.
         named: What messages call it; its path by default.
 
     Raises:

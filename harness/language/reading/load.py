@@ -41,8 +41,8 @@ class Loaded(Generic[M]):
     Attributes:
         model: What the file says.
         path: Where it was read.
-        text: As read.
-        lines: From a field of the model to its line and column.
+        text: The text as it was read.
+        lines: The line and column of each field of the model.
         written: The file's values in its own short forms, parameters and overrides applied.
         notes: What the file may say and probably does not intend.
     """
@@ -105,7 +105,7 @@ def read_scenario(
     """A scenario file with its mistakes, for whoever goes on to find more.
 
     Args:
-        path: The file.
+        path: The path of the file.
         overrides: Dotted path -> YAML value, as given with `--set`.
         seed: Taken in place of the file's.
         text: What would stand in the file; None: what does.
@@ -153,7 +153,7 @@ def load_scenario(
     """A scenario file, checked as far as it can be without robot and world.
 
     Args:
-        path: The file.
+        path: The path of the file.
         overrides: Dotted path -> YAML value, as given with `--set`.
         seed: Taken in place of the file's.
 
@@ -180,7 +180,7 @@ def load_world(name_or_path: str, base_dir: Path) -> LoadedWorld:
     """A bundled world by its name, or a harness world file.
 
     Args:
-        name_or_path: As a scenario's `world` says it.
+        name_or_path: The name or path in a scenario's `world`.
         base_dir: Folder of the scenario file; relative paths begin here.
 
     Raises:
@@ -245,7 +245,7 @@ class _BrokenError(SpecError):
     """A file has mistakes; carries what remains of it besides.
 
     Attributes:
-        lines: From a field of the model to its line and column.
+        lines: The line and column of each field of the model.
         remains: A model of what could be read; None when too little could.
         repaired: What was left out of it and replaced.
     """

@@ -31,7 +31,7 @@ class Override(NamedTuple):
     Attributes:
         path: Keys, indices from 0 and names of list items (objects, cameras, ids of steps), joined
             by dots.
-        value: The new value.
+        value: The value that replaces it.
         place: Where mistakes in the path are reported.
     """
 

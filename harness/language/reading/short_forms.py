@@ -43,9 +43,9 @@ def models_shape(
     """A file's values in the shape of its model.
 
     Args:
-        item: The file.
-        model: Its model.
-        problems: Gets the mistakes.
+        item: The content of the file.
+        model: The model of the content.
+        problems: The list that collects mistakes.
         notes: Gets what is allowed and probably not intended.
     """
     return _Shaper(problems, [] if notes is None else notes).model(item, model)

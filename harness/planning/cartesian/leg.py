@@ -36,11 +36,11 @@ class Leg:
     """A motion whose parameter runs from 0 to 1.
 
     Attributes:
-        link: Whose way counts.
-        path: Of the link through space; None for a joint motion.
+        link: The link whose path is timed.
+        path: The path of the link through space; None for a joint motion.
         rates: What the link may do; None for a joint motion.
         positions: Group positions at even parameters, shape (K, dof).
-        name: In messages: `item 2 (lin)`.
+        name: The name in messages: `item 2 (lin)`.
     """
 
     def __init__(

@@ -36,9 +36,9 @@ def runs_of(legs: Sequence[Leg], radii: Sequence[float], motions: LinkMotions) -
     """The legs, parted where nothing is blended.
 
     Args:
-        legs: In order.
-        radii: Of the blend after each leg but the last [m]; 0 for a stop.
-        motions: Of the call.
+        legs: The legs in their order.
+        radii: The radii of the blend after each leg but the last [m]; 0 for a stop.
+        motions: The motions of the call.
 
     Raises:
         PlanningFailed: As `transition`, and INVALID_MOTION_PLAN when two blends overlap.

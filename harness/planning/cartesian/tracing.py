@@ -134,7 +134,7 @@ def trace(
 
     Args:
         path: Where the link goes.
-        checker: Of the states on it.
+        checker: The checker of the states on it.
         start: Group positions at the way's start.
         step_length: Between the poses that are solved [m].
         jump: What no joint may exceed from one pose to the next.

@@ -41,12 +41,12 @@ class StageRequest:
 
     Attributes:
         failure: The error that was raised.
-        kinematics: The robot's kinematics.
-        scene: The planning scene.
+        kinematics: The kinematics of the robot.
+        scene: The planning scene to check in.
         space: The group, with the other joints at the start state.
         start: The start positions in description order.
         goal: The goal; None for a motion without one, such as a relative motion.
-        options: The planning options.
+        options: The options of the planning call.
         checker: The checker of the motion's states; None where the motion cannot begin.
     """
 

@@ -43,10 +43,10 @@ def choose_goals(
     """Find free joint positions that reach a goal, one of several goals, or a goal region.
 
     Args:
-        kinematics: The robot's kinematics.
-        task: The planning call.
+        kinematics: The kinematics of the robot.
+        task: The planning call with its options.
         start: The start positions in description order.
-        goal: The requested goal.
+        goal: The goal that was requested.
         held: Path constraints that the goal must satisfy, or None.
 
     Raises:

@@ -28,7 +28,7 @@ class Branch:
     """A solution inside the limits, and whether it is free.
 
     Attributes:
-        positions: The group positions.
+        positions: The positions of the group's joints.
         name: The posture of the arm; empty where the solver has no branches.
         distance: The joint-space distance from the start [rad].
         touches: The pairs that are too near.

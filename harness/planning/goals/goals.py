@@ -40,10 +40,10 @@ def find_goals(
     """Find free joint positions that reach a goal.
 
     Args:
-        kinematics: The robot's kinematics.
+        kinematics: The kinematics of the robot.
         checker: The checker of the planned motion.
         start: The start positions in description order.
-        goal: The requested goal.
+        goal: The goal that was requested.
         seed: The seed of numeric restarts.
 
     Raises:

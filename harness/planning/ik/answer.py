@@ -41,7 +41,7 @@ class MissedSolution:
     """A solution inside the limits of the part of a pose that the arm can choose.
 
     Attributes:
-        positions: Group positions.
+        positions: The positions of the group's joints.
         pose: T_world_link at these positions.
         shift: The position error [m].
         turn: The orientation error [rad], which exceeds the tolerance.

@@ -15,8 +15,8 @@ class LinkPoses:
     """Poses T_world_link of every link for N samples.
 
     Attributes:
-        rotations: By link, shape (N, 3, 3).
-        translations: By link [m], shape (N, 3).
+        rotations: The rotations by link, shape (N, 3, 3).
+        translations: The translations by link [m], shape (N, 3).
     """
 
     def __init__(

@@ -80,10 +80,10 @@ def make_problem(
     """The problem of getting from the start to any of the goals.
 
     Args:
-        checker: Of states and edges.
-        start: Group positions, free.
+        checker: The checker of states and edges.
+        start: The start positions of the group, free of collisions.
         goals: Group positions, each free.
-        resolution: Of the edge checks [rad].
+        resolution: The resolution of the edge checks [rad].
         end: The checker's count at which the budget ends.
     """
     ends = np.vstack([start, *goals])

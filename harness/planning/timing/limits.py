@@ -51,10 +51,10 @@ class Limits:
     """What the joints may do, scaling included; shape (dof,) each.
 
     Attributes:
-        velocity: Never infinite.
-        acceleration: Never infinite.
-        jerk: Of every joint; inf for none.
-        dynamics: Of the efforts; None where the robot gives no effort limits.
+        velocity: The velocity limits; never infinite.
+        acceleration: The acceleration limits; never infinite.
+        jerk: The jerk of every joint; inf for none.
+        dynamics: The dynamics of the efforts; None where the robot gives no effort limits.
     """
 
     velocity: FloatArray

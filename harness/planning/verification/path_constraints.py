@@ -24,9 +24,10 @@ class Violation:
     """The constraint that a state breaks most.
 
     Attributes:
-        what: In words: `end_effector_link is turned 0.20 rad about y, 0.10 rad are allowed`.
+        what: The violation in words: `end_effector_link is turned 0.20 rad about y, 0.10 rad are
+            allowed`.
         excess: Beyond its tolerance [rad or m].
-        facts: Plain data.
+        facts: The facts as plain data.
     """
 
     what: str
@@ -38,9 +39,9 @@ class HeldConstraints:
     """Path constraints of one planning call, as values with bounds.
 
     Attributes:
-        space: The group.
-        lower: Of each value, shape (m,).
-        upper: Shape (m,).
+        space: The space of the planning group.
+        lower: The lower bound of each value, shape (m,).
+        upper: The upper bound of each value, shape (m,).
         checks: The number of states evaluated.
     """
 

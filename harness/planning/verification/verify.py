@@ -86,8 +86,8 @@ def find_departure(
     """Where a trajectory leaves its path farther than it may, or None.
 
     Args:
-        trajectory: Timed.
-        waypoints: Of the path that was checked, shape (N, dof).
+        trajectory: The trajectory with its times.
+        waypoints: The waypoints of the path that was checked, shape (N, dof).
         deviation: Largest joint-space distance from its lines [rad].
     """
     away = distances_to_path(trajectory.positions, waypoints)

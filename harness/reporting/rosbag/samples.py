@@ -20,7 +20,7 @@ class Message:
     """Something published.
 
     Attributes:
-        time: In simulation [s].
+        time: The time in simulation [s].
         content: A message of the topic's type.
     """
 

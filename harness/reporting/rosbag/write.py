@@ -43,8 +43,8 @@ class BagOptions:
 
     Attributes:
         storage: `mcap` is compressed (zstd chunks); `sqlite3` is what Humble writes by default.
-        rate: Of joints, frames and clock [Hz].
-        has_raw_images: Videos uncompressed too.
+        rate: The rate of joints, frames and clock [Hz].
+        has_raw_images: Whether videos are written uncompressed too.
         meshes: How the URDF names mesh files.
     """
 

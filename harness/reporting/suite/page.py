@@ -35,7 +35,7 @@ def suite_html(
     """One self-contained page; links to the cases' pages are relative to its folder.
 
     Args:
-        record: The suite's results.
+        record: The record of the suite.
         folder: Where the page will stand.
         history: Worst margins of earlier runs.
     """

@@ -21,7 +21,7 @@ class SuiteCase:
     Attributes:
         result: The result of the case.
         values: What varies, path -> value.
-        tags: Of the file.
+        tags: The tags of the file.
         verifies: Requirements that the file names.
     """
 
@@ -36,9 +36,9 @@ class SuiteRecord:
     """Everything that a suite's files are written from.
 
     Attributes:
-        outcome: The gravest one.
-        cases: In file order; of samples those that count.
-        rates: Of samples.
+        outcome: The gravest outcome of all.
+        cases: The cases in file order; of samples those that count.
+        rates: The rates of samples.
         is_interrupted: Whether Ctrl-C ended it early.
     """
 

@@ -44,7 +44,7 @@ class OwnGripper:
         urdf: The robot, with two independent fingers coupled.
         center: Halfway between the pads, in palm axes [m], shape (3,).
         pairs: Links of the hand that may touch each other.
-        notes: Assumptions.
+        notes: The assumptions, to which more are added.
     """
 
     facts: GripperFacts

@@ -25,7 +25,7 @@ def touching_pairs(urdf: Urdf, positions: Mapping[str, float]) -> tuple[tuple[st
     """Pairs of links that touch at joint positions, except adjacent and rigidly connected ones.
 
     Args:
-        urdf: The robot.
+        urdf: The tree of the robot.
         positions: Positions of the driven joints, by name; mimic joints follow.
     """
     import coal  # here: robots with an SRDF do not need it
