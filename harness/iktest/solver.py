@@ -1,4 +1,4 @@
-"""Functions under test behind one interface: in a process of their own, or in this one."""
+"""Functions under test with one interface: in a process of their own, or in this one."""
 
 from __future__ import annotations
 

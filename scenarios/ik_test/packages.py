@@ -178,9 +178,9 @@ def page() -> str:
     for name, report in reports.items():
         lines += ["", f"## {name}", "", TRIED[name][3]]
         for finding in report.findings:
-            told = [line.replace(f"{Path(__file__).resolve()}:", "") for line in
+            printed = [line.replace(f"{Path(__file__).resolve()}:", "") for line in
                     finding_lines(report, finding)]  # fmt: skip
-            lines += ["", "```text", *told, "```"]
+            lines += ["", "```text", *printed, "```"]
         if not report.findings:
             lines += ["", "Nothing was found."]
     return "\n".join(lines) + "\n"

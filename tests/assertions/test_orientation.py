@@ -32,7 +32,7 @@ def test_no_measure_of_a_verdict_contradicts_it(found):
     assert [each.value for each in reported] == [each.value for each in found]
 
 
-def test_measures_that_speak_against_the_predicate_stay():
+def test_measures_of_a_violation_stay():
     force = Measure("contact force", 0.0, 0.0, "<=", "N", 1.0)
     assert against([force], is_passed=True) == (force,)
     hit = Measure("contact force", 4.0, 0.0, "<=", "N", 1.0)

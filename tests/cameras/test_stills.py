@@ -94,7 +94,7 @@ def test_one_picture_is_saved_for_each_executed_step(ur3e, tmp_path):
 
 
 def test_without_a_graphics_library_the_rays_draw_and_the_note_says_so(tmp_path):
-    """PyOpenGL told to use a library that is none of ours stands for a machine without one."""
+    """PyOpenGL with the name of a missing library stands for a machine without one."""
     program = """
 import sys
 from pathlib import Path

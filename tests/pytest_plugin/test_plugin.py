@@ -86,11 +86,11 @@ def test_k_knows_titles_files_and_tags(pytester, write, words):
 
 def test_other_yaml_files_and_switched_off_names_are_left_alone(pytester, write):
     write(holds=HOLDS)
-    pytester.makefile(".yaml", other="scenario: Not one of ours")
+    pytester.makefile(".yaml", other="scenario: Not a harness file")
     items, _recorder = pytester.inline_genitems("-o", "harness_files=")
     assert items == []
     items, _recorder = pytester.inline_genitems("-o", "harness_files=other.yaml")
-    assert [item.name for item in items] == ["Not one of ours"]
+    assert [item.name for item in items] == ["Not a harness file"]
     result = run(pytester, "-p", "no:armharness")
     result.assert_outcomes()
 

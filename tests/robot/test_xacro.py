@@ -91,7 +91,7 @@ def test_what_cannot_be_rendered_is_refused_at_its_place(
     tmp_path, monkeypatch, old, new, place, words
 ):
     assert old in ARM
-    monkeypatch.setattr(file, "PROCESSOR_TIME", 2)  # an arm of ours takes a tenth of one
+    monkeypatch.setattr(file, "PROCESSOR_TIME", 2)  # a bundled arm takes a tenth of one
     write(tmp_path, ARM.replace(old, new))
     began = time.process_time()
     with pytest.raises(SpecError) as caught:
