@@ -22,7 +22,7 @@ bench: .venv/.installed
 	.venv/bin/python -m pytest -m benchmark -s
 
 docs: .venv/.installed
-	.venv/bin/python tests/docs/generated.py
+	.venv/bin/python -m docs.generate
 
 .venv/.installed: pyproject.toml
 	$(PYTHON) -m venv .venv

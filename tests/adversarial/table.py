@@ -9,7 +9,7 @@ from harness.recording.store import read_run
 from harness.session.run_case import run_case
 from tests.adversarial.scenes import SCENES, WEIGHTLESS
 
-PAGE = Path(__file__).parents[2] / "scenarios" / "VERDICTS.md"
+PAGE = Path(__file__).parents[2] / "docs/reference/verdicts.md"
 RENEW = "python -m tests.adversarial.table"
 HEAD = """# Verdicts that cannot lie
 

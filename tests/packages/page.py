@@ -8,7 +8,7 @@ from pathlib import Path
 from tests.packages.arms import ARMS, OTHERS, PACKAGES, PackageArm
 from tests.packages.trial import Trial, try_arm
 
-PAGE = Path(__file__).parents[2] / "robots" / "PACKAGES.md"
+PAGE = Path(__file__).parents[2] / "docs/reference/robot_packages.md"
 RENEW = "python -m tests.packages.page"
 
 HEAD = """# Robots of other packages

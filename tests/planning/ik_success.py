@@ -19,7 +19,7 @@ from harness.planning.model.robot_model import GroupSpace, RobotModel
 from harness.ports import PoseGoal, PositionGoal
 from harness.robot.load import gripper_names, load_robot, robot_names
 
-PAGE = Path(__file__).parents[2] / "robots" / "INVERSE_KINEMATICS.md"
+PAGE = Path(__file__).parents[2] / "docs/reference/inverse_kinematics.md"
 RENEW = "python -m tests.planning.ik_success"
 POSES = 1000
 ATTEMPTS = (0, 4, RESTARTS, MOST_RESTARTS)

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from harness.core.registry import OWN_PACKAGE, Registry, registry
-from harness.language.annotations import keys_of
-from harness.language.expectation import KIND, ExpectationFields, PredicateFields, Quantity
-from harness.language.formula.formula import SIGNALS
-from harness.language.language import BESIDE_CHECK, EXPECTATIONS, PREDICATES, TEMPORAL
-from harness.language.reference import (
+from docs.generators.reference import (
     VALUES,
     contents,
     part_sections,
     section,
-    sentence,
     table,
     words,
 )
+from harness.core.registry import OWN_PACKAGE, Registry, registry
+from harness.language.annotations import description_of, keys_of
+from harness.language.expectation import KIND, ExpectationFields, PredicateFields, Quantity
+from harness.language.formula.formula import SIGNALS
+from harness.language.language import BESIDE_CHECK, EXPECTATIONS, PREDICATES, TEMPORAL
 
 JUDGED = {
     "at_end": "Bare, it must hold at the last sample of its step or run, which decides.",
@@ -47,7 +46,7 @@ continuation could make good has failed: an `always` that was violated, a deadli
 
 The pictures are real runs: what the deciding quantity measured, its limit, green where the
 predicate holds, and the sample that decided; on the left an expectation that passes, on the right
-one that does not. What naive checks make of such runs is told in [VERDICTS.md](VERDICTS.md)."""
+one that does not. [Verdicts that cannot lie](verdicts.md) compares them with naive checks."""
 PLAN_TEXT = """The plan is compared with the physics in every report, as findings. What must not
 differ can be expected, too:
 
@@ -91,7 +90,7 @@ def expectations_reference() -> str:
     beside = table((key, keys_of(PredicateFields)[key]) for key in BESIDE_CHECK)
     parts = ["# Expectations", EXPECTATIONS_HEAD, VALUES, contents(PREDICATES)]
     parts += ["These keys may stand inside or next to every word:", beside]
-    parts += ["## Temporal words", words({w: sentence(m) for w, m in TEMPORAL.items()})]
+    parts += ["## Temporal words", words({w: description_of(m) for w, m in TEMPORAL.items()})]
     parts += [UNTIL_TEXT, *_formula_section(), "## Plan against physics", PLAN_TEXT]
     for word, model in PREDICATES.items():
         assert issubclass(model, PredicateFields)  # as PREDICATES says
@@ -110,7 +109,7 @@ def _formula_section() -> list[str]:
         arguments = f"({', '.join(kinds)})" if kinds else ""
         unit = unit or "the joint's"
         rows.append(f"| `{name}{arguments}` | {unit} | {meaning} |")
-    formula = sentence(EXPECTATIONS["formula"])
+    formula = description_of(EXPECTATIONS["formula"])
     return ["## `formula`", formula, FORMULA_TEXT, "\n".join(rows)]
 
 
@@ -123,4 +122,4 @@ def _measured(quantities: tuple[Quantity, ...]) -> str:
 
 def _picture(word: str) -> str:
     """A picture that is kept next to the page."""
-    return f"![Where `{word}` holds, and where it does not](pictures/expectations/{word}.svg)"
+    return f"![Where `{word}` holds, and where it does not](../pictures/expectations/{word}.svg)"

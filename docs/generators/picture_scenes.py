@@ -1,4 +1,4 @@
-"""Runs that the reference's pictures are drawn from: short scenarios, and expectations on them."""
+"""The short scenarios that pictures of expectations are drawn from, and those expectations."""
 
 HEAD = """
 scenario: {title}
@@ -196,22 +196,22 @@ PICTURES = {
     ),
     "slip": (("pick", "red_box"), ("slippery", "red_box")),
 }
-"""Predicate -> an expectation that passes and one that does not, each with the scene it is on."""
+"""For each predicate an expectation that passes and one that fails, each with its scene."""
 
 
-def expectation(word, content):
+def expectation(word: str, content: str) -> str:
     """The YAML of an expectation."""
     return content if content.startswith(("never:", "always:")) else f"{word}: {content}"
 
 
-def scenario(title):
-    """A scene's file, with every expectation that a picture shows of it, in order."""
+def scenario(title: str) -> str:
+    """The file of a scene, with every expectation that a picture shows of it, in order."""
     shown = expectations_of(title)
     lines = "".join(f"  - {each}\n" for each in shown)
     return HEAD.format(title=title) + SCENES[title].strip("\n") + "\nexpect:\n" + lines
 
 
-def expectations_of(title):
+def expectations_of(title: str) -> list[str]:
     """The YAML of all expectations on a scene."""
     found = [
         expectation(word, content)

@@ -51,7 +51,7 @@ leads to a note that it is not known."""
 COMMAND = """## Conversion to world files
 
 `harness import sdf FILE` and `harness import scene FILE` write an equivalent
-[world file](../scenarios/SCENARIO.md#world-file) that can be edited: `-o` names the output file,
+[world file](scenario.md#world-file) that can be edited: `-o` names the output file,
 `--model-path` adds folders to search for models, and no file is overwritten without `--force`. A
 comment at the top lists the parts that are left out."""
 

@@ -27,7 +27,7 @@ of these folders is read.
 Below: what of each file is *read*, *ignored* or *refused* (an error at its line and column, exit
 code 2). *Told* means that `harness check` and every run say so. Each row is a test
 (`tests/robot/test_formats.py`). SDF worlds and MoveIt's `.scene` files have a
-[page of their own](../worlds/FORMATS.md); other files of a MoveIt configuration
+[page of their own](world_formats.md); other files of a MoveIt configuration
 (`ompl_planning.yaml`, controllers, launch files) are not read: a scenario's `planning` says what
 they would.
 """

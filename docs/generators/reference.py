@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import types
 from collections.abc import Collection, Iterable, Mapping
 from typing import Annotated, Any, Literal, Union, cast, get_args, get_origin
@@ -12,7 +11,7 @@ from pydantic.fields import FieldInfo
 
 from harness.core.errors import ErrorCode
 from harness.core.registry import OWN_PACKAGE
-from harness.language.annotations import is_model, keys_of
+from harness.language.annotations import description_of, is_model, keys_of
 from harness.language.base import SpecModel
 from harness.language.expectation import ExpectationFields
 from harness.language.language import BESIDE_VERB
@@ -41,7 +40,7 @@ def scenario_reference() -> str:
     """The keys of a scenario file and of a world file."""
     parts = ["# Scenario and world files", VALUES]
     for title, model in (("Scenario file", Scenario), ("World file", WorldSpec)):
-        parts += [f"## {title}", sentence(model), table(keys_of(model).items())]
+        parts += [f"## {title}", description_of(model), table(keys_of(model).items())]
     return "\n\n".join([*parts, *part_sections((Scenario, WorldSpec))]) + "\n"
 
 
@@ -69,7 +68,7 @@ def section(
 ) -> list[str]:
     """A word's heading, definition, notes and keys."""
     fields = [(key, field) for key, field in keys_of(model).items() if key not in beside]
-    parts = [f"## `{word}`", sentence(model), *notes]
+    parts = [f"## `{word}`", description_of(model), *notes]
     if model.short and not any(f.is_required() for key, f in fields if key != model.short):
         parts.append(f"`- {word}: x` is short for `- {word}: {{{model.short}: x}}`.")
     if fields:
@@ -90,7 +89,7 @@ def part_sections(models: Iterable[type[SpecModel]]) -> list[str]:
     lines = ["# Parts"] if found else []
     for name in sorted(found):
         fields = keys_of(found[name]).items()
-        lines += [f"## {name}", sentence(found[name]), *([table(fields)] if fields else [])]
+        lines += [f"## {name}", description_of(found[name]), *([table(fields)] if fields else [])]
     return lines
 
 
@@ -100,12 +99,6 @@ def _models_in(annotation: Any) -> list[type[SpecModel]]:
         is_word = issubclass(annotation, Step | ExpectationFields)
         return [] if is_word else [annotation]
     return [model for each in get_args(annotation) for model in _models_in(each)]
-
-
-def sentence(model: type[SpecModel]) -> str:
-    """What a model says of itself, a line for each paragraph."""
-    paragraphs = inspect.cleandoc(model.__doc__ or "").split("\n\n")
-    return "\n\n".join(" ".join(each.split()) for each in paragraphs)
 
 
 def table(fields: Iterable[tuple[str, FieldInfo]]) -> str:

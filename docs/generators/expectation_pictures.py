@@ -1,31 +1,42 @@
-"""The reference's pictures of expectations, from real runs. Run as a script, it renews them."""
+"""The pictures of the reference of expectations, drawn from real runs by `main`."""
+
+from __future__ import annotations
 
 import io
 import re
 import sys
 import tempfile
 import textwrap
+from collections.abc import Iterator
 from pathlib import Path
 
 import cv2
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from docs import ROOT
+from docs.generators.picture_scenes import PICTURES, SCENES, expectation, scenario
+from docs.generators.picture_scenes import expectations_of as texts_of
 from harness.assertions.contacts import debounced
+from harness.assertions.margins import MarginSignal
+from harness.assertions.placed import PlacedExpectation
 from harness.assertions.temporal import episodes
-from harness.assertions.window import window_of
+from harness.assertions.window import Window, window_of
+from harness.core.types import FloatArray
 from harness.language.reading.load import load_scenario
+from harness.recording.run import Measure, Run, Verdict
 from harness.recording.store import read_run
 from harness.session.rejudge import expectations_of
 from harness.session.run_case import run_case
-from tests.docs.picture_scenes import PICTURES, SCENES, expectation, scenario
-from tests.docs.picture_scenes import expectations_of as texts_of
 
-FOLDER = Path(__file__).parents[2] / "scenarios" / "pictures" / "expectations"
-RENEW = "python -m tests.docs.pictures"
+FOLDER = ROOT / "docs/pictures/expectations"
+RENEW = "python -m docs.generators.expectation_pictures"
 SAMPLES = 160
 GREEN, RED, BLUE, GREY = "#1a7f37", "#cf222e", "#0b57d0", "#57606a"
+Panel = tuple[str, Run, PlacedExpectation, Verdict]
+"""The YAML of an expectation, the run, the expectation, and its verdict."""
 STYLE = {
     "svg.fonttype": "none",
     "svg.hashsalt": "armharness",
@@ -38,8 +49,8 @@ SHOWN = {"m": (1e3, "mm"), "rad": (180 / np.pi, "deg"), "m/s": (1e3, "mm/s")}
 SHOWN |= {"rad/s": (180 / np.pi, "deg/s"), "1": (1.0, "")}
 
 
-def run_scene(title, folder):
-    """A scene's run, and its expectations with their verdicts, by their YAML."""
+def run_scene(title: str, folder: Path) -> tuple[Run, dict[str, tuple[PlacedExpectation, Verdict]]]:
+    """The run of a scene, and its expectations with their verdicts, by their YAML."""
     path = folder / "scene.scenario.yaml"
     path.write_text(scenario(title), encoding="utf-8")
     result = run_case(path, report_dir=folder / "report", stills=False, page=False)
@@ -49,8 +60,10 @@ def run_scene(title, folder):
     return read_run(folder / "report").run, dict(zip(texts_of(title), pairs, strict=True))
 
 
-def course(window, margins, measure):
-    """Times, and at each what the measure is; NaN where it is not shown."""
+def course(
+    window: Window, margins: MarginSignal, measure: Measure
+) -> tuple[FloatArray, FloatArray]:
+    """Times, and the measure at each of them; NaN where it is not shown."""
     decided = np.argmin(np.abs(window.times - measure.time)) + np.arange(-2, 3)
     picked = np.linspace(0, len(window.times) - 1, SAMPLES).astype(int)
     picked = np.unique(np.clip([*picked, *decided], 0, len(window.times) - 1))
@@ -66,8 +79,10 @@ def course(window, margins, measure):
     return window.times[picked], values
 
 
-def draw_course(axes, run, placed, verdict, quantity):
-    """What the deciding quantity measured, its limit, where it held, which sample decided."""
+def draw_course(
+    axes: Axes, run: Run, placed: PlacedExpectation, verdict: Verdict, quantity: str
+) -> None:
+    """Draw the deciding quantity, its limit, where it holds, and the sample that decides."""
     terms = placed.spec.terms(placed.step)
     window = window_of(run, terms.step)
     margins = placed.spec.predicates().get("predicate", placed.spec).margins(window)
@@ -87,8 +102,8 @@ def draw_course(axes, run, placed, verdict, quantity):
     axes.set_ylim(low - 0.05 * (high - low), high + 0.1 * (high - low))
 
 
-def draw_picture(axes, run, placed, *_):
-    """The picture that was judged, with the object's pixels outlined."""
+def draw_picture(axes: Axes, run: Run, placed: PlacedExpectation, *_: object) -> None:
+    """Draw the camera picture that was judged, with the object's pixels outlined."""
     window = window_of(run, placed.spec.terms(placed.step).step)
     spec = placed.spec
     taken = [each for each in run.captures if each.sample == window.stop - 1]
@@ -103,19 +118,19 @@ def draw_picture(axes, run, placed, *_):
     axes.set_axis_off()
 
 
-def title_of(text, verdict):
-    """The expectation, and what became of it."""
-    said = textwrap.fill(f"{verdict.status}: {verdict.reason}", 66, max_lines=2)
-    return f"{textwrap.fill(text, 66)}\n{said}"
+def title_of(text: str, verdict: Verdict) -> str:
+    """The expectation and its verdict."""
+    reason = textwrap.fill(f"{verdict.status}: {verdict.reason}", 66, max_lines=2)
+    return f"{textwrap.fill(text, 66)}\n{reason}"
 
 
-def colour(verdict):
-    """Green for what passes."""
+def colour(verdict: Verdict) -> str:
+    """Green for an expectation that passes, red for one that does not."""
     return GREEN if verdict.status == "passed" else RED
 
 
-def drawn(word, panels):
-    """The picture of a predicate as SVG: an expectation that passes beside one that does not."""
+def drawn(word: str, panels: list[Panel]) -> str:
+    """The picture of a predicate as SVG: an expectation that passes next to one that fails."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.4, 2.7), layout="constrained")
         for axes, (text, run, placed, verdict) in zip(figure.subplots(1, 2), panels, strict=True):
@@ -128,8 +143,8 @@ def drawn(word, panels):
     return _small(stream.getvalue())
 
 
-def _small(svg):
-    """The same with a digit behind the point, which is a tenth of a pixel, and fewer lines."""
+def _small(svg: str) -> str:
+    """The same picture with coordinates rounded to a tenth of a pixel, and fewer lines."""
     svg = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", svg, flags=re.DOTALL)
     svg = re.sub(r"font-family: [^;\"]*", "font-family: sans-serif", svg)
     svg = re.sub(r' transform="rotate\(-0 [^)]*\)"', "", svg)
@@ -139,8 +154,8 @@ def _small(svg):
     return re.sub(r"\s*\n\s*", "\n", "".join(parts))
 
 
-def pictures():
-    """Predicate -> its panels: the expectation's YAML, the run, the expectation, the verdict."""
+def pictures() -> Iterator[tuple[str, list[Panel]]]:
+    """Every predicate with the panels of its picture, from runs made for this purpose."""
     with tempfile.TemporaryDirectory() as folder:
         known = {}
         for number, title in enumerate(SCENES):
@@ -156,12 +171,12 @@ def pictures():
             yield word, panels
 
 
-def said_in(svg):
+def words_in(svg: str) -> str:
     """The words of a picture in one line."""
     return " ".join(re.findall(r"<text[^>]*>(.*?)</text>", svg, re.DOTALL))
 
 
-def main():
+def main() -> None:
     """Draw every picture."""
     FOLDER.mkdir(parents=True, exist_ok=True)
     for word, panels in pictures():
