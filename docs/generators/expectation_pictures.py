@@ -1,4 +1,4 @@
-"""The pictures of the reference of expectations, drawn from real runs by `main`."""
+"""The pictures of the reference of expectations, from real runs; arguments name some of them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 import sys
 import tempfile
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 import cv2
@@ -17,7 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from docs import ROOT
-from docs.generators.picture_scenes import PICTURES, SCENES, expectation, scenario
+from docs.generators.picture_scenes import PICTURES, expectation, scenario
 from docs.generators.picture_scenes import expectations_of as texts_of
 from harness.assertions.contacts import debounced
 from harness.assertions.margins import MarginSignal
@@ -154,18 +154,19 @@ def _small(svg: str) -> str:
     return re.sub(r"\s*\n\s*", "\n", "".join(parts))
 
 
-def pictures() -> Iterator[tuple[str, list[Panel]]]:
-    """Every predicate with the panels of its picture, from runs made for this purpose."""
+def pictures(words: Iterable[str] = PICTURES) -> Iterator[tuple[str, list[Panel]]]:
+    """Predicates with the panels of their pictures, from runs made for this purpose."""
+    pairs = {word: PICTURES[word] for word in words}
     with tempfile.TemporaryDirectory() as folder:
-        known = {}
-        for number, title in enumerate(SCENES):
-            place = Path(folder) / str(number)
+        runs = {}
+        for title in dict.fromkeys(title for pair in pairs.values() for title, _ in pair):
+            place = Path(folder) / title
             place.mkdir()
-            known[title] = run_scene(title, place)
-        for word, pair in PICTURES.items():
-            panels = []
+            runs[title] = run_scene(title, place)
+        for word, pair in pairs.items():
+            panels: list[Panel] = []
             for title, content in pair:
-                run, verdicts = known[title]
+                run, verdicts = runs[title]
                 text = expectation(word, content)
                 panels.append((text, run, *verdicts[text]))
             yield word, panels
@@ -176,14 +177,14 @@ def words_in(svg: str) -> str:
     return " ".join(re.findall(r"<text[^>]*>(.*?)</text>", svg, re.DOTALL))
 
 
-def main() -> None:
-    """Draw every picture."""
+def main(words: Sequence[str]) -> None:
+    """Draw the pictures of these predicates, or all."""
     FOLDER.mkdir(parents=True, exist_ok=True)
-    for word, panels in pictures():
+    for word, panels in pictures(words or PICTURES):
         statuses = [verdict.status for *_, verdict in panels]
         assert statuses == ["passed", "failed"], (word, panels)
         (FOLDER / f"{word}.svg").write_text(drawn(word, panels), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main(sys.argv[1:])

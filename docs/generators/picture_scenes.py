@@ -1,5 +1,7 @@
 """The short scenarios that pictures of expectations are drawn from, and those expectations."""
 
+from tests.assertions.evidence import collected
+
 HEAD = """
 scenario: {title}
 robot: {{model: open_manipulator_x, base: {{xyz: [0, 0, 0.01]}}}}
@@ -125,6 +127,7 @@ steps:
 LINE = "{line: {start: {xyz: [0.2, -0.08, 0.1]}, end: {xyz: [0.2, 0.08, 0.1]}}, "
 BACK = "{line: {start: {xyz: [0.2, 0.08, 0.1]}, end: {xyz: [0.2, -0.08, 0.1]}}, "
 PICTURES = {
+    **{word: evidence.picture for word, evidence in collected().items()},
     "lifted": (
         ("pick", "{object: red_box, above: 5 cm, for: 0.5 s}"),
         ("slippery", "{object: red_box, above: 5 cm, for: 1 s}"),
@@ -147,7 +150,6 @@ PICTURES = {
         ("pick", "{object: red_box, at_least: 5 cm, during: lift}"),
         ("pick", "{object: red_box, at_least: 5 cm}"),
     ),
-    "upright": (("pick", "red_box"), ("slab", "slab")),
     "static": (
         ("pick", "red_box"),
         ("pick", "always: {static: {object: red_box, during: lift}}"),
