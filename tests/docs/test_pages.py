@@ -7,6 +7,7 @@ from functools import cache
 import pytest
 
 from docs import ROOT
+from docs.generators.floors import floors_picture, layers
 
 FOLDERS = ("docs", "scenarios", "robots", "worlds")
 PAGES = sorted(
@@ -79,6 +80,33 @@ def test_every_page_and_picture_of_the_documentation_can_be_reached_from_the_rea
             waiting += [(file.parent / each.partition("#")[0]).resolve() for each in targets]
     pictures = [file for kind in PICTURES for file in (ROOT / "docs").rglob(f"*.{kind}")]
     assert {*PAGES, *pictures} - reached == set()
+
+
+TREE = r"(?:harness|docs|tests|scenarios|robots|worlds|\.ci)"
+PATH = re.compile(rf"`({TREE}/[\w./-]+)`")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name)
+def test_every_path_that_a_page_names_exists(page):
+    text = page.read_text(encoding="utf-8")
+    new_files = re.findall(r"(?m)^`(.*)`:\n\n```", text)  # those that CONTRIBUTING.md has written
+    named = set(PATH.findall(CODE.sub("", text))) - set(new_files)
+    assert [path for path in named if not (ROOT / path).exists()] == []
+
+
+@pytest.mark.parametrize("container", ["harness", "harness.planning"])
+def test_the_picture_of_the_floors_has_every_package_and_its_purpose(container):
+    folder = ROOT / container.replace(".", "/")
+    packages = {path.parent.name for path in folder.glob("*/__init__.py")}
+    floors = layers(container)
+    named = [package for floor in floors for package in floor]
+    assert packages <= set(named)
+    picture = floors_picture(container)
+    drawn = re.findall(r'class="name" x="\d+" y="(\d+)">(\w+)<', picture)
+    assert [package for _, package in drawn] == named
+    heights = [int(y) for y, _ in drawn]
+    assert heights == sorted(heights)
+    assert len(set(heights)) == len(floors)
 
 
 @pytest.mark.parametrize("folder", ["scenarios", "robots", "worlds"])
