@@ -353,7 +353,7 @@ def test_the_page_says_what_a_recording_can_show(recording, tmp_path):
     rows = re.findall(r"(?m)^\| (?:needs )?([^|]+?) \| (.*) \|$", page)
     said = {what: set(re.findall(r"`([a-z_]+)`", kinds)) & set(EACH) for what, kinds in rows}
     seen = said["joints"] | said["poses of objects"]
-    unseen = (said["commands"] | said["events of a run of ours"] | said["contacts"]) - seen
+    unseen = (said["commands"] | said["events of a harness run"] | said["contacts"]) - seen
     assert seen | unseen == set(EACH)
     file = tmp_path / "each.scenario.yaml"
     text = SCENARIO.read_text()
