@@ -17,14 +17,16 @@ from harness.language.formula.formula import SIGNALS
 from harness.language.language import BESIDE_CHECK, EXPECTATIONS, PREDICATES, TEMPORAL
 
 JUDGED = {
-    "at_end": "Bare, it must hold at the last sample of its step or run, which decides.",
-    "always": "Bare, it must hold at every sample of its step or run; the one with the least margin"
+    "at_end": "Without a temporal word it must hold at the last sample of its window, which"
     " decides.",
-    "eventually": "Bare, it must hold at some sample of its step or run; the one with the largest"
-    " margin decides.",
+    "always": "Without a temporal word it must hold at every sample of its window; the sample with"
+    " the smallest margin decides.",
+    "eventually": "Without a temporal word it must hold at some sample of its window; the sample"
+    " with the largest margin decides.",
 }
-EXPECTATIONS_HEAD = """An expectation is a predicate, bare or inside a temporal word. Under a
-step's `expect` it is judged over that step, under the file's over the whole run: its window.
+EXPECTATIONS_HEAD = """\
+An expectation is a predicate, alone or inside a temporal word. Its window is the step if it is
+listed under the step's `expect`, and the whole run if it is listed under the file's.
 
 ```yaml
 expect:
@@ -33,55 +35,66 @@ expect:
   - never: {collision: {between: [robot, Table]}}
 ```
 
-Every verdict is read from the recording alone and names its numbers, the sample that decided and a
-margin: how far that was from the limit, in its unit, positive where it holds. A predicate of
-several quantities holds where all of them do. They are compared as shares of their limits (a share
-that cannot exceed 1, as a part of what lies between its limit and 1); the tightest decides, and the
-margin is its own. What was never observed does not pass: a step that was not reached, or an object
-that was not there, is `not reached`, and what nobody recorded is `not observable`.
+Every verdict follows from the recording alone. It states its numbers, the sample that decided,
+and a margin: the distance from the limit, in the unit of the limit, positive where the predicate
+holds. A predicate of several quantities holds where all of them do. The quantities are compared
+as shares of their limits (a share that cannot exceed 1: as a part of the range between its limit
+and 1). The tightest one decides, and its margin is the margin of the verdict. What was not
+observed does not pass: the verdict is `not reached` if the step was not reached or the object was
+not in the scene, and `not observable` if the signal was not recorded.
 
-A step that fails unexpectedly ends the run. What could still have come true then is `not reached`,
-and names that step: `lifted` and `eventually`, and everything that is judged at the end. What no
-continuation could make good has failed: an `always` that was violated, a deadline that has passed.
+A step that fails unexpectedly ends the run. Expectations that could still have become true are
+then `not reached` and name that step: `lifted`, `eventually`, and everything that is judged at
+the end. An expectation that no continuation could have fulfilled has failed: an `always` that was
+violated, a deadline that has passed.
 
-The pictures are real runs: what the deciding quantity measured, its limit, green where the
-predicate holds, and the sample that decided; on the left an expectation that passes, on the right
-one that does not. [Verdicts that cannot lie](verdicts.md) compares them with naive checks."""
-PLAN_TEXT = """The plan is compared with the physics in every report, as findings. What must not
-differ can be expected, too:
+The pictures show real runs: the measured quantity that decides, its limit, green areas where the
+predicate holds, and the sample that decides. The expectation on the left passes, the one on the
+right fails. [Verdicts that cannot lie](verdicts.md) compares expectations with naive checks."""
+PLAN_TEXT = """\
+Every report compares the plan with the physics and lists differences as findings. A scenario can
+also require that they agree:
 
-| the plan | the physics | expectation |
+| in the plan | in the physics | expectation |
 | --- | --- | --- |
-| carries an attached object along | where it is, since the fingers had it | [`slip`](#slip) |
-| believes that it holds an object | contact on both sides | `always: grasped` over the steps |
-| commands joints | measured joints | [`tracking_error`](#tracking_error) |
-| keeps a distance | the distance that was left | [`clearance`](#clearance): `max_below_plan` |
-| lets pairs touch | pairs that touched | [`never: collision`](#collision): `count_allowed` |"""
+| the pose of an attached object | its pose while the fingers hold it | [`slip`](#slip) |
+| an object is attached | both sides are in contact with it | `always: grasped` over the steps |
+| commanded joint positions | measured joint positions | [`tracking_error`](#tracking_error) |
+| planned clearance | remaining clearance | [`clearance`](#clearance): `max_below_plan` |
+| allowed collisions | pairs in contact | [`never: collision`](#collision): `count_allowed` |"""
 
 
-UNTIL_TEXT = """- `{always: A, until: B}`: A holds at every sample before one at which B does, and
-B does; with `for`, B is held from there on; with `within`, B begins by then.
+UNTIL_TEXT = """\
+- `{always: A, until: B}`: A holds at every sample before the first one at which B holds, and
+  there is such a sample. With `for`, B is held from there on; with `within`, B begins by then.
 
-The words are formulas of signal temporal logic: with a hold T and a deadline W, `eventually A` is
-`eventually[0, W] always[0, T] A`, `never A` is `not eventually[0, W] always[0, T] A`, `always A` is
-`always A` (with a deadline `eventually[0, W] always A`), and `until` is
-`A until[0, W] always[0, T] B`. `during` gives them the step's samples as their window."""
-FORMULA_TEXT = """```yaml
+The temporal words are formulas of signal temporal logic, with the hold T of `for` and the deadline
+W of `within`. With `during`, their window is that step.
+
+| in a file | formula |
+| --- | --- |
+| `eventually: A` | `eventually[0, W] always[0, T] A` |
+| `never: A` | `not eventually[0, W] always[0, T] A` |
+| `always: A` | `always A`; with a deadline `eventually[0, W] always A` |
+| `{always: A, until: B}` | `A until[0, W] always[0, T] B` |"""
+FORMULA_TEXT = """\
+```yaml
 expect:
   - formula: always (z(red_box) > 5 cm implies force(gripper, red_box) > 0.1 N)
   - formula: {formula: "eventually[0, 3] always[0, 500 ms] speed(tcp) < 0.005", during: lift}
 ```
 
-From the weakest binding to the strongest: `implies`, `or`, `and`, `until[a, b]`, then `not`,
-`always[a, b]`, `eventually[a, b]`, then `<` `<=` `>` `>=`, `+` `-`, `*` `/`. Parentheses group.
-`->`, `|`, `&`, `!`, `U`, `G`, `F` are other ways to write implies, or, and, not, until, always,
-eventually. `abs(a)`, `min(a, b)`, `max(a, b)` are numbers, `5 cm`, `90 deg`, `200 ms`, `2 N` too.
-An interval is in seconds after the moment at which its word is judged; without one it lasts to the
-end of the window. Names with other characters than letters, digits and `_` stand in quotes.
+Operators, from the weakest to the strongest binding: `implies`; `or`; `and`; `until[a, b]`;
+`not`, `always[a, b]`, `eventually[a, b]`; `<` `<=` `>` `>=`; `+` `-`; `*` `/`. Parentheses group.
+`->`, `|`, `&`, `!`, `U`, `G` and `F` are alternative spellings of implies, or, and, not, until,
+always and eventually. Numbers may carry units (`5 cm`, `90 deg`, `200 ms`, `2 N`), and `abs(a)`,
+`min(a, b)` and `max(a, b)` combine them. An interval is in seconds after the moment at which its
+operator is judged; without an interval an operator extends to the end of the window. Names with
+characters other than letters, digits and `_` are written in quotes.
 
-The margin is that of the comparison that decides, in its unit. Where the window ends before a
-formula is decided it is not reached: `always[0, 5] A` in a window of 3 s may fail, and cannot pass.
-Where a signal is missing it is not observable."""
+The margin is that of the comparison that decides, in its unit. If the window ends before a
+formula is decided, the verdict is `not reached`: `always[0, 5] A` in a window of 3 s may fail,
+and cannot pass. If a signal is missing, the verdict is `not observable`."""
 
 
 def expectations_reference() -> str:
@@ -89,7 +102,7 @@ def expectations_reference() -> str:
     registered: Registry[type[ExpectationFields]] = registry(KIND)
     beside = table((key, keys_of(PredicateFields)[key]) for key in BESIDE_CHECK)
     parts = ["# Expectations", EXPECTATIONS_HEAD, VALUES, contents(PREDICATES)]
-    parts += ["These keys may stand inside or next to every word:", beside]
+    parts += ["Every expectation also has these keys, inside the word or next to it:", beside]
     parts += ["## Temporal words", words({w: description_of(m) for w, m in TEMPORAL.items()})]
     parts += [UNTIL_TEXT, *_formula_section(), "## Plan against physics", PLAN_TEXT]
     for word, model in PREDICATES.items():

@@ -23,10 +23,12 @@ from harness.language.world import WorldSpec
 KINDS: dict[Any, str] = {str: "text", float: "number", int: "whole number", bool: "true or false"}
 
 
-VALUES = """Numbers are SI and radians; where a unit stands in brackets, text with another one may
-be written: `5 cm`, `90 deg`, `200 ms`. `${name}` stands for a parameter of the file. Only keys
-marked as required must be given."""
-STEPS_HEAD = """A step is one verb with its content, and the keys next to it:
+VALUES = """\
+Numbers are SI and radians. Where a unit is given in brackets, a number may also be text with
+another unit: `5 cm`, `90 deg`, `200 ms`. `${name}` is replaced by a parameter of the file. Only
+keys that are marked as required are mandatory."""
+STEPS_HEAD = """\
+A step is one verb with its content, and keys next to the verb:
 
 ```yaml
 - move_to:
@@ -48,7 +50,7 @@ def steps_reference() -> str:
     """Every verb: what it does, its keys with type, unit and default."""
     next_to = table((key, keys_of(Step)[key]) for key in BESIDE_VERB)
     parts = ["# Steps", STEPS_HEAD, VALUES, contents(STEPS)]
-    parts += ["These keys may stand next to every verb:", next_to]
+    parts += ["Every step also has these keys, next to its verb:", next_to]
     parts.append(f"Error codes are {', '.join(f'`{code}`' for code in get_args(ErrorCode))}.")
     for verb, model in STEPS.items():
         package = STEPS.package_of(verb)

@@ -1,11 +1,12 @@
-"""The page on what of robots' files is read, ignored, refused: from the rows that tests hold."""
+"""The page on robot file formats, made from the rows that tests hold."""
 
 from __future__ import annotations
 
 from tests.robot.format_rows import Row
 from tests.robot.format_tables import TABLES
 
-HEAD = """# Formats of robots
+HEAD = """\
+# Robot file formats
 
 A scenario names the files of a robot as they are:
 
@@ -13,23 +14,22 @@ A scenario names the files of a robot as they are:
 robot:
   urdf: arm.urdf                  # or xacro: arm.xacro, args: {prefix: left_}; or mjcf: arm.xml
   srdf: arm.srdf
-  packages: [../src]              # where package:// leads, and what may be read besides
+  packages: [../src]              # folders for package://, which may be read too
   moveit: {joint_limits: joint_limits.yaml, kinematics: kinematics.yaml}
   kinematics: calibration.yaml    # of a UR, as ur_calibration writes it
 ```
 
-`package://name/path` is looked up in the robot's own package (the folder with its `package.xml`),
-the folders of `packages`, of the option `--package-path` and of HARNESS_PACKAGE_PATH and what lies
-in them, beside the robot's package, and among installed Python packages. A robot whose file has no
-`package.xml` around it may lie in a folder of that name, at most three levels up. Nothing outside
-of these folders is read.
+`package://name/path` is looked up in the robot's own package (the folder with its `package.xml`);
+in the folders of `packages`, of the option `--package-path` and of HARNESS_PACKAGE_PATH, and in
+their subfolders; next to the robot's package; and among installed Python packages. A robot
+without a `package.xml` may be in a folder with the package's name, at most three levels up. No
+file outside these folders is read.
 
-Below: what of each file is *read*, *ignored* or *refused* (an error at its line and column, exit
-code 2). *Told* means that `harness check` and every run say so. Each row is a test
-(`tests/robot/test_formats.py`). SDF worlds and MoveIt's `.scene` files have a
-[page of their own](world_formats.md); other files of a MoveIt configuration
-(`ompl_planning.yaml`, controllers, launch files) are not read: a scenario's `planning` says what
-they would.
+The tables list what is *read*, *ignored* or *refused* (an error at its line and column, exit code
+2) of each file. Where *reported* is added, `harness check` and every run print a note. Each row
+is a test (`tests/robot/test_formats.py`). SDF worlds and MoveIt's `.scene` files have a [page of
+their own](world_formats.md). Other files of a MoveIt configuration (`ompl_planning.yaml`,
+controllers, launch files) are not read; their settings belong into the scenario's `planning`.
 """
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from harness.world.sdf.elements import WORDS
 from harness.world.sdf.model_path import VARIABLES
 
-HEAD = """# Worlds of other programs
+HEAD = """# World file formats
 
 A scenario names an SDF file like a world file:
 
