@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from harness.suite.api import ScenarioResult
 
 __version__ = "0.1.0"
+__all__ = ["__version__", "register", "run"]
 
 P = TypeVar("P")
 

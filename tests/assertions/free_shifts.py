@@ -1,33 +1,14 @@
 """Shifts that no predicate may notice, by its definition; every other one must be noticed."""
 
-from dataclasses import dataclass
+from tests.assertions.evidence import AT_ONCE, DRIFT, Free, collected
 
-AT_ONCE, DRIFT = COURSES = ("at once", "as a drift")
 TURNS = "+-roll +-pitch +-yaw"
 PLACES = "+-x +-y +-z"
 
 
-@dataclass(frozen=True)
-class Free:
-    """Shifts of one kind.
-
-    Attributes:
-        reason: Why they change nothing that is spoken of.
-        cases: Names of cases; a predicate's second case is `formula 2`.
-        signals: Names of fields; of one key only: `presses right_finger`.
-        directions: `+x`, or `+-x` for either way.
-        courses: In which they are free.
-    """
-
-    reason: str
-    cases: str
-    signals: str
-    directions: str
-    courses: tuple[str, ...] = COURSES
-
-
 HELD = "lifted, grasped, slip, until"
 FREE = (
+    *(free for evidence in collected().values() for free in evidence.free_shifts),
     Free("higher is lifted too; where, and how it is turned, is not spoken of",
          "lifted, until", "object_poses box", f"+-x +-y +z {TURNS}"),
     Free("less of a support's force is no support", "lifted", "contact_forces Table", "-"),
@@ -52,7 +33,6 @@ FREE = (
     Free("its origin is what is in something", "in", "object_poses box", TURNS),
     Free("further away, and aside, is displaced too",
          "displaced", "object_poses", f"-x +-y +-z {TURNS}"),
-    Free("a tilt has no place and no heading", "upright", "object_poses", f"{PLACES} +-yaw"),
     Free("what stood elsewhere all the time has not moved",
          "static, static 2", "object_poses", f"{PLACES} {TURNS}", (AT_ONCE,)),
     Free("a harder contact is one", "in_contact", "contact_forces", "+"),

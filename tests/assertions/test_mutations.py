@@ -34,7 +34,8 @@ from harness.expectations.lifted import Lifted
 from harness.expectations.until import Until
 from harness.language.language import PREDICATES
 from harness.recording.run import Signals
-from tests.assertions.free_shifts import AT_ONCE, COURSES, FREE, free_shifts
+from tests.assertions.evidence import AT_ONCE, COURSES
+from tests.assertions.free_shifts import FREE, free_shifts
 from tests.assertions.mutation_cases import CASES, N
 from tests.assertions.picture_mutants import SUBJECTS, corrupted, seen_run
 from tests.assertions.signal_shifts import array_of, directions, shifted, with_array

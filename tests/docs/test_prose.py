@@ -6,9 +6,9 @@ import re
 
 import pytest
 
+from docs import ROOT
 from harness.cli.main import main
 from harness.language.schema import schema_text, world_schema_text
-from tests.docs.generated import ROOT
 
 INSTEAD = {
     "told|tells?|telling": "report, show, print or log",

@@ -351,7 +351,7 @@ EACH = {
 
 def test_the_page_says_what_a_recording_can_show(recording, tmp_path):
     """Every kind in the page's table is judged, or not, as its row says."""
-    page = (data_folder("scenarios") / "GRADING.md").read_text()
+    page = (data_folder("scenarios").parent / "docs/guides/grading.md").read_text()
     rows = re.findall(r"(?m)^\| (?:needs )?([^|]+?) \| (.*) \|$", page)
     said = {what: set(re.findall(r"`([a-z_]+)`", kinds)) & set(EACH) for what, kinds in rows}
     seen = said["joints"] | said["poses of objects"]

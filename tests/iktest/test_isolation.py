@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from docs import ROOT
 from harness.iktest import IkTest, run_ik_test
 from harness.iktest.contract import UnusableSolver
-from tests.docs.generated import ROOT
 from tests.iktest.arms import EXAMPLES, OM
 
 HEAD = f"""

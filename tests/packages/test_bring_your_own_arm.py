@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
+from docs import ROOT
 from harness.cli.main import main
 from harness.language.reading.load import load_scenario
 from harness.language.scenario import RobotSpec
@@ -16,11 +17,10 @@ from harness.planning.collision.pair_statistics import random_positions, self_to
 from harness.recording.store import read_run
 from harness.robot.load import load_robot
 from harness.robot_tools.robot_source import RobotSource, load
-from tests.docs.generated import ROOT
 
 pytestmark = pytest.mark.packages
 
-PAGE = (ROOT / "robots/BRING_YOUR_OWN_ARM.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs/guides/bring_your_own_arm.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"(?ms)^```(sh|text|yaml)\n(.*?)^```$", PAGE)
 TIME = re.compile(r"  t=\d.*")
 

@@ -121,7 +121,7 @@ def test_a_run_of_a_plug_in_s_steps_is_recorded_and_reported(plugged_in):
 def test_the_reference_page_has_the_steps_of_a_plug_in(tmp_path):
     (tmp_path / "remarks.py").write_text(SOURCE, encoding="utf-8")
     install(tmp_path)
-    code = "from harness.language.reference import steps_reference; print(steps_reference())"
+    code = "from docs.generators.reference import steps_reference; print(steps_reference())"
     done = subprocess.run(
         [sys.executable, "-c", code],
         env={**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])},

@@ -1,4 +1,4 @@
-"""The tables of robots/FORMATS.md: the files that their rows change, and how they are named."""
+"""The tables of docs/reference/robot_formats.md, with the files that their rows change."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every row of robots/FORMATS.md."""
+"""Every row of docs/reference/robot_formats.md."""
 
 import pytest
 

@@ -22,7 +22,7 @@ from harness.steps.move_to import MoveTo
 from harness.steps.wait import Wait
 from harness.suite.discovery import UsageError
 
-PAGE = data_folder("scenarios") / "PYTHON.md"
+PAGE = data_folder("scenarios").parent / "docs/guides/python.md"
 BUNDLED = sorted(data_folder("scenarios").rglob("*.scenario.yaml"))
 WAITS = {"scenario": "Wait", "robot": "open_manipulator_x", "steps": [Wait(duration=0.1)]}
 

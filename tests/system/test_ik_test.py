@@ -8,14 +8,14 @@ import cv2
 import numpy as np
 import pytest
 
+from docs import ROOT
 from harness.cli.main import main
 from harness.strategies import load_chain
-from tests.docs.generated import ROOT
 
 EXAMPLES = ROOT / "scenarios/ik_test"
 ARM = ["--robot", "open_manipulator_x"]
 STUDENT = "scenarios/ik_test/student_ik.py:ik"
-PAGE = EXAMPLES / "README.md"
+PAGE = ROOT / "docs/guides/ik_test.md"
 
 
 def cpu_seconds():
