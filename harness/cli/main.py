@@ -186,6 +186,7 @@ def _parser() -> argparse.ArgumentParser:
         return added
 
     options.for_run(command("run", "run scenarios and judge them"))
+    options.for_merge(command("merge", "merge the parts of a suite that ran with --shard"))
     options.for_check(command("check", "validate scenarios and the reach of their goals"))
     options.for_explain(command("explain", "print the program that a scenario becomes"))
     options.for_list(command("list", "list what a scenario may name", module="listing"))

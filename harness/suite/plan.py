@@ -10,9 +10,11 @@ from typing import Any, NoReturn
 
 from harness.suite.cases import CaseJob
 from harness.suite.discovery import UsageError
-from harness.suite.folders import report_folders
+from harness.suite.folders import place_of, report_folders
 from harness.suite.header import Header, read_header
 from harness.suite.selection import selects
+from harness.suite.shards import PlannedFile, Shard, ShardRecord
+from harness.suite.stream import file_hash
 from harness.suite.variation import Case, Variation
 
 
@@ -31,6 +33,7 @@ class RunRequest:
             samples, the failed ones.
         page: Whether to write the page of a report.
         bag: Whether to write a rosbag2.
+        shard: The part of the suite to run; None runs the whole suite.
     """
 
     expression: str = ""
@@ -42,6 +45,7 @@ class RunRequest:
     keep: str = ""
     page: bool = True
     bag: bool = False
+    shard: Shard | None = None
 
 
 @dataclass(frozen=True)
@@ -69,6 +73,11 @@ class PlannedCase:
         return None if self.case.sample is None else (str(self.job.file), self.case.group)
 
     @property
+    def identity(self) -> str:
+        """Names the case on every machine: the file's path in the project and the case's name."""
+        return f"{place_of(self.job.file).as_posix()}\0{self.case.name}"
+
+    @property
     def values(self) -> Mapping[str, Any]:
         """What varies from case to case."""
         return self.case.values
@@ -81,14 +90,7 @@ def planned_cases(files: Sequence[Path], request: RunRequest) -> list[PlannedCas
         UsageError: Nothing is selected, `-k` cannot be read, or there is nothing to sample.
         SpecError: There is nothing to sample in a file with mistakes.
     """
-    root = request.report_root
-    folders = [None] * len(files) if root is None else report_folders(files, root)
-    found: list[PlannedCase] = []
-    for file, folder in zip(files, folders, strict=True):
-        header = read_header(file)
-        for case in header.variation.cases(request.seed, request.samples):
-            if _is_selected(file, header, case, request):
-                found.append(PlannedCase(_job(file, case, folder, request), header, case))
+    found = cases_of([(file, read_header(file)) for file in files], request)
     if not found:
         option = f"-k '{request.expression}'" if request.expression else "--case"
         if request.cases:
@@ -96,7 +98,26 @@ def planned_cases(files: Sequence[Path], request: RunRequest) -> list[PlannedCas
         raise UsageError(f"{option} selects none of {len(files)} scenarios{_names(files, request)}")
     if request.samples is not None and all(each.case.sample is None for each in found):
         _refuse_samples(files, request)
-    return found
+    if request.shard is None:
+        return found
+    return [each for each in found if request.shard.holds(each.identity)]
+
+
+def cases_of(headers: Sequence[tuple[Path, Header]], request: RunRequest) -> list[PlannedCase]:
+    """Every case that the request selects, of files whose headers are known, in file order.
+
+    Raises:
+        UsageError: `-k` cannot be read.
+    """
+    root = request.report_root
+    files = [file for file, _ in headers]
+    folders = [None] * len(files) if root is None else report_folders(files, root)
+    return [
+        PlannedCase(_job(file, case, folder, request), header, case)
+        for (file, header), folder in zip(headers, folders, strict=True)
+        for case in header.variation.cases(request.seed, request.samples)
+        if _is_selected(file, header, case, request)
+    ]
 
 
 def _refuse_samples(files: Sequence[Path], request: RunRequest) -> NoReturn:
@@ -144,4 +165,38 @@ def _job(file: Path, case: Case, folder: Path | None, request: RunRequest) -> Ca
         only_failed=keep == "failed",
         redraw=case.redraw,
         fixed=request.overrides,
+    )
+
+
+def record_of(files: Sequence[Path], request: RunRequest, shard: Shard, root: Path) -> ShardRecord:
+    """What a part of a suite has to know of the whole suite.
+
+    Args:
+        files: Every scenario file of the suite.
+        request: Which cases the suite has.
+        shard: The part.
+        root: The part's report folder.
+    """
+    planned: list[PlannedFile] = []
+    for file in files:
+        header = read_header(file)
+        planned.append(
+            PlannedFile(
+                str(file),
+                header.title,
+                header.tags,
+                header.verifies,
+                header.varied,
+                file_hash(file),
+            )
+        )
+    return ShardRecord(
+        shard,
+        str(root),
+        tuple(planned),
+        request.expression,
+        tuple(request.cases),
+        request.overrides,
+        request.seed,
+        request.samples,
     )

@@ -51,7 +51,10 @@ def suite_html(
         script=script,
         pill="good" if record.outcome == "passed" else "bad",
         outcome=escape(record.outcome),
-        interrupted=" · interrupted" if record.is_interrupted else "",
+        interrupted="".join(
+            f" · {escape(each)}"
+            for each in (*["interrupted"][: record.is_interrupted], *record.missing_parts)
+        ),
         outcomes=_outcomes(results),
         causes=_causes(results),
         rates=_rates(record.rates),
