@@ -173,8 +173,8 @@ def record_of(files: Sequence[Path], request: RunRequest, shard: Shard, root: Pa
 
     Args:
         files: Every scenario file of the suite.
-        request: Which cases the suite has.
-        shard: The part.
+        request: The selection of the cases of the whole suite.
+        shard: The part of the suite that this machine runs.
         root: The part's report folder.
     """
     planned: list[PlannedFile] = []

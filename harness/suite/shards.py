@@ -35,7 +35,7 @@ class Shard:
 
     Attributes:
         number: Number of the part, from 1.
-        count: Number of parts.
+        count: The number of parts that the suite has.
     """
 
     number: int
@@ -101,8 +101,8 @@ class PlannedFile:
 
     Attributes:
         file: The path as the user named it.
-        title: The file's title.
-        tags: The file's tags.
+        title: The title that the file states.
+        tags: The tags that the file states.
         verifies: Requirements that the file names.
         varied: The values in the file that its cases follow from.
         digest: Hash of the file and of the files that it names.
@@ -127,7 +127,7 @@ class ShardRecord:
     """What a part has to know of the whole suite so that parts can be merged without its files.
 
     Attributes:
-        shard: The part.
+        shard: The part of the suite that this describes.
         root: The part's report folder, as the paths in its results begin.
         files: Every scenario file of the suite, in order.
         expression: The expression of `-k`.
@@ -135,7 +135,7 @@ class ShardRecord:
         overrides: Dotted path -> value as YAML.
         seed: Seed that replaced the files' seeds.
         samples: Number of samples that replaced the files' numbers.
-        version: Of the program.
+        version: The version of the program that ran the part.
     """
 
     shard: Shard
