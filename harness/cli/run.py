@@ -18,7 +18,7 @@ from harness.suite.warm import WarmServer
 
 if TYPE_CHECKING:
     from harness.reporting.terminal import Style
-    from harness.suite.cases import CaseJob
+    from harness.session.run_request import RunRequest
     from harness.suite.suite_run import SuiteRun
 
 BRIEF_FROM = 20
@@ -74,7 +74,7 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
-    from harness.suite.plan import RunRequest, planned_cases, record_of
+    from harness.suite.plan import SuiteRequest, planned_cases, record_of
     from harness.suite.shards import shard_of, write_shard_record
     from harness.suite.suite_run import How, SuiteRun
 
@@ -84,7 +84,7 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
     if root is not None:
         clean_report_folder(root)
     shard = shard_of(arguments.shard) if arguments.shard else None
-    request = RunRequest(
+    request = SuiteRequest(
         expression=arguments.expression,
         cases=arguments.cases,
         overrides=dict(arguments.overrides),
@@ -141,7 +141,7 @@ def show_lines(arguments: argparse.Namespace, suite: SuiteRun) -> int:
     return suite.exit_code
 
 
-def _case_names(arguments: argparse.Namespace, jobs: Sequence[CaseJob]) -> list[str]:
+def _case_names(arguments: argparse.Namespace, jobs: Sequence[RunRequest]) -> list[str]:
     is_alone = arguments.workers == 1
     names = [str(job.file) if is_alone else job.file.name.split(".")[0] for job in jobs]
     names = [
@@ -242,7 +242,7 @@ def _print_rates(suite: SuiteRun, style: Style) -> None:
         say(line)
 
 
-def _command(arguments: argparse.Namespace, job: CaseJob) -> str:
+def _command(arguments: argparse.Namespace, job: RunRequest) -> str:
     """The command that runs one case again as it was run."""
     words = ["harness", "run", str(job.file)]
     if job.case:

@@ -19,7 +19,7 @@ from harness.reporting.terminal import causes
 from harness.suite.cases import run_here, run_isolated
 from harness.suite.header import source_lines
 from harness.suite.leftovers import clean_report_folder
-from harness.suite.plan import PlannedCase, RunRequest, planned_cases
+from harness.suite.plan import PlannedCase, SuiteRequest, planned_cases
 from harness.suite.sampling import Sampling
 from harness.suite.warm import ServerStartError, WarmServer
 
@@ -69,7 +69,7 @@ def run_item(item: ScenarioItem) -> None:
         clean_report_folder(root)
     plan = [
         each
-        for each in planned_cases([shown(item.path)], RunRequest(report_root=root))
+        for each in planned_cases([shown(item.path)], SuiteRequest(report_root=root))
         if item.case == (each.case.name if each.case.sample is None else each.case.group)
     ]
     sampling = Sampling(plan)

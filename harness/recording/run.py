@@ -492,3 +492,8 @@ class Run:
     captures: tuple[CaptureRecord, ...] = ()
     videos: tuple[VideoRecord, ...] = ()
     files: Mapping[str, bytes] = field(default_factory=dict[str, bytes], repr=False)
+
+    @property
+    def duration(self) -> float:
+        """Length of the run in simulation time [s]."""
+        return float(self.signals.times[-1])

@@ -16,8 +16,8 @@ from harness.language.reading.load import LoadedScenario
 from harness.language.reading.varied_paths import as_json, choices
 from harness.ports import Touch
 from harness.reporting.explanation import explanation_lines
-from harness.session.physics import overlap_note, start_physics
 from harness.session.prepare import prepare
+from harness.session.start import overlap_note, start_physics
 from harness.steps.grasp import Grasp
 from harness.steps.pick import Pick
 
@@ -82,7 +82,7 @@ def check_file(
             *(finding.message for finding in prepared.about_file),
             *prepared.notes,
             *(overlap_note(prepared, touch) for touch in overlaps),
-            *(_told(touch) for touch in touches if not _is_among(touch, overlaps)),
+            *(_touch_note(touch) for touch in touches if not _is_among(touch, overlaps)),
         ),
     )
 
@@ -106,7 +106,7 @@ def _problems_of_choices(
     return tuple(found)
 
 
-def _told(touch: Touch) -> str:
+def _touch_note(touch: Touch) -> str:
     depth = -1000 * touch.distance
     return f"where the robot starts, {touch.first} and {touch.second} touch ({depth:.1f} mm deep)"
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from harness.reporting.result import CaseResult
-from harness.suite.plan import RunRequest, cases_of
+from harness.suite.plan import SuiteRequest, cases_of
 from harness.suite.shards import ShardRecord, read_shard_records
 from harness.suite.stream import FILE, read_results
 from harness.suite.suite_run import How, SuiteRun
@@ -24,7 +24,7 @@ def merge_parts(folders: Sequence[Path]) -> tuple[SuiteRun, ShardRecord]:
     """
     records = read_shard_records(folders)
     first = records[0]
-    request = RunRequest(
+    request = SuiteRequest(
         first.expression, first.cases, dict(first.overrides), first.seed, first.samples
     )
     plan = cases_of([(Path(each.file), each.header) for each in first.files], request)

@@ -6,8 +6,8 @@ import tempfile
 from pathlib import Path
 
 from harness.recording.store import read_run
-from harness.session.run_case import run_case
 from tests.adversarial.scenes import SCENES, WEIGHTLESS
+from tests.running import run_case
 
 PAGE = Path(__file__).parents[2] / "docs/reference/verdicts.md"
 RENEW = "python -m tests.adversarial.table"

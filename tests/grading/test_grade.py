@@ -26,7 +26,6 @@ from harness.recording.link_poses import link_poses
 from harness.recording.run import Signals, Verdict
 from harness.recording.store import read_run
 from harness.reporting.rosbag.write import BagOptions, write_bag
-from harness.session.run_case import run_case
 from tests.grading.recordings import (
     GAZEBO_STARTED,
     POSES,
@@ -40,6 +39,7 @@ from tests.grading.recordings import (
     transform,
     vector,
 )
+from tests.running import run_case
 
 SCENARIO = data_folder("scenarios") / "grading/pick_and_place.scenario.yaml"
 GAZEBO = BagTopics(objects=(POSES,))

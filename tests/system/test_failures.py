@@ -12,7 +12,7 @@ from harness.recording.store import read_run
 from harness.reporting.explanation import explanation_lines
 from harness.reporting.terminal import failure
 from harness.session.check import check_file
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 FAILURES = data_folder("scenarios") / "failures"
 FILES = sorted(FAILURES.glob("*.scenario.yaml"))
