@@ -3,6 +3,7 @@
 HarnessError
 ├── SpecError          a file has mistakes (exit code 2)
 ├── RobotError         a robot's or world's files cannot be used (exit code 2)
+│   └── RobotOptionError with the key of the scenario's `robot` that does not fit
 ├── ModelRefused       the physics cannot be built from a robot and a world (exit code 2)
 ├── StepFailed         a step cannot be carried out; ends the run, named by a MoveIt error code
 │   └── PlanningFailed with the planner's explanation
@@ -133,6 +134,19 @@ class SpecError(HarnessError):
 
 class RobotError(HarnessError):
     """A robot's description, or a file it names, cannot be used."""
+
+
+class RobotOptionError(RobotError):
+    """A key of a scenario's `robot` does not fit the robot, or names what does not exist.
+
+    Attributes:
+        key: Dotted path below `robot`, such as `joint_limits.wrist_1_joint.max_velocity`.
+        reason: Why the value cannot be used.
+    """
+
+    def __init__(self, key: str, reason: str) -> None:
+        self.key, self.reason = key, reason
+        super().__init__(f"robot.{key}: {reason}")
 
 
 class ModelRefused(HarnessError):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -12,10 +11,9 @@ from harness.assertions.observations import Observations, merged
 from harness.assertions.placed import PlacedExpectation
 from harness.cell.program import Program
 from harness.cell.scope import Part
-from harness.core.errors import Problem, RobotError, SpecError
+from harness.core.errors import Problem, RobotError, RobotOptionError, SpecError
 from harness.core.geometry import Mesh
 from harness.engine.compile import Sources, compile_scenario
-from harness.language.files.source import Loc
 from harness.language.reading.load import (
     SDF_SUFFIXES,
     LoadedScenario,
@@ -167,14 +165,11 @@ def _prepared(loaded: LoadedScenario, missing: frozenset[Part]) -> Prepared:
 def _robot(loaded: LoadedScenario) -> RobotDescription:
     try:
         return load_robot(loaded.scenario.robot, loaded.path.parent)
+    except RobotOptionError as error:
+        loc = ("robot", error.key.split(".")[0])
+        raise SpecError([loaded.lines.problem(loc, str(error))]) from error
     except RobotError as error:
-        raise SpecError([loaded.lines.problem(_place(str(error)), str(error))]) from error
-
-
-def _place(message: str) -> Loc:
-    """Where the scenario says what a robot's error is about: `robot.gripper: ...`, or its robot."""
-    key = re.match(r"robot\.(\w+)\b", message)
-    return ("robot", key[1]) if key else ("robot",)
+        raise SpecError([loaded.lines.problem(("robot",), str(error))]) from error
 
 
 def _world(loaded: LoadedScenario) -> ImportedWorld:

@@ -31,10 +31,12 @@ def branches_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) ->
     if not answer.solutions and not answer.outside_limits:
         return Finding(Stage("inverse kinematics", "not reached", f"no branch ({kind})"))
     free = sum(not branch.touches for branch in study.branches)
-    parts = [f"{free} free", f"{len(study.branches) - free} in collision"]
-    parts.append(f"{len(answer.outside_limits)} beyond a joint limit")
-    parts.append(f"{study.unchecked} more distant ones not checked")
-    counted = [part for part in parts if not part.startswith("0 ") or part == "0 free"]
+    ruled_out = {
+        "in collision": len(study.branches) - free,
+        "beyond a joint limit": len(answer.outside_limits),
+        "more distant ones not checked": study.unchecked,
+    }
+    counted = [f"{free} free", *(f"{number} {why}" for why, number in ruled_out.items() if number)]
     total = count(len(answer.solutions) + len(answer.outside_limits), "branch")
     text = f"{total} ({kind}): {', '.join(counted)}"
     details = _branch_lines(request, study)
