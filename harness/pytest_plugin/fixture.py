@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from harness.pytest_plugin.running import report_root, server_of, shown
+from harness.pytest_plugin.session_options import hard_cap, report_root, server_of, shown
 from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
 from harness.suite.api import ScenarioResult, run_in_process, run_scenario
@@ -25,10 +25,7 @@ def runner_of(request: pytest.FixtureRequest) -> Callable[..., ScenarioResult]:
     count = 0
 
     def isolated(job: RunRequest) -> CaseResult:
-        cap = config.getini("harness_hard_cap")
-        [(_index, result)] = run_isolated(
-            [job], server_of(config), hard_cap=float(cap) if cap else None
-        )
+        [(_index, result)] = run_isolated([job], server_of(config), hard_cap=hard_cap(config))
         return result
 
     def run(
