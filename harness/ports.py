@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, Protocol
 
+from harness.core.details import Details
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
@@ -240,8 +241,21 @@ class MotionPlan:
 
     trajectory: JointTrajectory
     statistics: Mapping[str, Any]
-    explanation: Mapping[str, Any]
-    result: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    explanation: Details
+    result: Details = field(default_factory=Details)
+
+
+@dataclass(frozen=True, eq=False)
+class CheckedGoal:
+    """A goal that can be reached.
+
+    Attributes:
+        positions: Of the group at the free solution that is tried first, shape (dof,).
+        explanation: The solutions of inverse kinematics, and what rules each of them out.
+    """
+
+    positions: FloatArray
+    explanation: Details
 
 
 @dataclass(frozen=True)
@@ -446,7 +460,7 @@ class MotionPlanner(Protocol):
         goal: Goal | AnyGoal,
         options: PlanningOptions,
         constraints: PathConstraints | None = None,
-    ) -> Mapping[str, Any]:
+    ) -> CheckedGoal:
         """What can be said of a goal without planning to it: IK solutions and what became of each.
 
         Raises:

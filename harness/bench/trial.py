@@ -13,6 +13,7 @@ from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.planning.collision.scene import CoalScene
 from harness.ports import AnyGoal, Goal, MotionPlanner, PlanningOptions
+from harness.recording.motion_failures import SearchFailure
 
 SPACING = 0.05
 """Joint-space distance between the states that smoothness and clearance are measured at [rad]."""
@@ -84,7 +85,8 @@ def try_plan(
     try:
         plan = planner.plan(group, start, goal, options)
     except PlanningFailed as failure:
-        checks = int(failure.facts.get("state_checks", 0))
+        search = failure.details.find(SearchFailure)
+        checks = 0 if search is None else search.state_checks
         return Trial(options.planner_id, seed, failure.code, checks)
     spent = time.process_time() - begin
     path = even(plan.trajectory.positions)

@@ -9,10 +9,12 @@ import numpy as np
 
 from harness.cell.cell import Cell
 from harness.cell.goals import TcpGoal, resolve_goal
+from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.language.goals import GoalFields
 from harness.ports import JointGoal, PlanningOptions
+from harness.recording.explanation import ApproachFailure
 
 MOST_BRANCHES = 2
 """Free solutions of inverse kinematics before the approach from which it is tried."""
@@ -83,7 +85,7 @@ def _most_promising(approaches: Sequence[Approach], search: Search, cell: Cell) 
         try:
             cell.planner.check_goal(search.group, search.start, joint_goal, options)
         except PlanningFailed as failure:
-            failure.facts["is_start_of_approach"] = goal is best.before
+            failure.details += Details.of(ApproachFailure(goal is best.before))
             raise
     return best
 

@@ -13,10 +13,11 @@ HarnessError
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
+from harness.core.details import Detail, Details
 from harness.core.printable import columns_of, printable
 
 ErrorCode = Literal[
@@ -167,20 +168,23 @@ class StepFailed(HarnessError):
 
     Attributes:
         code: Name of the failure in moveit_msgs/MoveItErrorCodes.
-        facts: Numbers that explain the failure, as plain data for the step's record.
+        details: Typed records that explain the failure.
     """
 
-    def __init__(
-        self, code: ErrorCode, message: str, facts: Mapping[str, Any] | None = None
-    ) -> None:
+    def __init__(self, code: ErrorCode, message: str, *details: Detail) -> None:
         self.code: ErrorCode = code
         self.message = message
-        self.facts: dict[str, Any] = dict(facts or {})
+        self.details = Details(details)
         super().__init__(f"{code}: {message}")
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """The details as plain data for the step's record."""
+        return self.details.plain()
 
 
 class PlanningFailed(StepFailed):
-    """The planner found no verified motion; `facts` explain why."""
+    """The planner found no verified motion; `details` explain why."""
 
 
 class SimulationDiverged(HarnessError):

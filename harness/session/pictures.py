@@ -9,6 +9,7 @@ from pathlib import Path
 from harness.assertions.looks import looks_of_expectations
 from harness.core.activity import Activity
 from harness.core.world import WorldObject
+from harness.recording.explanation import recorded_explanation
 from harness.recording.looks import looks_of_steps, merged
 from harness.recording.run import CaptureRecord, Finding, Run, StepRecord, VideoRecord
 from harness.robot.description import RobotDescription
@@ -76,19 +77,20 @@ def draw_failures(
     activity: Activity,
 ) -> None:
     """Draw the pictures that `with_picture_names` has named, into a report's folder."""
-    drawn = [step for step in run.steps if "picture" in step.explanation]
+    explained = ((step, recorded_explanation(step.explanation)) for step in run.steps)
+    drawn = [(step, found.picture) for step, found in explained if found.picture is not None]
     if not drawn:
         return
     from harness.cameras.failure_pictures import draw_failure
 
     (folder / FOLDER).mkdir(parents=True, exist_ok=True)
-    for number, step in enumerate(drawn):
+    for number, (step, picture) in enumerate(drawn):
         activity("drawing why steps failed", number, len(drawn))
-        draw_failure(description, objects, run, step, folder / step.explanation["picture"])
+        draw_failure(description, objects, run, step, folder / picture)
 
 
 def _with_picture_name(step: StepRecord, number: int) -> StepRecord:
-    if "nearest" not in step.explanation:
+    if recorded_explanation(step.explanation).nearest is None:
         return step
     from harness.cameras.stills import slug
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.recording.goal_failures import LimitedIkSolution
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,15 +25,16 @@ class LimitedSolution:
     value: float
     limit: float
 
-    def facts(self) -> dict[str, Any]:
-        """The facts as plain data."""
-        return {
-            "joint_positions": [float(value) for value in self.positions],
-            "joint": self.joint,
-            "value": self.value,
-            "limit": self.limit,
-            "excess": abs(self.value - self.limit),
-        }
+    def record(self, branch: str) -> LimitedIkSolution:
+        """The solution as a step's record has it, with the name of its branch."""
+        return LimitedIkSolution(
+            joint_positions=tuple(map(float, self.positions)),
+            joint=self.joint,
+            value=self.value,
+            limit=self.limit,
+            excess=abs(self.value - self.limit),
+            branch=branch,
+        )
 
 
 @dataclass(frozen=True, eq=False)

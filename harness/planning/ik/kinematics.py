@@ -25,6 +25,7 @@ from harness.planning.model.forward_kinematics import LinkPoses, quats_wxyz
 from harness.planning.model.robot_model import GroupSpace, RobotModel
 from harness.planning.model.turns import is_within, turn_from
 from harness.ports import PoseGoal, PositionGoal
+from harness.recording.goal_failures import LinkFailure
 from harness.robot.description import Joint, RobotDescription
 
 WHOLE_POSE_JOINTS, PITCH_JOINTS = 6, 4
@@ -201,7 +202,7 @@ class PinocchioKinematics:
             raise PlanningFailed(
                 "INVALID_LINK_NAME",
                 f"link '{link}' is not moved by the joints of group '{space.group}'",
-                {"link": link, "group": space.group},
+                LinkFailure(link, space.group),
             )
 
     def _fixed_offset(self, joint: Joint, link: str) -> SE3:

@@ -8,6 +8,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from harness.recording.explanation import recorded_explanation
 from harness.recording.store import PAGE, StoredRun, blames_changes, read_run
 from harness.reporting.html.page import page_html
 from harness.reporting.html.summary import Picture
@@ -56,9 +57,10 @@ def _pictures(folder: Path, stored: StoredRun) -> list[Picture]:
         (stills[n], f"{executed[n].summary}, t = {executed[n].end_time:.2f} s") for n in chosen
     ]
     captioned += [
-        (folder / step.explanation["picture"], f"why: {step.summary}")
+        (folder / picture, f"why: {step.summary}")
         for step in executed
-        if step.status == "failed" and "picture" in step.explanation
+        if step.status == "failed"
+        and (picture := recorded_explanation(step.explanation).picture) is not None
     ]
     return [
         Picture(caption, small)
