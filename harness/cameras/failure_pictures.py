@@ -12,7 +12,6 @@ from harness.cameras.marks import GOAL, ORANGE, RED, frame_mark, line_mark, mark
 from harness.cameras.picture_model import PictureModel, build_picture_model
 from harness.cameras.recorded_scene import floor_height, poses_at
 from harness.cameras.renderer import render_overview
-from harness.cameras.robot_poses import link_poses
 from harness.cameras.stills import HEIGHT, WIDTH
 from harness.core.geometry import Shape, Sphere, bounding_radius
 from harness.core.spatial import SE3
@@ -20,6 +19,7 @@ from harness.core.world import WorldObject
 from harness.recording.explanation import NearestState, recorded_explanation
 from harness.recording.run import Run, StepRecord
 from harness.robot.description import RobotDescription
+from harness.robot.forward_kinematics import robot_poses
 
 ARM_SIZE = 0.12  # radius around a link's origin that the view contains [m]
 
@@ -52,7 +52,7 @@ def draw_failure(
     state = np.array([nearest.joint_positions[name] for name in description.joint_names])
     sample = min(max(step.end_index - 1, 0), len(run.signals.times) - 1)
     poses = poses_at(description, world_objects, run, sample, step)
-    poses |= link_poses(description, state)
+    poses |= robot_poses(description, state)
     for held in run.attachments:
         if held.start_time <= step.end_time < held.end_time and held.object in poses:
             poses[held.object] = poses[held.link] @ SE3.from_vector(held.pose_in_link)
