@@ -250,7 +250,7 @@ class CheckedGoal:
     """A goal that can be reached.
 
     Attributes:
-        positions: Of the group at the free solution that is tried first, shape (dof,).
+        positions: The group positions of the free solution that is tried first, shape (dof,).
         explanation: The solutions of inverse kinematics, and what rules each of them out.
     """
 

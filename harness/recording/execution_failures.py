@@ -48,9 +48,9 @@ class ControlFailure(Detail):
     """A joint that does not follow its command.
 
     Attributes:
-        error: Of the position, in `unit`.
-        time: In simulation time [s].
-        contacts: Of the robot, strongest first.
+        error: The position error of the joint, in `unit`.
+        time: The simulation time of the failure [s].
+        contacts: The robot's contacts, strongest first.
     """
 
     joint: str

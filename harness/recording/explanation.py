@@ -29,8 +29,8 @@ class Stage(Detail):
     """One stage of planning a motion.
 
     Attributes:
-        stage: Its name.
-        status: Its result.
+        stage: The name of the stage.
+        status: The outcome of the stage.
         text: The result in one sentence, with its numbers.
         code: The failure's name in moveit_msgs/MoveItErrorCodes; empty unless it failed.
         details: A line each: a branch of inverse kinematics and what removed it, a pair too near.
@@ -85,7 +85,7 @@ class Explanation(Detail):
     Attributes:
         stages: The stages of planning in order.
         nearest: A state to draw.
-        advice: What to do.
+        advice: What the user can do about the failure.
         picture: File of the drawn state in the run's folder.
     """
 
@@ -151,7 +151,7 @@ class CartesianPathResult(Detail):
     Attributes:
         fraction: The share of its length.
         largest_joint_step: Between two states [rad or m].
-        deviation: From its lines [m]; None until it is timed.
+        deviation: The largest distance from its lines [m]; None until it is timed.
         min_fraction: The share that is required, where less is reached.
     """
 

@@ -37,9 +37,9 @@ class IkSolution(Detail):
     """A solution of inverse kinematics inside the joint limits.
 
     Attributes:
-        joint_positions: Of the group.
+        joint_positions: The positions of the group.
         branch: Name of the branch; empty where the solver names none.
-        distance: From the start, in joint space [rad].
+        distance: The joint-space distance from the start [rad].
         status: Whether it is free, and whether the motion ends there.
         touches: Bodies that are too near.
     """
@@ -79,8 +79,8 @@ class IkFailure(Detail):
     """How near the arm gets to a goal that it does not reach [m, rad].
 
     Attributes:
-        point_out_of_reach_by: Of the goal's point in any orientation.
-        wrist_out_of_reach_by: Of the wrist's centre, by the closed form.
+        point_out_of_reach_by: The distance to the goal's point in any orientation.
+        wrist_out_of_reach_by: The distance of the wrist's centre beyond its reach (closed form).
         nearest_position: The nearest point that the link reaches.
     """
 

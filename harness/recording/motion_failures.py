@@ -34,11 +34,11 @@ class TrajectoryFailure(Detail):
     """The first rule that a timed motion breaks.
 
     Attributes:
-        broken: The rule.
-        distance: From the position that is required [rad or m].
-        excess: Beyond the limit.
-        path_deviation: From the path that was checked [rad].
-        time: From the motion's start [s].
+        broken: The rule that is broken.
+        distance: The distance from the required position [rad or m].
+        excess: The amount beyond the limit.
+        path_deviation: The distance from the path that was checked [rad].
+        time: The time since the motion's start [s].
     """
 
     broken: BrokenRule
@@ -113,13 +113,13 @@ class TraceFailure(Detail):
     """What stopped a link on its way.
 
     Attributes:
-        reason: Its kind.
-        joint_positions: Of the group where the link stops.
-        residual: Of inverse kinematics [m, rad].
+        reason: The kind of the obstacle.
+        joint_positions: The positions of the group where the link stops.
+        residual: The error of inverse kinematics [m, rad].
         joint: The joint that meets its limit, or jumps.
         limit: The limit that it meets [rad or m].
-        jump: By how much it jumps [rad or m].
-        deviation: Of the curve through the poses from the way [m].
+        jump: The size of the jump [rad or m].
+        deviation: The distance of the curve through the poses from the way [m].
     """
 
     reason: StopReason

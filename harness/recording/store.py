@@ -97,7 +97,7 @@ def write_run(
 
     Args:
         folder: Its final name; an older run there is replaced, anything else is not touched.
-        stored: The judged run.
+        stored: The judged run that is written.
         extra: Adds more files to the folder it is given, before anyone sees it; returns notes.
 
     Returns:

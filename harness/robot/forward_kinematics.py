@@ -66,8 +66,9 @@ def link_poses(
     """T_root_link of every link in one state.
 
     Args:
-        joints: Parents before children.
-        positions: Of every joint by name, mimic joints included [rad or m]; 0 where one is missing.
+        joints: The joints, parents before children.
+        positions: The position of every joint by name, mimic joints included [rad or m]; 0 where
+            one is missing.
         root: The link without a parent joint.
     """
     poses = {root: SE3.identity()}
