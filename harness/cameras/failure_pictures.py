@@ -11,9 +11,9 @@ import numpy as np
 from harness.cameras.caption import write_captioned
 from harness.cameras.marks import GOAL, ORANGE, RED, frame_mark, line_mark, mark
 from harness.cameras.picture_model import PictureModel, build_picture_model
-from harness.cameras.recorded_scene import floor_height, poses_at
+from harness.cameras.recorded_scene import floor_height, scene_poses
 from harness.cameras.renderer import render_overview
-from harness.cameras.robot_poses import link_poses
+from harness.cameras.robot_poses import rendered_link_poses
 from harness.cameras.stills import HEIGHT, WIDTH
 from harness.core.geometry import Shape, Sphere, bounding_radius
 from harness.core.spatial import SE3
@@ -50,8 +50,8 @@ def draw_failure(
     joints = nearest["joint_positions"]
     state = np.array([joints[name] for name in description.joint_names])
     sample = min(max(step.end_index - 1, 0), len(run.signals.times) - 1)
-    poses = poses_at(description, world_objects, run, sample, step)
-    poses |= link_poses(description, state)
+    poses = scene_poses(description, world_objects, run, sample, step)
+    poses |= rendered_link_poses(description, state)
     for held in run.attachments:
         if held.start_time <= step.end_time < held.end_time and held.object in poses:
             poses[held.object] = poses[held.link] @ SE3.from_vector(held.pose_in_link)

@@ -9,7 +9,9 @@ from harness.core.types import FloatArray
 from harness.robot.description import Joint, RobotDescription
 
 
-def link_poses(description: RobotDescription, joint_positions: FloatArray) -> dict[str, SE3]:
+def rendered_link_poses(
+    description: RobotDescription, joint_positions: FloatArray
+) -> dict[str, SE3]:
     """T_world_link of every link.
 
     Args:

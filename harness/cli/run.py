@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from harness.cli.output import complain, guarded, only_json_on_stdout, output, say, say_text
-from harness.suite.cases import describe
+from harness.suite.cases import progress_text
 from harness.suite.discovery import UsageError, discover
 from harness.suite.leftovers import clean_report_folder
 from harness.suite.warm import WarmServer
@@ -190,12 +190,12 @@ def _show_interruption(arguments: argparse.Namespace, suite: SuiteRun, seconds: 
         return
     after = f"interrupted after {seconds:.1f} s"
     if len(suite.jobs) == 1:
-        where = "".join(f", during {describe(event)}" for event in suite.unfinished.values())
+        where = "".join(f", during {progress_text(event)}" for event in suite.unfinished.values())
         complain(f"{after}{where}: the run did not finish, and no report was written")
         return
     complain(f"{after}: {suite.missing} of {len(suite.jobs)} runs did not finish")
     for index, event in suite.unfinished.items():
-        complain(f"  {suite.jobs[index].file}: during {describe(event)}")
+        complain(f"  {suite.jobs[index].file}: during {progress_text(event)}")
     if arguments.repeat == 1 and not arguments.no_report:
         complain("the same command with --resume runs the rest")
 

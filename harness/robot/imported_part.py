@@ -11,7 +11,7 @@ import numpy as np
 
 from harness.core.errors import RobotError
 from harness.language.scenario import RobotSpec, StartState
-from harness.robot.compose import Part
+from harness.robot.compose import RobotPart
 from harness.robot.description import Joint, Link, PlanningGroup
 from harness.robot.gripper.inferred_gripper import NoGripperError, recognise
 from harness.robot.gripper.inferred_tcp import with_own_gripper
@@ -37,7 +37,7 @@ START_STATES = ("home", "ready", "start", "default", "init", "rest")
 """Names of start states of an imported arm, in order of preference."""
 
 
-def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: str) -> Part:
+def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: str) -> RobotPart:
     """The robot in the form of a folder with a robot.yaml.
 
     Args:
@@ -94,7 +94,7 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
         start_state=StartState(joints=start),
         gripper=gripper,
     )
-    return Part(path.stem, facts, urdf, srdf, source, tuple(notes))
+    return RobotPart(path.stem, facts, urdf, srdf, source, tuple(notes))
 
 
 def names_own_gripper(name: str | None, srdf: Srdf) -> bool:

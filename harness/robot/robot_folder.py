@@ -13,7 +13,7 @@ import yaml
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh
 from harness.language.scenario import RobotSpec
-from harness.robot.compose import Part
+from harness.robot.compose import RobotPart
 from harness.robot.description import Joint
 from harness.robot.import_robot import read_robot
 from harness.robot.imported_part import names_own_gripper
@@ -87,7 +87,9 @@ def _sources(spec: RobotSpec) -> str:
     return " and ".join(each for each in given if each)
 
 
-def _facts(part: Part, name: str, joints: Iterable[Joint], outside: list[str]) -> dict[str, Any]:
+def _facts(
+    part: RobotPart, name: str, joints: Iterable[Joint], outside: list[str]
+) -> dict[str, Any]:
     """The content of robot.yaml, in the order for readers."""
     facts = part.facts
     gripper = None if facts.gripper is None else facts.gripper.model_dump(mode="json")
@@ -128,12 +130,12 @@ def _short(value: Any) -> Any:
             return value
 
 
-def _outside(part: Part) -> tuple[Path, ...]:
+def _outside(part: RobotPart) -> tuple[Path, ...]:
     """Folders of mesh files outside packages, sorted."""
     return tuple(sorted({path.parent for path in _meshes(part) if not package_name(path)}))
 
 
-def _meshes(part: Part) -> Iterator[Path]:
+def _meshes(part: RobotPart) -> Iterator[Path]:
     for link in part.urdf.links:
         for shape in (*link.visuals, *link.collisions):
             if isinstance(shape.geometry, Mesh):

@@ -9,7 +9,7 @@ from harness.assertions.looks import looks_of_expectations
 from harness.assertions.placed import PlacedExpectation
 from harness.cell.program import Program
 from harness.core.activity import Activity, unobserved
-from harness.recording.looks import looks_of_steps, merged
+from harness.recording.looks import looks_of_steps, merged_looks
 from harness.recording.run import Run
 
 
@@ -34,7 +34,7 @@ def with_camera_pictures(
     taken = looks_of_steps(run.steps)
     seen = {(look.camera, look.sample) for look in looked}
     taken = tuple(look for look in taken if is_kept or (look.camera, look.sample) in seen)
-    looks = merged([*taken, *looked])
+    looks = merged_looks([*taken, *looked])
     videos = program.videos if is_kept else {}
     if not looks and not videos:
         return run

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from harness.cameras.stills import step_slug
 from harness.core.activity import Activity, unobserved
 from harness.core.world import WorldObject
 from harness.recording.run import Run, StepRecord
@@ -43,7 +44,6 @@ def draw_pictures(
 def _named(step: StepRecord, number: int) -> StepRecord:
     if "nearest" not in step.explanation:
         return step
-    from harness.cameras.stills import slug
 
-    name = f"{FOLDER}/{number:02d}-{slug(step.id)}-why.jpg"
+    name = f"{FOLDER}/{number:02d}-{step_slug(step.id)}-why.jpg"
     return replace(step, explanation={**step.explanation, "picture": name})

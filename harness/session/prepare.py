@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from harness.cell.program import Program
-from harness.cell.scope import Part
+from harness.cell.scope import Prerequisite
 from harness.core.errors import Problem, RobotError, SpecError
 from harness.core.geometry import Mesh
 from harness.engine.compile import Sources, compile_scenario
@@ -34,8 +34,8 @@ from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
 from harness.world.imported import ImportedWorld
 
-ROBOT: frozenset[Part] = frozenset({"robot"})
-WORLD: frozenset[Part] = frozenset({"world"})
+ROBOT: frozenset[Prerequisite] = frozenset({"robot"})
+WORLD: frozenset[Prerequisite] = frozenset({"world"})
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +105,7 @@ def _together(reading: Reading, more: Sequence[Problem]) -> list[Problem]:
     ]
 
 
-def _prepared(loaded: LoadedScenario, missing: frozenset[Part]) -> Prepared:
+def _prepared(loaded: LoadedScenario, missing: frozenset[Prerequisite]) -> Prepared:
     problems: list[Problem] = []
     try:
         description = _robot(loaded)

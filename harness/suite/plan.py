@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 from harness.suite.cases import CaseJob
 from harness.suite.discovery import UsageError
 from harness.suite.folders import report_folders
-from harness.suite.header import Header, read_header
+from harness.suite.header import ScenarioHeader, read_header
 from harness.suite.selection import selects
 from harness.suite.variation import Case, Variation
 
@@ -55,7 +55,7 @@ class PlannedCase:
     """
 
     job: CaseJob
-    header: Header
+    header: ScenarioHeader
     case: Case
 
     @property
@@ -111,7 +111,7 @@ def _refuse_samples(files: Sequence[Path], request: RunRequest) -> NoReturn:
     )
 
 
-def _is_selected(file: Path, header: Header, case: Case, request: RunRequest) -> bool:
+def _is_selected(file: Path, header: ScenarioHeader, case: Case, request: RunRequest) -> bool:
     if request.cases and not any(fnmatchcase(case.name, pattern) for pattern in request.cases):
         return False
     return not request.expression or selects(request.expression, file, header, case.name)

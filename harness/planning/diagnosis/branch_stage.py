@@ -7,8 +7,14 @@ from typing import Any
 import numpy as np
 
 from harness.planning.collision.checker import touch_facts
-from harness.planning.collision.wording import count, joint_value, length, padding_advice, touches
-from harness.planning.diagnosis.stage_request import Finding, StageRequest, nearest_facts
+from harness.planning.collision.wording import (
+    counted_noun,
+    joint_value,
+    length_text,
+    padding_advice,
+    touches,
+)
+from harness.planning.diagnosis.stage_request import StageFinding, StageRequest, nearest_facts
 from harness.planning.goals.goal_study import GoalStudy
 from harness.planning.ik.nearest_pose import SHIFTS, NearestPose, nearest_free_shift
 from harness.planning.ik.numeric import LinkGoal
@@ -24,27 +30,29 @@ _METHODS = {
 }
 
 
-def branches_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> Finding:
+def branches_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> StageFinding:
     """The result of every branch: free, in collision, or beyond a joint limit, with the numbers."""
     answer = study.answer
     kind = f"{_METHODS[answer.method]}, solved for the {answer.task}"
     if not answer.solutions and not answer.outside_limits:
-        return Finding(Stage("inverse kinematics", "not reached", f"no branch ({kind})"))
+        return StageFinding(Stage("inverse kinematics", "not reached", f"no branch ({kind})"))
     free = sum(not branch.touches for branch in study.branches)
     parts = [f"{free} free", f"{len(study.branches) - free} in collision"]
     parts.append(f"{len(answer.outside_limits)} beyond a joint limit")
     parts.append(f"{study.unchecked} more distant ones not checked")
     counted = [part for part in parts if not part.startswith("0 ") or part == "0 free"]
-    total = count(len(answer.solutions) + len(answer.outside_limits), "branch")
+    total = counted_noun(len(answer.solutions) + len(answer.outside_limits), "branch")
     text = f"{total} ({kind}): {', '.join(counted)}"
     details = _branch_lines(request, study)
     if free:
-        return Finding(Stage("inverse kinematics", "passed", text, "", details))
+        return StageFinding(Stage("inverse kinematics", "passed", text, "", details))
     if not study.branches:
         stage = Stage("inverse kinematics", "failed", text, "NO_IK_SOLUTION", details)
-        return Finding(stage, {}, "turn or move the goal, so that every joint is inside its limits")
+        return StageFinding(
+            stage, {}, "turn or move the goal, so that every joint is inside its limits"
+        )
     stage = Stage("inverse kinematics", "failed", text, "GOAL_IN_COLLISION", details)
-    return Finding(stage, *_in_collision(request, goal, study))
+    return StageFinding(stage, *_in_collision(request, goal, study))
 
 
 def _branch_lines(request: StageRequest, study: GoalStudy) -> tuple[str, ...]:
@@ -93,7 +101,7 @@ def _in_collision(
         lambda positions: not request.touches(positions),
     )
     if found is None:
-        farthest = length(SHIFTS[-1])
+        farthest = length_text(SHIFTS[-1])
         return (
             facts,
             f"no position within {farthest} along a world axis is free: move the goal farther; "
@@ -109,5 +117,6 @@ def _in_collision(
     sign = "+" if shift[axis] > 0 else "-"
     return (
         facts,
-        f"moved {length(way)} along {sign}{'xyz'[axis]} of the world the goal is free; {otherwise}",
+        f"moved {length_text(way)} along {sign}{'xyz'[axis]} of the world the goal is free;"
+        f" {otherwise}",
     )

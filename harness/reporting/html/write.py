@@ -10,7 +10,7 @@ import numpy as np
 
 from harness.recording.store import PAGE, StoredRun, blames_changes, read_run
 from harness.reporting.html.page import page_html
-from harness.reporting.html.summary import Picture
+from harness.reporting.html.summary import SummaryPicture
 
 PICTURES = 6
 WIDTH = 360  # [pixels]
@@ -35,7 +35,7 @@ def write_page(folder: Path, stored: StoredRun | None = None) -> Path:
     return page
 
 
-def _pictures(folder: Path, stored: StoredRun) -> list[Picture]:
+def _pictures(folder: Path, stored: StoredRun) -> list[SummaryPicture]:
     """A few of the stills that the folder has: failures, the end, and between them."""
     executed = [step for step in stored.run.steps if step.status != "not_reached"]
     stills = {
@@ -61,7 +61,7 @@ def _pictures(folder: Path, stored: StoredRun) -> list[Picture]:
         if step.status == "failed" and "picture" in step.explanation
     ]
     return [
-        Picture(caption, small)
+        SummaryPicture(caption, small)
         for file, caption in captioned
         if (small := _small(file)) is not None
     ]

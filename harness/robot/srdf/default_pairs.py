@@ -32,7 +32,7 @@ def touching_pairs(urdf: Urdf, positions: Mapping[str, float]) -> tuple[tuple[st
 
     request = coal.CollisionRequest()
     request.security_margin = NEARNESS
-    poses = link_poses(urdf, positions)
+    poses = urdf_link_poses(urdf, positions)
     carrier = carriers(urdf.joints, urdf.root)
     neighbours = adjacent_pairs(urdf.links, urdf.joints)
     solids = [
@@ -67,7 +67,7 @@ def adjacent_pairs(links: Iterable[Link], joints: Iterable[Joint]) -> dict[tuple
     return found
 
 
-def link_poses(urdf: Urdf, positions: Mapping[str, float]) -> dict[str, SE3]:
+def urdf_link_poses(urdf: Urdf, positions: Mapping[str, float]) -> dict[str, SE3]:
     """T_root_link of every link."""
     poses = {urdf.root: SE3.identity()}
     for joint in urdf.joints:

@@ -9,7 +9,7 @@ from harness.language.cameras import CameraSpec
 from harness.language.files.xml_file import XmlElement
 from harness.world.notes import Notes
 from harness.world.plain_values import pose_spec
-from harness.world.sdf.bodies import Body, Link
+from harness.world.sdf.bodies import SdfBody, SdfLink
 from harness.world.sdf.elements import note_what_is_left
 from harness.world.sdf.values import number, numbers_of, pose_of, text_of, validated
 
@@ -22,7 +22,7 @@ PIXELS = (8, 2048)
 FASTEST = 120.0  # [Hz]
 
 
-def cameras_of(body: Body, notes: Notes, *, is_there: bool) -> list[CameraSpec]:
+def cameras_of(body: SdfBody, notes: Notes, *, is_there: bool) -> list[CameraSpec]:
     """Cameras on a body; other sensors lead to a note.
 
     Args:
@@ -45,7 +45,7 @@ def cameras_of(body: Body, notes: Notes, *, is_there: bool) -> list[CameraSpec]:
 
 
 def _camera(
-    body: Body, link: Link, sensor: XmlElement, notes: Notes, *, is_there: bool
+    body: SdfBody, link: SdfLink, sensor: XmlElement, notes: Notes, *, is_there: bool
 ) -> CameraSpec:
     """The camera, named after the sensor."""
     note_what_is_left(sensor, "sensor", notes)

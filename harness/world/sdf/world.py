@@ -20,7 +20,7 @@ from harness.world.sdf.elements import note_what_is_left
 from harness.world.sdf.model_path import ModelPath
 from harness.world.sdf.object import LONGEST_NAME, object_of
 from harness.world.sdf.shapes import ShapeReader
-from harness.world.sdf.tree import Light, SdfTree
+from harness.world.sdf.tree import SdfLight, SdfTree
 from harness.world.sdf.values import is_flag, is_true, numbers_of, validated
 
 SHORTEST_STEP, LONGEST_STEP = 1e-4, 0.02  # [s], as in a world file
@@ -94,7 +94,7 @@ def _physics(root: XmlElement, notes: Notes) -> PhysicsSpec:
     return validated(PhysicsSpec, words, root)
 
 
-def _light(light: Light, tree: SdfTree, notes: Notes) -> LightSpec | None:
+def _light(light: SdfLight, tree: SdfTree, notes: Notes) -> LightSpec | None:
     """A directional light; None for other lights and for lights that are off."""
     element = light.element
     note_what_is_left(element, "light", notes)
