@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from harness.assertions.expectation import Expectation
+from harness.assertions.expectation_text import describe
 from harness.assertions.placed import PlacedExpectation
 from harness.assertions.recorded import guard_unrecorded
 from harness.assertions.window import NotObservable, NotReached
-from harness.assertions.wording import describe
 from harness.recording.run import Run, Verdict
 
 

@@ -75,7 +75,7 @@ def _run(arguments: argparse.Namespace) -> int:
 
 def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
     from harness.suite.plan import RunRequest, planned_cases
-    from harness.suite.suite_run import How, SuiteRun
+    from harness.suite.suite_run import SuiteOptions, SuiteRun
 
     if arguments.history and not Path(arguments.history).is_dir():
         raise UsageError(f"--history '{arguments.history}' is no folder")
@@ -97,7 +97,7 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
         ),
     )
     is_streamed = arguments.resume or (len(plan) > 1 and arguments.repeat == 1)
-    how = How(
+    how = SuiteOptions(
         workers=arguments.workers,
         repeat=arguments.repeat,
         in_process=arguments.in_process,

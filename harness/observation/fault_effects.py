@@ -31,7 +31,7 @@ def with_receipts(
     for number, step in enumerate(steps):
         later = steps[number + 1 :]
         faults = [
-            record.receipt(fault, step, _set_again(fault, later))
+            record.receipt(fault, step, _first_reset(fault, later))
             for fault in step.result.get("faults", ())
         ]
         if not faults:
@@ -52,7 +52,7 @@ def with_receipts(
     return tuple(done), tuple(findings)
 
 
-def _set_again(fault: dict[str, Any], later: Sequence[StepRecord]) -> int | None:
+def _first_reset(fault: dict[str, Any], later: Sequence[StepRecord]) -> int | None:
     """The first sample at which another `inject` has set the same; None if none does."""
     for step in later:
         for other in step.result.get("faults", ()):

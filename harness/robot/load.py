@@ -23,7 +23,7 @@ from harness.robot.description import Joint, RobotDescription
 from harness.robot.find_file import find_file, find_folder
 from harness.robot.folder_names import refuse_incomplete_states, unknown_names
 from harness.robot.import_robot import read_robot
-from harness.robot.imported_part import names_own_gripper
+from harness.robot.imported_part import names_integrated_gripper
 from harness.robot.options import with_moveit_files, with_options
 from harness.robot.packages import PackagePath
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml, robot_yaml_error
@@ -117,7 +117,7 @@ def _main(spec: RobotSpec, base_dir: Path) -> RobotPart | None:
 
 def _is_own(main: RobotPart, gripper: str) -> bool:
     """Whether a name is that of an imported arm's integrated gripper."""
-    return main.facts.gripper is not None and names_own_gripper(gripper, main.srdf)
+    return main.facts.gripper is not None and names_integrated_gripper(gripper, main.srdf)
 
 
 def _part(name: str, key: str, args: Mapping[str, Any], base_dir: Path) -> RobotPart:

@@ -16,7 +16,7 @@ from harness.language.scenario import RobotSpec
 from harness.robot.compose import RobotPart
 from harness.robot.description import Joint
 from harness.robot.import_robot import read_robot
-from harness.robot.imported_part import names_own_gripper
+from harness.robot.imported_part import names_integrated_gripper
 from harness.robot.load import load_robot
 from harness.robot.srdf.srdf import write_srdf
 from harness.robot.urdf.write import package_name, write_urdf
@@ -56,7 +56,7 @@ def robot_folder(spec: RobotSpec, base_dir: Path, folder: Path) -> RobotFolder:
         RobotError: A file is not found, or an option does not fit it.
     """
     part = read_robot(spec, base_dir)
-    if spec.gripper is not None and not names_own_gripper(spec.gripper, part.srdf):
+    if spec.gripper is not None and not names_integrated_gripper(spec.gripper, part.srdf):
         raise RobotError(
             f"robot.gripper: the SRDF has no group '{spec.gripper}'; a bundled gripper is named"
             " by the scenario, next to `model`"

@@ -63,7 +63,7 @@ class CaseJob:
     def overrides_of_draw(self, draw: int) -> Mapping[str, str]:
         """Overrides of the sample as it is drawn again."""
         assert self.redraw is not None
-        return {**self.redraw.again(draw).overrides, **self.fixed}
+        return {**self.redraw.redrawn(draw).overrides, **self.fixed}
 
 
 Function = Callable[[CaseJob, Callable[[ProgressEvent], None]], CaseResult]
@@ -101,7 +101,7 @@ def run_job(job: CaseJob, notify: Callable[[ProgressEvent], None]) -> CaseResult
     )
     if job.redraw is None or not result.redraws:
         return result
-    return replace(result, values=job.redraw.again(result.redraws).values)
+    return replace(result, values=job.redraw.redrawn(result.redraws).values)
 
 
 def read_ahead(words: Collection[str]) -> None:

@@ -175,7 +175,7 @@ class Redraw:
     index: int
     base: int
 
-    def again(self, draw: int) -> Case:
+    def redrawn(self, draw: int) -> Case:
         """The sample as it is drawn next, by the number of the draw from 1."""
         return self.variation._sample(self.case, self.index, self.base, draw)  # noqa: SLF001
 

@@ -10,7 +10,7 @@ from harness.core.pose_arrays import compose, conjugate, quat_product, rotation_
 from harness.core.types import FloatArray
 from harness.recording.link_poses import replayed_link_poses
 from harness.recording.run import Pair, Run
-from harness.reporting.html.group import MOST_SERIES, Group
+from harness.reporting.html.plot_group import MOST_SERIES, Group
 
 
 def clearances(run: Run) -> Group:

@@ -13,7 +13,7 @@ from harness.language.poses import Pose
 from harness.language.world import FrictionSpec, InertiaSpec, ObjectSpec, ShapeSpec
 from harness.world.plain_values import pose_spec, rounded, significant
 from harness.world.sdf.bodies import SdfBody, SdfLink
-from harness.world.sdf.elements import note_what_is_left
+from harness.world.sdf.elements import note_unread_elements
 from harness.world.sdf.masses import MassProperties, link_masses, together
 from harness.world.sdf.shapes import ShapeReader
 from harness.world.sdf.values import pose_of
@@ -34,7 +34,7 @@ def object_of(body: SdfBody, reader: ShapeReader) -> ObjectSpec | None:
         touched = _collisions(body, link, reader)
         shapes += [shape for _, shape in touched]
         visuals += _visuals(body, link, reader)
-        note_what_is_left(link.element, "link", reader.notes)
+        note_unread_elements(link.element, "link", reader.notes)
         if not body.is_static:
             on_object = body.pose.inverse() @ link.pose
             masses.append(link_masses(link.element, touched, on_object, reader.notes))

@@ -8,7 +8,7 @@ from pathlib import Path
 from harness.core.errors import SpecError
 from harness.language.files.xml_file import XmlElement, read_xml
 from harness.world.notes import Notes
-from harness.world.sdf.elements import note_what_is_left
+from harness.world.sdf.elements import note_unread_elements
 from harness.world.sdf.model_path import ModelPath, model_file
 from harness.world.sdf.scope import WORLD, Named, SdfScope
 from harness.world.sdf.values import PlacedPose, is_flag, is_true, pose_of, text_of
@@ -52,9 +52,9 @@ class SdfTree:
         for other in worlds[1:]:
             self.notes.add(other.place, "a second <world> is left out")
         self.root = worlds[0] if worlds else sdf
-        note_what_is_left(sdf, "sdf", self.notes)
+        note_unread_elements(sdf, "sdf", self.notes)
         if worlds:
-            note_what_is_left(self.root, "world", self.notes)
+            note_unread_elements(self.root, "world", self.notes)
         self.world = SdfScope("", self.root, path.parent)
         self.lights = [SdfLight(light, pose_of(light)) for light in self.root.findall("light")]
         self._fill(self.world, (path.resolve(),))
@@ -93,7 +93,7 @@ class SdfTree:
                 case "joint":
                     self._name(scope, self._joint(child, scope))
                 case "frame":
-                    note_what_is_left(child, "frame", self.notes)
+                    note_unread_elements(child, "frame", self.notes)
                     base = child.get("attached_to").strip()
                     self._name(scope, Named("frame", child, pose_of(child), base))
                 case "model":
@@ -120,7 +120,7 @@ class SdfTree:
         scope.named[name] = item
 
     def _joint(self, element: XmlElement, scope: SdfScope) -> Named:
-        note_what_is_left(element, "joint", self.notes)
+        note_unread_elements(element, "joint", self.notes)
         child = text_of(element, "child")
         if not child or not text_of(element, "parent"):
             element.refuse("a <joint> has a <parent> and a <child>")
@@ -145,7 +145,7 @@ class SdfTree:
         self._count += 1
         if self._count > MOST_MODELS:
             scope.element.refuse(f"more than {MOST_MODELS} models")
-        note_what_is_left(scope.element, "model", self.notes)
+        note_unread_elements(scope.element, "model", self.notes)
         parent.nested[scope.name] = scope
         self._fill(scope, files)
         if not scope.placement_frame:
@@ -154,7 +154,7 @@ class SdfTree:
 
     def _include(self, parent: SdfScope, element: XmlElement, files: tuple[Path, ...]) -> None:
         """A model of another file, with the include's elements in place of its own."""
-        note_what_is_left(element, "include", self.notes)
+        note_unread_elements(element, "include", self.notes)
         uri = element.find("uri")
         if uri is None:
             element.refuse("an <include> has a <uri>")
