@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.assertions.contacts import bodies, force_between
 from harness.assertions.distances import recorded_distances
-from harness.assertions.joints import joint_column, unit_of
+from harness.assertions.joints import joint_column, joint_unit
 from harness.assertions.poses import UP, frame_poses, physical_poses, speeds
 from harness.assertions.window import NotObservable, Window
 from harness.core.pose_arrays import angle_between, rotate
@@ -106,13 +106,13 @@ def _joint(name: str, joint: str, window: Window) -> Values:
     column, record = joint_column(window.run, joint)
     signals = window.run.signals
     array, unit = {
-        "position": (signals.joint_positions, unit_of(record)),
-        "velocity": (signals.joint_velocities, f"{unit_of(record)}/s"),
+        "position": (signals.joint_positions, joint_unit(record)),
+        "velocity": (signals.joint_velocities, f"{joint_unit(record)}/s"),
         "effort": (signals.joint_efforts, _effort_unit(record)),
-        "command": (signals.joint_commands, unit_of(record)),
+        "command": (signals.joint_commands, joint_unit(record)),
     }[name]
     return Values(window.cut(array)[:, column], unit)
 
 
 def _effort_unit(joint: JointRecord) -> str:
-    return "N" if unit_of(joint) == "m" else "N m"
+    return "N" if joint_unit(joint) == "m" else "N m"

@@ -80,7 +80,7 @@ class _Guarded:
         return getattr(self._signals, name)
 
 
-def guarded(run: Run) -> Run:
+def guard_unrecorded(run: Run) -> Run:
     """The same run; what it does not have cannot be read as if nothing had happened."""
     if not run.unrecorded:
         return run

@@ -10,7 +10,7 @@ import numpy as np
 from harness.cameras.caption import write_captioned
 from harness.cameras.marks import GOAL, ORANGE, RED, frame_mark, line_mark, mark
 from harness.cameras.picture_model import PictureModel, build_picture_model
-from harness.cameras.recorded_scene import floor_height, poses_at
+from harness.cameras.recorded_scene import floor_height, scene_poses
 from harness.cameras.renderer import render_overview
 from harness.cameras.stills import HEIGHT, WIDTH
 from harness.core.geometry import Shape, Sphere, bounding_radius
@@ -51,7 +51,7 @@ def draw_failure(
         raise ValueError(f"step {step.id} has no state to draw")
     state = np.array([nearest.joint_positions[name] for name in description.joint_names])
     sample = min(max(step.end_index - 1, 0), len(run.signals.times) - 1)
-    poses = poses_at(description, world_objects, run, sample, step)
+    poses = scene_poses(description, world_objects, run, sample, step)
     poses |= robot_poses(description, state)
     for held in run.attachments:
         if held.start_time <= step.end_time < held.end_time and held.object in poses:

@@ -14,7 +14,7 @@ from harness.robot.description import RobotDescription
 from harness.robot.forward_kinematics import robot_poses
 
 
-def poses_at(
+def scene_poses(
     description: RobotDescription,
     world_objects: Sequence[WorldObject],
     run: Run,

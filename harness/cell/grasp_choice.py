@@ -36,7 +36,7 @@ class Approach:
 
 
 @dataclass(frozen=True)
-class Search:
+class GraspSearch:
     """How approaches are tried.
 
     Attributes:
@@ -54,7 +54,7 @@ class Search:
     then: Callable[[FloatArray], bool] = lambda _: True
 
 
-def choose_approach(approaches: Sequence[Approach], search: Search, cell: Cell) -> Approach:
+def choose_approach(approaches: Sequence[Approach], search: GraspSearch, cell: Cell) -> Approach:
     """The first approach that the arm can follow, if possible one after which it can go on.
 
     Raises:
@@ -72,7 +72,7 @@ def choose_approach(approaches: Sequence[Approach], search: Search, cell: Cell) 
     return followed or _most_promising(approaches, search, cell)
 
 
-def _most_promising(approaches: Sequence[Approach], search: Search, cell: Cell) -> Approach:
+def _most_promising(approaches: Sequence[Approach], search: GraspSearch, cell: Cell) -> Approach:
     """The approach of which most is possible.
 
     Raises:
@@ -90,7 +90,7 @@ def _most_promising(approaches: Sequence[Approach], search: Search, cell: Cell) 
     return best
 
 
-def _progress(approach: Approach, search: Search, cell: Cell) -> float:
+def _progress(approach: Approach, search: GraspSearch, cell: Cell) -> float:
     """How many of these hold: the end is reachable, it is free; then the same of the beginning.
 
     Of two ends in collision the one with less penetration counts more.
@@ -114,7 +114,7 @@ def _depth(state: FloatArray, padding: float, cell: Cell) -> float:
     return max((touch.required - touch.distance for touch in touches), default=0.0)
 
 
-def _ends(approach: Approach, search: Search, cell: Cell) -> Iterator[FloatArray]:
+def _ends(approach: Approach, search: GraspSearch, cell: Cell) -> Iterator[FloatArray]:
     """The whole robot at the end of each straight approach that it can follow."""
     goal = resolve_goal(GoalFields(**approach.at.keys), search.group, cell)
     states = _solutions(approach.before, search, cell)
@@ -132,7 +132,7 @@ def _ends(approach: Approach, search: Search, cell: Cell) -> Iterator[FloatArray
             yield end
 
 
-def _solutions(goal: TcpGoal, search: Search, cell: Cell) -> list[FloatArray]:
+def _solutions(goal: TcpGoal, search: GraspSearch, cell: Cell) -> list[FloatArray]:
     """The whole robot at a goal, nearest to the start first."""
     joint_goal = resolve_goal(GoalFields(**goal.keys), search.group, cell)
     if isinstance(joint_goal, JointGoal):

@@ -232,7 +232,7 @@ def _align(
     return in_world @ in_tcp.T
 
 
-def pitch_of(rotation: FloatArray) -> float:
+def matrix_pitch(rotation: FloatArray) -> float:
     """Angle of a frame's x axis below the horizontal [rad]."""
     return -math.asin(float(np.clip(rotation[2, 0], -1.0, 1.0)))
 

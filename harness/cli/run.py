@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from harness.cli.output import complain, guarded, only_json_on_stdout, output, say, say_text
-from harness.suite.cases import describe
+from harness.suite.cases import progress_text
 from harness.suite.discovery import UsageError, discover
 from harness.suite.leftovers import clean_report_folder
 from harness.suite.warm import WarmServer
@@ -76,7 +76,7 @@ def _run(arguments: argparse.Namespace) -> int:
 def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
     from harness.suite.plan import SuiteRequest, planned_cases, record_of
     from harness.suite.shards import shard_of, write_shard_record
-    from harness.suite.suite_run import How, SuiteRun
+    from harness.suite.suite_run import SuiteOptions, SuiteRun
 
     if arguments.history and not Path(arguments.history).is_dir():
         raise UsageError(f"--history '{arguments.history}' is no folder")
@@ -100,7 +100,7 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
     if shard is not None and root is not None:
         write_shard_record(record_of(files, request, shard, root))
     is_whole = arguments.repeat == 1 and (len(plan) > 1 or shard is not None)
-    how = How(
+    how = SuiteOptions(
         workers=arguments.workers,
         repeat=arguments.repeat,
         in_process=arguments.in_process,
@@ -194,12 +194,12 @@ def _show_interruption(arguments: argparse.Namespace, suite: SuiteRun, seconds: 
         return
     after = f"interrupted after {seconds:.1f} s"
     if len(suite.jobs) == 1:
-        where = "".join(f", during {describe(event)}" for event in suite.unfinished.values())
+        where = "".join(f", during {progress_text(event)}" for event in suite.unfinished.values())
         complain(f"{after}{where}: the run did not finish, and no report was written")
         return
     complain(f"{after}: {suite.missing} of {len(suite.jobs)} runs did not finish")
     for index, event in suite.unfinished.items():
-        complain(f"  {suite.jobs[index].file}: during {describe(event)}")
+        complain(f"  {suite.jobs[index].file}: during {progress_text(event)}")
     if arguments.repeat == 1 and not arguments.no_report:
         complain("the same command with --resume runs the rest")
 

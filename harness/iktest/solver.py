@@ -11,7 +11,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Protocol
 
-from harness.iktest.calls import Outcome, call
+from harness.iktest.calls import CallOutcome, call
 from harness.iktest.contract import UnusableSolver, Value, parameter_words
 from harness.iktest.find_function import OWN
 from harness.iktest.worker import serve
@@ -35,7 +35,7 @@ class Solver(Protocol):
     name: str
     words: tuple[str, ...]
 
-    def __call__(self, arguments: Mapping[str, Value]) -> Outcome:
+    def __call__(self, arguments: Mapping[str, Value]) -> CallOutcome:
         """Call it."""
         ...
 
@@ -52,7 +52,7 @@ class InProcess:
         self.words = parameter_words(function)
         self._function, self._dof = function, dof
 
-    def __call__(self, arguments: Mapping[str, Value]) -> Outcome:
+    def __call__(self, arguments: Mapping[str, Value]) -> CallOutcome:
         """Call it."""
         return call(self._function, arguments, self._dof)
 
@@ -100,7 +100,7 @@ class Isolated:
             self.close()
             raise
 
-    def __call__(self, arguments: Mapping[str, Value]) -> Outcome:
+    def __call__(self, arguments: Mapping[str, Value]) -> CallOutcome:
         """Call it in its process."""
         if self._connection is None:
             self._start()
@@ -111,10 +111,12 @@ class Isolated:
                 return self._connection.recv()
         except (EOFError, OSError):
             self._server.kill(self._job)  # what has closed its connection is as good as dead
-            return Outcome("died", text=_last_words(self._end()))
+            return CallOutcome("died", text=_last_words(self._end()))
         self._server.kill(self._job)
         self._end()
-        return Outcome("hung", seconds=self._patience, text=f"no answer in {self._patience:g} s")
+        return CallOutcome(
+            "hung", seconds=self._patience, text=f"no answer in {self._patience:g} s"
+        )
 
     def close(self) -> None:
         """End the process and the server that it comes from."""

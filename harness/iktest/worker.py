@@ -30,7 +30,7 @@ def serve(name: str, robot: RobotSource, tip: str, dof: int, address: str, _noti
     link.connect(address)
     with Connection(link.detach()) as connection:
         try:
-            function = load(name, robot, tip)
+            function = load_solver(name, robot, tip)
             words = parameter_words(function)
         except UnusableSolver as error:
             connection.send(("unusable", str(error)))
@@ -44,7 +44,7 @@ def serve(name: str, robot: RobotSource, tip: str, dof: int, address: str, _noti
             connection.send(call(function, arguments, dof))
 
 
-def load(name: str, robot: RobotSource, tip: str) -> Callable[..., Any]:
+def load_solver(name: str, robot: RobotSource, tip: str) -> Callable[..., Any]:
     """The function of a name; this program's own solver for `own`."""
     if name != OWN:
         return find_function(name)

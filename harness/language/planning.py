@@ -122,7 +122,7 @@ class JointConstraint(SpecModel):
     )
 
 
-class PathConstraints(SpecModel):
+class PathConstraintsSpec(SpecModel):
     """The moveit_msgs/Constraints that hold along the path; at least one is given."""
 
     orientation: OrientationConstraint | None = Field(
@@ -136,7 +136,7 @@ class PathConstraints(SpecModel):
     )
 
     @model_validator(mode="after")
-    def _some(self) -> PathConstraints:
+    def _some(self) -> PathConstraintsSpec:
         if self.orientation is None and self.position is None and not self.joints:
             raise ValueError("path constraints are at least one of orientation, position, joints")
         return self

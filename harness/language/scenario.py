@@ -23,7 +23,7 @@ from harness.language.expectation import AnyExpectation
 from harness.language.planning import Planning
 from harness.language.poses import Pose
 from harness.language.step import AnyStep
-from harness.language.variation import Distribution, Expected, Parametrize
+from harness.language.variation import Distribution, Parametrize, RequiredRate
 from harness.language.world import ObjectSpec
 
 
@@ -228,7 +228,7 @@ class Scenario(SpecModel):
         default=None,
         description="Draws a sample again, up to 100 times, while objects overlap at the start.",
     )
-    expect_rate: Expected | None = Field(
+    expect_rate: RequiredRate | None = Field(
         default=None,
         description="The required success rate of the samples; without it every sample must pass.",
     )

@@ -13,7 +13,7 @@ from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.cartesian.curve_timing import RatedCurve, time_curve
-from harness.planning.ik.numeric import random_positions
+from harness.planning.ik.numeric import sample_group_positions
 from harness.planning.task import PlanningTask
 from harness.planning.timing.joint_spline import JointSpline
 from harness.planning.timing.limits import TimingError
@@ -160,7 +160,7 @@ class _Search:
         for _ in range(_MOST_ROUNDS):
             if self._is_over:
                 return None
-            sample = random_positions(space, self.rng)
+            sample = sample_group_positions(space, self.rng)
             reached = self._extend(first, first.nearest(sample, metric), sample)
             target = first.nodes[reached]
             met = self._extend(second, second.nearest(target, metric), target)

@@ -22,7 +22,7 @@ from harness.reporting.suite.junit import case_properties, sample_properties
 from harness.reporting.suite.record import SuiteCase
 from harness.reporting.terminal import causes
 from harness.suite.cases import run_here, run_isolated
-from harness.suite.header import Header, source_lines
+from harness.suite.header import ScenarioHeader, source_lines
 from harness.suite.leftovers import clean_report_folder
 from harness.suite.plan import PlannedCase, SuiteRequest, planned_cases
 from harness.suite.sampling import Sampling
@@ -60,12 +60,12 @@ SELF_EXPLANATORY_ERRORS = (ScenarioNotPassed, RateNotShown, ServerStartError)
 """Errors that pytest prints without a traceback, because their text is complete."""
 
 
-def run_item(item: pytest.Item, header: Header, case: str, number: int) -> None:
+def run_item(item: pytest.Item, header: ScenarioHeader, case: str, number: int) -> None:
     """Run a case, or all samples of a case.
 
     Args:
         item: The pytest item, at the scenario's file.
-        header: Header of the file.
+        header: ScenarioHeader of the file.
         case: Name of the case; for samples, the name that they share.
         number: Position of the case in its file, from 0.
 

@@ -36,7 +36,7 @@ class SessionResults:
             from_plains,
             small_margins,
             suite_of,
-            write_files,
+            write_session_files,
         )
         from harness.reporting.suite.github import annotations_for_action, append_summary
 
@@ -45,7 +45,7 @@ class SessionResults:
         folder, suite = report_root(self._config), suite_of(records)
         earlier = self._config.getoption("--harness-history")
         history = Path(earlier) if earlier else None
-        if folder is not None and (line := write_files(folder, suite, history)):
+        if folder is not None and (line := write_session_files(folder, suite, history)):
             self._lines.append(line)
         try:
             append_summary(suite)

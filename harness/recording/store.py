@@ -20,7 +20,7 @@ from harness.core.geometry import Rgba
 from harness.core.printable import json_printable
 from harness.recording.arrays import arrays_of, is_signal, signals_from, write_npz
 from harness.recording.consistency import (
-    Flaw,
+    Inconsistency,
     mesh_flaws,
     mesh_header_flaws,
     run_flaws,
@@ -315,7 +315,7 @@ def _damage(path: Path, reason: str, line: int = 0, column: int = 0) -> SpecErro
     return SpecError([Problem(str(path), line, column, f"damaged run: {reason}")])
 
 
-def _refuse(path: Path, flaws: Iterable[Flaw]) -> None:
+def _refuse(path: Path, flaws: Iterable[Inconsistency]) -> None:
     """Raise what is wrong, all of it at once."""
     problems = [
         Problem(str(path), 0, 0, ": ".join(filter(None, ["damaged run", key, reason])))

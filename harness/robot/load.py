@@ -18,12 +18,12 @@ from harness.language.scenario import RobotSpec
 from harness.robot.acceleration import with_possible_accelerations
 from harness.robot.bare_arm import without_gripper
 from harness.robot.calibration import calibrated
-from harness.robot.compose import Part, compose
+from harness.robot.compose import RobotPart, compose_robot
 from harness.robot.description import Joint, RobotDescription
 from harness.robot.find_file import find_file, find_folder
 from harness.robot.folder_names import refuse_incomplete_states, unknown_names
 from harness.robot.import_robot import read_robot
-from harness.robot.imported_part import names_own_gripper
+from harness.robot.imported_part import names_integrated_gripper
 from harness.robot.options import with_moveit_files, with_options
 from harness.robot.packages import PackagePath
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml, robot_yaml_error
@@ -94,20 +94,20 @@ def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
         main = without_gripper(main)
     if spec.kinematics is not None:
         main = _calibrated(main, find_file(spec.kinematics, "kinematics", base_dir, ()))
-    description = compose(main, tool, spec.base.se3())
+    description = compose_robot(main, tool, spec.base.se3())
     description, known = with_moveit_files(description, spec.moveit, base_dir)
     if spec.model is None and main is not None:
         description = with_possible_accelerations(description, known)
     return with_options(description, spec)
 
 
-def _calibrated(main: Part | None, path: Path) -> Part:
+def _calibrated(main: RobotPart | None, path: Path) -> RobotPart:
     if main is None:
         raise RobotOptionError("kinematics", "a gripper alone has no calibration")
     return replace(main, urdf=replace(main.urdf, joints=calibrated(main.urdf.joints, path)))
 
 
-def _main(spec: RobotSpec, base_dir: Path) -> Part | None:
+def _main(spec: RobotSpec, base_dir: Path) -> RobotPart | None:
     """The arm, or a gripper without an arm; None when only `gripper` is given."""
     if spec.urdf is not None or spec.xacro is not None or spec.mjcf is not None:
         return read_robot(spec, base_dir)
@@ -117,12 +117,12 @@ def _main(spec: RobotSpec, base_dir: Path) -> Part | None:
     return None if spec.model is None else _part(spec.model, "model", spec.args, base_dir)
 
 
-def _is_own(main: Part, gripper: str) -> bool:
+def _is_own(main: RobotPart, gripper: str) -> bool:
     """Whether a name is that of an imported arm's integrated gripper."""
-    return main.facts.gripper is not None and names_own_gripper(gripper, main.srdf)
+    return main.facts.gripper is not None and names_integrated_gripper(gripper, main.srdf)
 
 
-def _part(name: str, key: str, args: Mapping[str, Any], base_dir: Path) -> Part:
+def _part(name: str, key: str, args: Mapping[str, Any], base_dir: Path) -> RobotPart:
     """A bundled robot or gripper, or the one in a folder."""
     if name in _catalogue():
         return _bundled(name, tuple(sorted((k, str(v)) for k, v in args.items())))
@@ -143,7 +143,7 @@ def _known(names: tuple[str, ...]) -> str:
 
 
 @lru_cache(maxsize=32)
-def _bundled(name: str, args: tuple[tuple[str, str], ...]) -> Part:
+def _bundled(name: str, args: tuple[tuple[str, str], ...]) -> RobotPart:
     folder, facts = _catalogue()[name]
     return _read(folder, facts, name if facts.variants else "", dict(args), is_bundled=True)
 
@@ -155,7 +155,7 @@ def _read(
     args: Mapping[str, Any],
     *,
     is_bundled: bool = False,
-) -> Part:
+) -> RobotPart:
     """URDF and SRDF of a folder, with the limits of its robot.yaml."""
     name = variant or facts.robot
     if facts.xacro is not None:
@@ -175,7 +175,7 @@ def _read(
     if unknown:
         raise robot_yaml_error(folder, unknown)
     refuse_incomplete_states(srdf, urdf, facts)
-    return Part(name, facts, urdf, srdf, str(folder))
+    return RobotPart(name, facts, urdf, srdf, str(folder))
 
 
 def _text(path: Path) -> str:

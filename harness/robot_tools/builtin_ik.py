@@ -10,7 +10,7 @@ from harness.core.types import FloatArray
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.ports import PoseGoal, PositionGoal
 from harness.robot.chain import Chain
-from harness.robot_tools.robot_source import RobotSource, load
+from harness.robot_tools.robot_source import RobotSource, load_source
 from harness.strategies.tasks import natural_task
 
 Solutions = Sequence[FloatArray]
@@ -23,7 +23,7 @@ def own_solver(robot: RobotSource, link: str = "") -> Callable[..., Any]:
         robot: The arm to be solved.
         link: The link that is placed; by default the TCP.
     """
-    chain = Chain.of(load(robot), link=link)
+    chain = Chain.of(load_source(robot), link=link)
     name = chain.description.arm_group
     kinematics = PinocchioKinematics(chain.description)
 

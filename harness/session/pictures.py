@@ -10,7 +10,7 @@ from harness.assertions.looks import looks_of_expectations
 from harness.core.activity import Activity
 from harness.core.world import WorldObject
 from harness.recording.explanation import recorded_explanation
-from harness.recording.looks import looks_of_steps, merged
+from harness.recording.looks import looks_of_steps, merged_looks
 from harness.recording.run import CaptureRecord, Finding, Run, StepRecord, VideoRecord
 from harness.robot.description import RobotDescription
 from harness.session.prepare import Prepared
@@ -49,7 +49,7 @@ def camera_pictures(
     taken = looks_of_steps(run.steps)
     seen = {(look.camera, look.sample) for look in looked}
     taken = tuple(look for look in taken if is_kept or (look.camera, look.sample) in seen)
-    looks = merged([*taken, *looked])
+    looks = merged_looks([*taken, *looked])
     videos = program.videos if is_kept else {}
     if not looks and not videos:
         return CameraPictures()
@@ -92,7 +92,7 @@ def draw_failures(
 def _with_picture_name(step: StepRecord, number: int) -> StepRecord:
     if recorded_explanation(step.explanation).nearest is None:
         return step
-    from harness.cameras.stills import slug
+    from harness.cameras.stills import step_slug
 
-    name = f"{FOLDER}/{number:02d}-{slug(step.id)}-why.jpg"
+    name = f"{FOLDER}/{number:02d}-{step_slug(step.id)}-why.jpg"
     return replace(step, explanation={**step.explanation, "picture": name})

@@ -10,7 +10,7 @@ from pathlib import Path
 from harness.assertions.observations import Observations, merged
 from harness.assertions.placed import PlacedExpectation
 from harness.cell.program import Program
-from harness.cell.scope import Part
+from harness.cell.scope import Prerequisite
 from harness.core.errors import Problem, RobotError, RobotOptionError, SpecError
 from harness.core.geometry import Mesh
 from harness.engine.compile import Sources, compile_scenario
@@ -35,8 +35,8 @@ from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
 from harness.world.imported import ImportedWorld
 
-ROBOT: frozenset[Part] = frozenset({"robot"})
-WORLD: frozenset[Part] = frozenset({"world"})
+ROBOT: frozenset[Prerequisite] = frozenset({"robot"})
+WORLD: frozenset[Prerequisite] = frozenset({"world"})
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +119,7 @@ def _together(reading: Reading, more: Sequence[Problem]) -> list[Problem]:
     ]
 
 
-def _prepared(loaded: LoadedScenario, missing: frozenset[Part]) -> Prepared:
+def _prepared(loaded: LoadedScenario, missing: frozenset[Prerequisite]) -> Prepared:
     problems: list[Problem] = []
     try:
         description = _robot(loaded)

@@ -73,7 +73,7 @@ def run_case(request: RunRequest, notify: Notify = lambda _: None) -> CaseResult
         notes=(*_notes(prepared, overlaps), *notes),
         overlap=-overlaps[0].distance if overlaps else 0.0,
         redraws=draw,
-        values=request.redraw.again(draw).values if request.redraw is not None and draw else {},
+        values=request.redraw.redrawn(draw).values if request.redraw is not None and draw else {},
         wall_times=clock.seconds,
     )
 

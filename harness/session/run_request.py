@@ -26,7 +26,7 @@ class Draw(Protocol):
 class Redraw(Protocol):
     """Draws a random sample again."""
 
-    def again(self, draw: int) -> Draw:
+    def redrawn(self, draw: int) -> Draw:
         """The sample's values in one of the further draws.
 
         Args:

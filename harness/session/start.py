@@ -42,7 +42,7 @@ def start_case(request: RunRequest, clock: Clock) -> Start:
     """
     last: list[Problem] = []
     for draw in range(MOST_DRAWS):
-        again = request.redraw.again(draw) if request.redraw is not None and draw else request
+        again = request.redraw.redrawn(draw) if request.redraw is not None and draw else request
         prepared = prepare(request.file, again.overrides, request.seed, request.text)
         simulator = start_physics(prepared, clock, prepared.observed_links)
         if request.redraw is None or not simulator.overlaps_at_start:

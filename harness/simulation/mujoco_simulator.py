@@ -19,7 +19,7 @@ from harness.recording.execution_failures import ContactForce, ControlFailure, U
 from harness.recording.run import Signals
 from harness.robot.description import RobotDescription
 from harness.simulation.contact_record import BodyPair
-from harness.simulation.faults import Faults
+from harness.simulation.faults import MujocoFaults
 from harness.simulation.gripper_drive import GripperDrive
 from harness.simulation.model import build_model
 from harness.simulation.objects import Objects, overlaps
@@ -86,7 +86,7 @@ class MujocoSimulator:
         self._control = self._controls(self._still(self._command))[0]
         self._data.ctrl[:] = self._control
         self._grip: tuple[int, float] | None = None  # actuator, effort limit
-        self.faults = Faults(self, self.physics, self._data)
+        self.faults = MujocoFaults(self, self.physics, self._data)
         self._recording = Recording(self.physics, self._data)
         refresh(self._model, self._data)
         self._refuse_unusable_start()

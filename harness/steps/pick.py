@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 
 from harness.cell.cell import Cell
 from harness.cell.goals import TcpGoal, arm_has_six_joints, group_of
-from harness.cell.grasp_choice import Approach, Search, choose_approach
+from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach
 from harness.cell.grasping import (
     check_opening,
     grasp_points,
@@ -167,7 +167,7 @@ def _approach(step: Pick, lift: MoveRelative, cell: Cell) -> list[ProgramStep]:
         for number, goal in enumerate(goals)
     ]
     cell.notes.result.update(grasps=len(goals), grasp=1)
-    search = Search(
+    search = GraspSearch(
         group_of(cell, step.group),
         cell.with_open_gripper(cell.planning_start()),
         cell.current.options,

@@ -11,8 +11,8 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.goals import TcpGoal, arm_has_six_joints, group_of
-from harness.cell.grasp_choice import Approach, Search, choose_approach
-from harness.cell.grasping import UP, gripper_axes, pitch_of, turn_about
+from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach
+from harness.cell.grasping import UP, gripper_axes, matrix_pitch, turn_about
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
 from harness.core.errors import PlanningFailed, StepFailed
@@ -139,7 +139,7 @@ def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
     ]
     cell.notes.result.update(turns=len(targets), turn=1)
     refused: list[Touch] = []
-    search = Search(
+    search = GraspSearch(
         group_of(cell, step.group),
         cell.planning_start(),
         replace(cell.current.options, padding=0.0),
@@ -260,7 +260,7 @@ def _tcp_goal(name: str, target: SE3, step: Place, cell: Cell) -> TcpGoal:
     tcp_to_object = tcp.inverse() @ cell.scene.object_pose(name, start)
     if arm_has_six_joints(cell.description, step.group):
         return TcpGoal(world_pose_spec(target @ tcp_to_object.inverse()))
-    pitch = pitch_of(tcp.rotation)
+    pitch = matrix_pitch(tcp.rotation)
     x, y, z = _tcp_position(target.translation, tcp_to_object, pitch, step, cell)
     return TcpGoal(Position(xyz=(float(x), float(y), float(z))), pitch)
 

@@ -152,10 +152,10 @@ def _job(
 
         file, text, variation = Path(scenario), None, read_header(Path(scenario)).variation
     else:
-        from harness.language.reading.written import scenario_text, written
+        from harness.language.reading.written import as_written, scenario_text
 
         text = scenario_text(scenario)
-        file, variation = Path.cwd() / MODEL, Variation.of(written(scenario))
+        file, variation = Path.cwd() / MODEL, Variation.of(as_written(scenario))
     name = str(scenario) if isinstance(scenario, str | Path) else scenario.scenario
     chosen = _case(variation, seed, case, name).with_overrides(overrides)
     return RunRequest(

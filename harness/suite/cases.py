@@ -32,7 +32,7 @@ Watcher = Callable[[int, ProgressEvent], None]
 Chooser = Callable[[int], bool]
 
 
-def never(_index: int) -> bool:
+def never_needless(_index: int) -> bool:
     """Every case is needed."""
     return False
 
@@ -41,7 +41,7 @@ def ignore_progress(_index: int, _event: ProgressEvent) -> None:
     """Take no notice of progress."""
 
 
-def run_case(job: RunRequest, notify: Callable[[ProgressEvent], None]) -> CaseResult:
+def run_job(job: RunRequest, notify: Callable[[ProgressEvent], None]) -> CaseResult:
     """Run a case in this process."""
     prepare_process()
     from harness.session import run_case as session  # imports planners and physics
@@ -62,8 +62,8 @@ def run_here(
     jobs: Sequence[RunRequest],
     *,
     watch: Watcher = ignore_progress,
-    function: Function = run_case,
-    is_needless: Chooser = never,
+    function: Function = run_job,
+    is_needless: Chooser = never_needless,
 ) -> Iterator[tuple[int, CaseResult]]:
     """Run cases in this process, one after the other; for debuggers: nothing contains a crash."""
     for index, job in enumerate(jobs):
@@ -84,8 +84,8 @@ def run_isolated(
     workers: int = 1,
     hard_cap: float | None = None,
     watch: Watcher = ignore_progress,
-    function: Function = run_case,
-    is_needless: Chooser = never,
+    function: Function = run_job,
+    is_needless: Chooser = never_needless,
 ) -> Iterator[tuple[int, CaseResult]]:
     """Run every case in its own forked process, `workers` side by side.
 
@@ -107,7 +107,7 @@ def run_isolated(
     cap = hard_cap_seconds() if hard_cap is None else hard_cap
     waiting = list(enumerate(jobs))[::-1]
     running: dict[int, _Running] = {}
-    if function is run_case:
+    if function is run_job:
         server.prepare(read_ahead, _words(jobs))
     try:
         while waiting or running:
@@ -180,7 +180,7 @@ class _Running:
 def _result(case: _Running, ended: Ended, cap: float) -> CaseResult:
     if isinstance(ended.result, CaseResult) and ended.code == 0:
         return ended.result
-    at = f" during {describe(case.last)}" if case.last else ""
+    at = f" during {progress_text(case.last)}" if case.last else ""
     printed = f"\nIt had printed:\n{ended.log.rstrip()}" if ended.log.strip() else ""
     if case.is_over_cap:
         why = f"no end after {cap:g} s of wall time{at}; stopped by the hard cap{printed}"
@@ -198,7 +198,7 @@ def _result(case: _Running, ended: Ended, cap: float) -> CaseResult:
     return error_result(case.job, why)
 
 
-def describe(event: ProgressEvent) -> str:
+def progress_text(event: ProgressEvent) -> str:
     """Where a case stood, in words."""
     if event.kind in {"step_started", "step_finished"}:
         number = f" {event.index + 1}/{event.total}" if event.index >= 0 else ""

@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 from harness.session.run_request import RunRequest
 from harness.suite.discovery import UsageError
 from harness.suite.folders import place_of, report_folders
-from harness.suite.header import Header, read_header
+from harness.suite.header import ScenarioHeader, read_header
 from harness.suite.selection import selects
 from harness.suite.shards import PlannedFile, Shard, ShardRecord
 from harness.suite.stream import file_hash
@@ -59,7 +59,7 @@ class PlannedCase:
     """
 
     job: RunRequest
-    header: Header
+    header: ScenarioHeader
     case: Case
 
     @property
@@ -103,7 +103,9 @@ def planned_cases(files: Sequence[Path], request: SuiteRequest) -> list[PlannedC
     return [each for each in found if request.shard.holds(each.identity)]
 
 
-def cases_of(headers: Sequence[tuple[Path, Header]], request: SuiteRequest) -> list[PlannedCase]:
+def cases_of(
+    headers: Sequence[tuple[Path, ScenarioHeader]], request: SuiteRequest
+) -> list[PlannedCase]:
     """Every case that the request selects, of files whose headers are known, in file order.
 
     Raises:
@@ -132,7 +134,7 @@ def _refuse_samples(files: Sequence[Path], request: SuiteRequest) -> NoReturn:
     )
 
 
-def _is_selected(file: Path, header: Header, case: Case, request: SuiteRequest) -> bool:
+def _is_selected(file: Path, header: ScenarioHeader, case: Case, request: SuiteRequest) -> bool:
     if request.cases and not any(fnmatchcase(case.name, pattern) for pattern in request.cases):
         return False
     return not request.expression or selects(request.expression, file, header, case.name)

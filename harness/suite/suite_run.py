@@ -24,7 +24,7 @@ OnResult = Callable[[int, CaseResult], None]
 
 
 @dataclass(frozen=True)
-class How:
+class SuiteOptions:
     """How a suite is run.
 
     Attributes:
@@ -59,7 +59,7 @@ class SuiteRun:
         unfinished: The last event of each run that has begun and not ended, by index into `jobs`.
     """
 
-    def __init__(self, plan: Sequence[PlannedCase], how: How) -> None:
+    def __init__(self, plan: Sequence[PlannedCase], how: SuiteOptions) -> None:
         self.plan = plan
         self._repetitions = (
             Repetitions([each.job for each in plan], how.repeat) if how.repeat > 1 else None

@@ -182,7 +182,7 @@ class Redraw:
     base: int
     fixed: Mapping[str, str] = field(default_factory=dict[str, str])
 
-    def again(self, draw: int) -> Case:
+    def redrawn(self, draw: int) -> Case:
         """The sample as it is drawn next, by the number of the draw from 1."""
         drawn = self.variation._sample(self.case, self.index, self.base, draw)  # noqa: SLF001
         return drawn.with_overrides(self.fixed)

@@ -22,7 +22,7 @@ from harness.core.resources import data_folder
 from harness.grading.bag import reader, storage
 from harness.grading.bag.content import BagTopics
 from harness.grading.grade import grade_bag, graded
-from harness.recording.link_poses import link_poses
+from harness.recording.link_poses import replayed_link_poses
 from harness.recording.run import Signals, Verdict
 from harness.recording.store import read_run
 from harness.reporting.rosbag.write import BagOptions, write_bag
@@ -624,7 +624,7 @@ def test_a_gripper_alone_is_graded_from_joint_states_and_from_frames(gripper_run
     columns = {joint.name: i for i, joint in enumerate(gripper_run.robot.joints)}
     hand = {gripper_run.robot.gripper.joint: columns[gripper_run.robot.gripper.joint]}
     times = gripper_run.signals.times
-    poses = link_poses(gripper_run.robot, gripper_run.signals.joint_positions)
+    poses = replayed_link_poses(gripper_run.robot, gripper_run.signals.joint_positions)
     joints, frames = Recording(), Recording()
     for row in range(0, len(times), 20):
         state = joint_state(gripper_run.signals, row, hand)

@@ -13,7 +13,7 @@ from harness.core.world import WorldObject
 from harness.grading.bag.clocks import Timeline
 from harness.grading.bag.content import BagContent, BagTopics
 from harness.grading.bag.events import (
-    Interval,
+    StepInterval,
     Timed,
     attachments_of,
     is_present,
@@ -31,7 +31,7 @@ from harness.grading.bag.joints import (
 )
 from harness.grading.bag.raw import bag_error
 from harness.grading.bag.reader import read_bag
-from harness.recording.link_poses import link_poses
+from harness.recording.link_poses import replayed_link_poses
 from harness.recording.run import (
     Finding,
     ObjectRecord,
@@ -103,7 +103,7 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
         content.notes.append("there are no joint states; the joints are read from /tf")
         measured = joints_of_frames(content, placements, known.description, timeline, times)
     commanded = joint_rows(content.commands, known.description, timeline, times, "/joint_commands")
-    links = link_poses(known.robot, measured.positions, _links_needed(known, content))
+    links = replayed_link_poses(known.robot, measured.positions, _links_needed(known, content))
     frames = Frames(content, links, timeline, times)
     events = timed_events(content, timeline)
     present = {obj.name: presence_of(events, obj.name, times) for obj in known.objects}
@@ -172,7 +172,7 @@ def _object_record(
     obj: WorldObject,
     known: Recorded,
     poses: Mapping[str, FloatArray],
-    present: tuple[Interval, ...],
+    present: tuple[StepInterval, ...],
 ) -> ObjectRecord:
     """An object's record, with the scenario's pose if the object is static and not recorded."""
     is_known = obj.name not in poses and obj.is_static and obj.name in known.at_start
@@ -189,7 +189,7 @@ def _object_record(
 
 
 def _gaps(
-    known: Recorded, signals: Signals, present: Mapping[str, tuple[Interval, ...]]
+    known: Recorded, signals: Signals, present: Mapping[str, tuple[StepInterval, ...]]
 ) -> list[str]:
     """Messages about gaps in joints and objects."""
     messages: list[str] = []

@@ -17,7 +17,7 @@ from harness.language.files.mistakes import did_you_mean
 from harness.language.files.source import Loc, Located, Source, SourceMap
 from harness.language.files.yaml_file import parse_yaml, read_text, require_key
 from harness.language.reading.includes import with_includes
-from harness.language.reading.overrides import from_options, override
+from harness.language.reading.overrides import apply_overrides, from_options
 from harness.language.reading.params import substitute
 from harness.language.reading.repair import Repaired, repair
 from harness.language.reading.short_forms import models_shape
@@ -122,7 +122,7 @@ def read_scenario(
     root = parse_yaml(text, Source.of_text(str(path), text), problems)
     of_file = values_of_case(root, given)
     options = {key: value for key, value in given.items() if key not in of_file}
-    root = override(root, [*of_file.values(), *from_options(options, problems)], problems)
+    root = apply_overrides(root, [*of_file.values(), *from_options(options, problems)], problems)
     check_variation(root, given, lambda varied: _problems_of(varied, path), problems)
     written = substitute(with_includes(root, path, problems), problems)
     try:

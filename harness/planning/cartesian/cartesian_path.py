@@ -15,7 +15,7 @@ from harness.core.types import FloatArray
 from harness.planning.cartesian.leg import Leg
 from harness.planning.cartesian.leg_run import runs_of, time_runs
 from harness.planning.cartesian.line_goals import end_pose
-from harness.planning.cartesian.linear_path import Line
+from harness.planning.cartesian.linear_path import LinearPath
 from harness.planning.cartesian.link_motion import LinkMotions
 from harness.planning.cartesian.link_timing import LinkRates
 from harness.planning.cartesian.tracing import STEP_ANGLE, STEP_LENGTH, Trace, trace
@@ -41,7 +41,7 @@ def plan_waypoints(
     task = motions.task
     legs, lines, steps, stopped = _follow(motions, goals, path_options)
     whole = sum(_amount(line) for line in lines)
-    done = sum(_amount(leg.path) for leg in legs if isinstance(leg.path, Line))
+    done = sum(_amount(leg.path) for leg in legs if isinstance(leg.path, LinearPath))
     fraction = 1.0 if stopped is None else done / whole
     result = CartesianPathResult(fraction, max(steps, default=0.0))
     if fraction < path_options.min_fraction or not legs:
@@ -79,12 +79,12 @@ def plan_waypoints(
 
 def _follow(
     motions: LinkMotions, goals: Sequence[Goal], path_options: CartesianPathOptions
-) -> tuple[list[Leg], list[Line], list[float], Trace | None]:
+) -> tuple[list[Leg], list[LinearPath], list[float], Trace | None]:
     """The lines followed, all lines, the largest joint steps, and the trace that was stopped."""
     task = motions.task
     rates = LinkRates.of(task.options.cartesian_limits, task.options)
     legs: list[Leg] = []
-    lines: list[Line] = []
+    lines: list[LinearPath] = []
     steps: list[float] = []
     stopped: Trace | None = None
     start = task.start
@@ -92,7 +92,7 @@ def _follow(
     for index, goal in enumerate(goals):
         target = end_pose(motions.kinematics, task, start, goal)
         pose = pose or motions.pose(start, target.link)
-        line = Line.between(target.link, pose, target.pose)
+        line = LinearPath.between(target.link, pose, target.pose)
         pose = target.pose
         if line.length < _NO_MOTION and line.angle < _NO_MOTION:
             continue
@@ -117,7 +117,7 @@ def _follow(
     return legs, lines, steps, stopped
 
 
-def _amount(line: Line) -> float:
+def _amount(line: LinearPath) -> float:
     """The size of a line: its length, or its rotation converted by the ratio of the steps [m]."""
     return max(line.length, line.angle * STEP_LENGTH / STEP_ANGLE)
 

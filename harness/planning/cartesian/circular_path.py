@@ -25,7 +25,7 @@ arcs, such as a twelfth of a circle of 2 cm.
 _STRAIGHT_ANGLE = 1e-3  # [rad] nearer to half a circle about a centre, the plane is undefined
 
 
-class Arc:
+class CircularPath:
     """A link's path on a circle; the link rotates at a constant rate from start to end.
 
     Attributes:
@@ -50,7 +50,7 @@ class Arc:
         self._spoke = start.translation - self.center
 
     @classmethod
-    def through(cls, link: str, start: SE3, interim: FloatArray, end: SE3) -> Arc:
+    def through(cls, link: str, start: SE3, interim: FloatArray, end: SE3) -> CircularPath:
         """Create the arc from one pose through a point to another pose.
 
         Raises:
@@ -68,7 +68,7 @@ class Arc:
         return cls(link, start, end, center, axis, _angle(first - center, last - center, axis))
 
     @classmethod
-    def about(cls, link: str, start: SE3, center: FloatArray, end: SE3) -> Arc:
+    def about(cls, link: str, start: SE3, center: FloatArray, end: SE3) -> CircularPath:
         """Create the shorter arc from one pose about a centre to another.
 
         Raises:

@@ -11,9 +11,9 @@ from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.planning.cartesian.circular_path import Arc
+from harness.planning.cartesian.circular_path import CircularPath
 from harness.planning.cartesian.line_goals import end_pose
-from harness.planning.cartesian.linear_path import Line
+from harness.planning.cartesian.linear_path import LinearPath
 from harness.planning.cartesian.link_timing import (
     CARTESIAN_TOLERANCE,
     LinkRates,
@@ -50,7 +50,7 @@ class LinkMotions:
     def linear(self, goal: Goal) -> MotionPlan:
         """Pilz's LIN."""
         target = end_pose(self.kinematics, self.task, self.task.start, goal)
-        line = Line.between(target.link, self.pose(self.task.start, target.link), target.pose)
+        line = LinearPath.between(target.link, self.pose(self.task.start, target.link), target.pose)
         return self._to_end(line, target, "LIN", Details())
 
     def circular(self, goal: Goal, point: ArcPoint) -> MotionPlan:
@@ -64,7 +64,7 @@ class LinkMotions:
         """Task Constructor's MoveRelative: as far as goes between two distances."""
         task, (least, most) = self.task, distances
         twist = np.asarray(twist, dtype=float)
-        line = Line(link, self.pose(task.start, link), most * twist[:3], most * twist[3:])
+        line = LinearPath(link, self.pose(task.start, link), most * twist[:3], most * twist[3:])
         step = RELATIVE_STEP if least < most else STEP_LENGTH
         traced = trace(line, task.checker, task.start, step)
         reached = traced.share * most
@@ -206,13 +206,13 @@ class LinkMotions:
         }
 
 
-def arc_to(target: PoseGoal, start: SE3, point: ArcPoint) -> Arc:
+def arc_to(target: PoseGoal, start: SE3, point: ArcPoint) -> CircularPath:
     """The arc from a pose to a target.
 
     Raises:
         PlanningFailed: INVALID_MOTION_PLAN, when there is no such circle.
     """
-    make = Arc.through if point.kind == "interim" else Arc.about
+    make = CircularPath.through if point.kind == "interim" else CircularPath.about
     return make(target.link, start, point.position, target.pose)
 
 

@@ -12,7 +12,7 @@ from harness.core.types import FloatArray
 from harness.planning.cartesian.leg import Leg
 from harness.planning.cartesian.leg_run import runs_of, time_runs
 from harness.planning.cartesian.line_goals import end_pose
-from harness.planning.cartesian.linear_path import Line
+from harness.planning.cartesian.linear_path import LinearPath
 from harness.planning.cartesian.link_motion import LinkMotions, arc_to
 from harness.planning.cartesian.link_timing import LinkRates
 from harness.planning.goals.goals import find_goals
@@ -69,7 +69,7 @@ def _leg(motions: LinkMotions, item: SequenceItem, start: FloatArray) -> Leg:
     target = end_pose(kinematics, task, start, item.goal)
     now = motions.pose(start, target.link)
     if item.point is None:
-        path = Line.between(target.link, now, target.pose)
+        path = LinearPath.between(target.link, now, target.pose)
     else:
         path = arc_to(target, now, item.point)
     motions.solutions(start, target)

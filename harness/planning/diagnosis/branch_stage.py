@@ -7,8 +7,14 @@ from dataclasses import replace
 import numpy as np
 
 from harness.planning.collision.checker import touch_records
-from harness.planning.collision.wording import count, joint_value, length, padding_advice, touches
-from harness.planning.diagnosis.stage_request import Finding, StageRequest, nearest_state
+from harness.planning.collision.wording import (
+    counted_noun,
+    joint_value,
+    length_text,
+    padding_advice,
+    touches,
+)
+from harness.planning.diagnosis.stage_request import StageFinding, StageRequest, nearest_state
 from harness.planning.goals.goal_study import GoalStudy
 from harness.planning.ik.nearest_pose import SHIFTS, NearestPose, nearest_free_shift
 from harness.planning.ik.numeric import LinkGoal
@@ -24,12 +30,12 @@ _METHODS = {
 }
 
 
-def branches_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> Finding:
+def branches_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> StageFinding:
     """The result of every branch: free, in collision, or beyond a joint limit, with the numbers."""
     answer = study.answer
     kind = f"{_METHODS[answer.method]}, solved for the {answer.task}"
     if not answer.solutions and not answer.outside_limits:
-        return Finding(Stage("inverse kinematics", "not reached", f"no branch ({kind})"))
+        return StageFinding(Stage("inverse kinematics", "not reached", f"no branch ({kind})"))
     free = sum(not branch.touches for branch in study.branches)
     ruled_out = {
         "in collision": len(study.branches) - free,
@@ -37,18 +43,18 @@ def branches_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) ->
         "more distant ones not checked": study.unchecked,
     }
     counted = [f"{free} free", *(f"{number} {why}" for why, number in ruled_out.items() if number)]
-    total = count(len(answer.solutions) + len(answer.outside_limits), "branch")
+    total = counted_noun(len(answer.solutions) + len(answer.outside_limits), "branch")
     text = f"{total} ({kind}): {', '.join(counted)}"
     details = _branch_lines(request, study)
     if free:
-        return Finding(Stage("inverse kinematics", "passed", text, "", details))
+        return StageFinding(Stage("inverse kinematics", "passed", text, "", details))
     if not study.branches:
         stage = Stage("inverse kinematics", "failed", text, "NO_IK_SOLUTION", details)
-        return Finding(
+        return StageFinding(
             stage, None, "turn or move the goal, so that every joint is inside its limits"
         )
     stage = Stage("inverse kinematics", "failed", text, "GOAL_IN_COLLISION", details)
-    return Finding(stage, *_in_collision(request, goal, study))
+    return StageFinding(stage, *_in_collision(request, goal, study))
 
 
 def _branch_lines(request: StageRequest, study: GoalStudy) -> tuple[str, ...]:
@@ -98,7 +104,7 @@ def _in_collision(
         lambda positions: not request.touches(positions),
     )
     if found is None:
-        farthest = length(SHIFTS[-1])
+        farthest = length_text(SHIFTS[-1])
         return (
             state,
             f"no position within {farthest} along a world axis is free: move the goal farther; "
@@ -111,5 +117,6 @@ def _in_collision(
     sign = "+" if shift[axis] > 0 else "-"
     return (
         replace(state, nearest_free=free),
-        f"moved {length(way)} along {sign}{'xyz'[axis]} of the world the goal is free; {otherwise}",
+        f"moved {length_text(way)} along {sign}{'xyz'[axis]} of the world the goal is free;"
+        f" {otherwise}",
     )

@@ -16,7 +16,7 @@ from harness.planning.collision.checker import MotionChecker
 from harness.planning.collision.scene import CoalScene
 from harness.planning.diagnosis.goal_stages import goal_findings, target_positions
 from harness.planning.diagnosis.motion_stages import path_finding, start_finding, timing_finding
-from harness.planning.diagnosis.stage_request import Finding, StageRequest
+from harness.planning.diagnosis.stage_request import StageFinding, StageRequest
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports import Goal, JointGoal, PlanningOptions, PoseGoal, PositionGoal
@@ -67,7 +67,7 @@ def explanation_of(request: StageRequest) -> Explanation:
     and `advice` is what to do; both belong to the first stage that has them. A start that no
     motion can leave comes before the goal: no other goal helps.
     """
-    findings: list[Finding] = goal_findings(request)
+    findings: list[StageFinding] = goal_findings(request)
     start = start_finding(request)
     findings += [start, path_finding(request, target_positions(request))]
     findings.append(timing_finding(request))

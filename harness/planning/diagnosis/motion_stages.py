@@ -6,8 +6,8 @@ import numpy as np
 
 from harness.core.types import FloatArray
 from harness.planning.collision.checker import touch_records
-from harness.planning.collision.wording import count, padding_advice, touch, touches, way_out
-from harness.planning.diagnosis.stage_request import Finding, StageRequest
+from harness.planning.collision.wording import counted_noun, padding_advice, touch, touches, way_out
+from harness.planning.diagnosis.stage_request import StageFinding, StageRequest
 from harness.planning.verification.verify import FINAL_RESOLUTION
 from harness.recording.explanation import NearestState, Stage
 from harness.recording.goal_failures import CollisionFailure
@@ -39,24 +39,24 @@ _TIMING_DEFECTS = (
 )
 
 
-def start_finding(request: StageRequest) -> Finding:
+def start_finding(request: StageRequest) -> StageFinding:
     """Whether the motion can begin at the robot's current state."""
     failure = request.failure
     if failure.code == "START_STATE_INVALID":
         stage = Stage("start state", "failed", failure.message, failure.code)
-        return Finding(stage, advice="start inside the limits: `robot: {start_state: ...}`")
+        return StageFinding(stage, advice="start inside the limits: `robot: {start_state: ...}`")
     found = request.scene.distances(request.start)
     if request.checker is not None:
         to_objects = [item for item, pair in found if pair.keeps_padding]
         nearest = (to_objects or [item for item, _ in found])[:1]
         clause = f"; nearest are {touch(nearest[0])}" if nearest else ""
-        return Finding(Stage("start state", "passed", f"free{clause}"))
+        return StageFinding(Stage("start state", "passed", f"free{clause}"))
     deep = [item for item, _ in found if item.distance < 0]
     first, second = deep[0].first, deep[0].second
     stage = Stage(
         "start state",
         "failed",
-        f"in collision before anything moves: {count(deep, 'pair')}",
+        f"in collision before anything moves: {counted_noun(deep, 'pair')}",
         "START_STATE_IN_COLLISION",
         tuple(map(touch, deep)),
     )
@@ -70,29 +70,29 @@ def start_finding(request: StageRequest) -> Finding:
         "where the contact is intended, plan inside `allow_collisions` with the pair "
         f"[{first}, {second}]"
     )
-    return Finding(stage, state, advice)
+    return StageFinding(stage, state, advice)
 
 
-def path_finding(request: StageRequest, target: FloatArray | None) -> Finding:
+def path_finding(request: StageRequest, target: FloatArray | None) -> StageFinding:
     """What blocks the path; `target` are the group positions of the first free solution."""
     failure = request.failure
     if failure.code.startswith("START_STATE"):
-        return Finding(Stage("path", "not reached", "there is no start to go from"))
+        return StageFinding(Stage("path", "not reached", "there is no start to go from"))
     if is_timing(request):
-        return Finding(Stage("path", "passed", "found"))
+        return StageFinding(Stage("path", "passed", "found"))
     traced = failure.details.find(TraceFailure)
     if failure.code in _GOAL_CODES and (traced is None or traced.free_share is None):
-        return Finding(Stage("path", "not reached", "there is no goal to go to"))
+        return StageFinding(Stage("path", "not reached", "there is no goal to go to"))
     details, nearest = _blocked(request, target)
     stage = Stage("path", "failed", failure.message, failure.code, tuple(details))
-    return Finding(stage, nearest, _path_advice(request, nearest))
+    return StageFinding(stage, nearest, _path_advice(request, nearest))
 
 
-def timing_finding(request: StageRequest) -> Finding:
+def timing_finding(request: StageRequest) -> StageFinding:
     """Whether a path can be timed under the limits."""
     failure = request.failure
     if not is_timing(request):
-        return Finding(Stage("time parameterisation", "not reached", "there is no path"))
+        return StageFinding(Stage("time parameterisation", "not reached", "there is no path"))
     advice = "lower the scaling factors in `planning`"
     overload = failure.details.find(OverloadFailure)
     too_short = failure.details.find(DurationFailure)
@@ -101,7 +101,7 @@ def timing_finding(request: StageRequest) -> Finding:
     elif too_short is not None:
         advice = f"give it `duration: {too_short.shortest_duration:.3f}` or more"
     stage = Stage("time parameterisation", "failed", failure.message, failure.code)
-    return Finding(stage, advice=advice)
+    return StageFinding(stage, advice=advice)
 
 
 def _overload_advice(overload: OverloadFailure) -> str:
@@ -159,7 +159,7 @@ def _blocked(
             "the states reached from the start and the goal"
         )
     if search is not None:
-        searches = count(options.attempts, "search")
+        searches = counted_noun(options.attempts, "search")
         details.append(
             f"budget: {search.state_checks} state checks used in {searches} of "
             f"{options.max_state_checks}"

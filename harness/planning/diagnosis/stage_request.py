@@ -20,7 +20,7 @@ from harness.recording.explanation import NearestState, Stage
 
 
 @dataclass(frozen=True, eq=False)
-class Finding:
+class StageFinding:
     """A stage's result, with additional data for the report.
 
     Attributes:

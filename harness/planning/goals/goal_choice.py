@@ -14,7 +14,7 @@ from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.planning.collision.wording import count
+from harness.planning.collision.wording import counted_noun
 from harness.planning.goals.goals import GoalCandidates, find_goals
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.task import PlanningTask
@@ -119,8 +119,8 @@ def _holding(found: GoalCandidates, held: HeldConstraints) -> GoalCandidates:
     why = "" if broken is None else f": {broken.what}"
     raise PlanningFailed(
         "GOAL_VIOLATES_PATH_CONSTRAINTS",
-        f"the goal has {count(found.positions, 'free solution')}, but none satisfies the path "
-        f"constraints{why}",
+        f"the goal has {counted_noun(found.positions, 'free solution')}, but none satisfies the "
+        f"path constraints{why}",
         *found.explanation,
         *(() if broken is None else (broken.record,)),
     )

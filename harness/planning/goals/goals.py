@@ -11,7 +11,14 @@ from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.planning.collision.checker import MotionChecker, touch_records
-from harness.planning.collision.wording import angle, count, joint_value, length, point, touches
+from harness.planning.collision.wording import (
+    angle,
+    counted_noun,
+    joint_value,
+    length_text,
+    point,
+    touches,
+)
 from harness.planning.goals.goal_study import GoalStudy, broken_limits, limit_sentence, study_goal
 from harness.planning.ik.answer import LimitedSolution, MissedSolution
 from harness.planning.ik.kinematics import PinocchioKinematics
@@ -63,7 +70,7 @@ def find_goals(
         raise _no_solution(checker.space, study, start, goal, seed)
     free = tuple(branch.positions for branch in study.branches if not branch.touches)
     if not free:
-        ways = count(study.branches, "way")
+        ways = counted_noun(study.branches, "way")
         each = "that one" if len(study.branches) == 1 else "each of them"
         raise PlanningFailed(
             "GOAL_IN_COLLISION",
@@ -83,7 +90,7 @@ def _joint_goal(checker: MotionChecker, goal: JointGoal) -> GoalCandidates:
         raise PlanningFailed(
             "GOAL_STATE_INVALID",
             limit_sentence(space, broken[0])
-            + (f"; {count(more, 'more joint')} outside limits" if more else ""),
+            + (f"; {counted_noun(more, 'more joint')} outside limits" if more else ""),
             LimitFailure(broken),
         )
     positions = np.clip(positions, space.lower, space.upper)
@@ -120,10 +127,10 @@ def _no_solution(
     if too_far:
         message = (
             f"{goal.link} cannot reach {point(target)}: the nearest point it reaches, "
-            f"{point(nearest_point.pose.translation)}, is {length(too_far)} away"
+            f"{point(nearest_point.pose.translation)}, is {length_text(too_far)} away"
         )
     elif study.answer.outside_limits and nearest.shift + nearest.turn > _REACHED:
-        ways = count(study.answer.outside_limits, "way")
+        ways = counted_noun(study.answer.outside_limits, "way")
         message = (
             f"{goal.link} would reach {point(target)} in {ways}, but only beyond the joint limits: "
             f"{_nearest_limit(space, study.answer.outside_limits)}"
@@ -132,7 +139,7 @@ def _no_solution(
         what = "orientation" if isinstance(goal, PoseGoal) else "pitch"
         message = (
             f"{goal.link} reaches {point(target)}, but not with the requested {what}: the nearest "
-            f"pose is {length(nearest.shift)} and {angle(nearest.turn)} away"
+            f"pose is {length_text(nearest.shift)} and {angle(nearest.turn)} away"
         )
     return PlanningFailed("NO_IK_SOLUTION", message, study.record, failure)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.core.types import FloatArray
 from harness.recording.explanation import recorded_explanation
-from harness.recording.link_poses import link_poses
+from harness.recording.link_poses import replayed_link_poses
 from harness.recording.run import Floats, Run, StepRecord
 from harness.reporting.html.packing import Packer
 
@@ -74,7 +74,7 @@ def _tool_poses(
     start = min(step.start_index, len(run.signals.times) - 1)
     rows = np.tile(run.signals.joint_positions[start], (len(positions), 1))
     rows[:, [columns[name] for name in names]] = positions
-    poses = link_poses(run.robot, rows, [run.robot.tcp_link]).get(run.robot.tcp_link)
+    poses = replayed_link_poses(run.robot, rows, [run.robot.tcp_link]).get(run.robot.tcp_link)
     return None if poses is None else np.broadcast_to(poses, (len(rows), 7))
 
 
@@ -85,7 +85,7 @@ def _nearest(run: Run, step: StepRecord) -> dict[str, Any] | None:
     if nearest is None or not set(names) <= set(nearest.joint_positions):
         return None
     row = np.array([[nearest.joint_positions[name] for name in names]])
-    poses = link_poses(run.robot, row, [*run.robot.link_visuals, run.robot.tcp_link])
+    poses = replayed_link_poses(run.robot, row, [*run.robot.link_visuals, run.robot.tcp_link])
     return {
         "shows": nearest.shows,
         "bodies": {name: [round(float(x), 6) for x in pose[0]] for name, pose in poses.items()},

@@ -19,7 +19,7 @@ from harness.core.geometry import (
     bounding_radius,
 )
 from harness.core.types import FloatArray, IntArray
-from harness.recording.link_poses import link_poses
+from harness.recording.link_poses import replayed_link_poses
 from harness.recording.run import ObjectRecord, Run
 from harness.reporting.html.meshes import pack_mesh
 from harness.reporting.html.packing import Packer, differences
@@ -50,7 +50,7 @@ def frame_samples(times: FloatArray) -> tuple[float, IntArray]:
 def pack_scene(run: Run, packer: Packer) -> dict[str, Any]:
     """Bodies, meshes, frames and what the first view holds."""
     step, samples = frame_samples(run.signals.times)
-    poses = link_poses(run.robot, run.signals.joint_positions[samples])
+    poses = replayed_link_poses(run.robot, run.signals.joint_positions[samples])
     meshes = _mesh_parts(run)
     bodies: list[dict[str, Any]] = []
     columns: list[FloatArray] = []

@@ -36,7 +36,7 @@ class NoGripperError(ValueError):
 
 
 @dataclass(frozen=True, eq=False)
-class OwnGripper:
+class IntegratedGripper:
     """A recognised gripper.
 
     Attributes:
@@ -54,7 +54,7 @@ class OwnGripper:
     notes: tuple[str, ...]
 
 
-def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> OwnGripper:
+def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> IntegratedGripper:
     """The gripper of a hand's group.
 
     The two sides are the finger links that move towards each other, or one that moves towards the
@@ -101,7 +101,7 @@ def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> OwnGripper:
         f"gripper '{group.name}': {joint.name} moves {pads[0]} and {pads[1]}, up to "
         f"{1000 * gaps.max():.0f} mm apart"
     )
-    return OwnGripper(facts, urdf, hand.center(pads, closed), tuple(pairs), tuple(notes))
+    return IntegratedGripper(facts, urdf, hand.center(pads, closed), tuple(pairs), tuple(notes))
 
 
 def _one_joint(urdf: Urdf, group: PlanningGroup) -> tuple[Urdf, Joint, list[str]]:

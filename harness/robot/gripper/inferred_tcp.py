@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.core.spatial import SE3
 from harness.robot.description import Joint, Link, PlanningGroup
-from harness.robot.gripper.inferred_gripper import OwnGripper
+from harness.robot.gripper.inferred_gripper import IntegratedGripper
 from harness.robot.srdf.default_pairs import urdf_poses
 from harness.robot.srdf.srdf import Srdf, SrdfGroup
 from harness.robot.tree import carriers
@@ -18,8 +18,13 @@ NEAR = 0.03
 """Largest distance of an existing TCP frame from the midpoint between the pads [m]."""
 
 
-def with_own_gripper(
-    own: OwnGripper, urdf: Urdf, srdf: Srdf, arm: PlanningGroup, tip: str, tcp_link: str | None
+def with_integrated_gripper(
+    own: IntegratedGripper,
+    urdf: Urdf,
+    srdf: Srdf,
+    arm: PlanningGroup,
+    tip: str,
+    tcp_link: str | None,
 ) -> tuple[Urdf, Srdf, str]:
     """The robot with its gripper coupled, and the link that is its TCP.
 
