@@ -30,7 +30,7 @@ class Trial:
     """The result of one planning attempt.
 
     Attributes:
-        planner: The `planner_id` of the trial.
+        planner: The planner's name, as `with_planner` takes it.
         seed: Seed of the scenario; `harness run --seed` plans the same motion.
         error_code: Code of the failure; empty when planning succeeded.
         state_checks: States checked for collision, including shortening and verification.
@@ -68,6 +68,7 @@ def try_plan(
     start: FloatArray,
     goal: Goal | AnyGoal,
     options: PlanningOptions,
+    name: str,
     seed: int,
 ) -> Trial:
     """Plan once, and measure the result.
@@ -79,6 +80,7 @@ def try_plan(
         start: Joint positions in description order.
         goal: Goal of the motion.
         options: Options with the planner and the step's seed.
+        name: Name of the planner, for the record.
         seed: Seed of the scenario, for the record.
     """
     begin = time.process_time()
@@ -87,13 +89,13 @@ def try_plan(
     except PlanningFailed as failure:
         search = failure.details.find(SearchFailure)
         checks = 0 if search is None else search.state_checks
-        return Trial(options.planner_id, seed, failure.code, checks)
+        return Trial(name, seed, failure.code, checks)
     spent = time.process_time() - begin
     path = even(plan.trajectory.positions)
     nearest = _clearances(scene, group, start, path)
     statistics: Mapping[str, Any] = plan.statistics
     return Trial(
-        options.planner_id,
+        name,
         seed,
         "",
         int(statistics["state_checks"]),

@@ -17,12 +17,13 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    from harness.planning.search.planner_names import planner_names, resolve_planner_id
+    from harness.planning.search.find_pipeline import planner_names, with_planner
+    from harness.ports import PlanningOptions
 
     planners = arguments.planners or list(planner_names())
     for planner in planners:
         try:
-            resolve_planner_id(planner)
+            with_planner(PlanningOptions(), planner)
         except ValueError as error:
             raise UsageError(f"--planners: {error}") from error
     files = discover(arguments.paths)

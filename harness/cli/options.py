@@ -20,7 +20,18 @@ from harness.cli.robot_options import ROBOT, add_robot_options
 IMPORTS = ("sdf", "scene", "srdf")
 FORMATS = ("full", "short", "json", "github")
 BAGS = ("mcap", "sqlite3")
-LISTS = ("robots", "worlds", "scenarios", "steps", "expectations", "planners")
+LISTS = (
+    "robots",
+    "worlds",
+    "scenarios",
+    "steps",
+    "expectations",
+    "planners",
+    "pipelines",
+    "ik-solvers",
+    "world-formats",
+    "reporters",
+)
 
 
 def _format_options(command: argparse.ArgumentParser) -> None:
@@ -100,6 +111,14 @@ def for_run(run: argparse.ArgumentParser) -> None:
     run.add_argument("--no-page", action="store_true", help="write the report without its page")
     run.add_argument("--bag", action="store_true", help="write a rosbag2 into the report too")
     run.add_argument(
+        "--reporter",
+        metavar="NAME",
+        dest="reporters",
+        action="append",
+        default=[],
+        help="let a reporter of `harness list reporters` write into the report too; repeatable",
+    )
+    run.add_argument(
         "--history",
         metavar="DIR",
         default=None,
@@ -156,7 +175,7 @@ def for_bench(bench: argparse.ArgumentParser) -> None:
         metavar="A,B",
         type=names_of,
         default=[],
-        help="planner ids to compare (default: all that `harness list planners` names)",
+        help="planners and pipelines to compare (default: all that `harness list planners` names)",
     )
     bench.add_argument(
         "--seeds",
@@ -266,7 +285,13 @@ def for_import(importing: argparse.ArgumentParser) -> None:
 def for_ik_test(test: argparse.ArgumentParser) -> None:
     """Of `harness ik-test`."""
     add = test.add_argument
-    add("solver", metavar="SOLVER", help="module:function or file.py:function; `own` is built in")
+    add(
+        "solver",
+        metavar="SOLVER",
+        help="module:function, file.py:function, a name of `harness list ik-solvers`, or `own` for"
+        " the robot's own solver",
+    )
+    _plugin_option(test)
     add("--robot", metavar="ROBOT", required=True, help=ROBOT)
     add_robot_options(test)
     add("--link", metavar="LINK", default="", help="that is placed (default: the TCP)")

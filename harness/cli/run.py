@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from harness.cli.output import complain, guarded, only_json_on_stdout, output, say, say_text
+from harness.core.registry import registry
 from harness.suite.cases import progress_text
 from harness.suite.discovery import UsageError, discover
 from harness.suite.leftovers import clean_report_folder
@@ -80,6 +81,11 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
 
     if arguments.history and not Path(arguments.history).is_dir():
         raise UsageError(f"--history '{arguments.history}' is no folder")
+    for name in arguments.reporters:
+        try:
+            registry("reporter").find(name)
+        except LookupError as error:
+            raise UsageError(f"--reporter: {error.args[0]}") from None
     root = None if arguments.no_report else Path(arguments.report_dir)
     if root is not None:
         clean_report_folder(root)
@@ -95,6 +101,7 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
         page=not arguments.no_page,
         bag=arguments.bag,
         shard=shard,
+        reporters=arguments.reporters,
     )
     plan = planned_cases(files, request)
     if shard is not None and root is not None:
@@ -259,6 +266,8 @@ def _command(arguments: argparse.Namespace, job: RunRequest) -> str:
         words += ["--samples", str(arguments.samples)]
     if arguments.bag:
         words.append("--bag")
+    for name in arguments.reporters:
+        words += ["--reporter", name]
     if arguments.report_dir != "reports":
         words += ["--report-dir", arguments.report_dir]
     return shlex.join(words)

@@ -302,9 +302,9 @@ class _Compiler:
             sources.scenario.planning, planning, seed, sources.checks_per_second, self._planner_name
         )
 
-    def _planner_name(self, name: str) -> str:
+    def _planner_name(self, pipeline: str, name: str) -> str:
         try:
-            return self.sources.check_planner(name, {})
+            return self.sources.check_planner(pipeline, name, {})
         except ValueError:  # reported where it is said
             return name
 

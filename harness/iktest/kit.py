@@ -34,8 +34,8 @@ class IkTest:
     """How a function is tested.
 
     Attributes:
-        solver: `module:function`, `file.py:function` or `own`, called in a process of its own
-            that is ended when it hangs; or a function, called in this process.
+        solver: `module:function`, `file.py:function`, the name of a solver or `own`, called in a
+            process of its own that is ended when it hangs; or a function, called in this process.
         robot: A bundled name, a folder, a file; or with more words about it.
         link: The link that is placed; by default the TCP.
         branches: The function claims to answer every way to reach a target.

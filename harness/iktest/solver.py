@@ -13,7 +13,6 @@ from typing import Any, Protocol
 
 from harness.iktest.calls import CallOutcome, call
 from harness.iktest.contract import UnusableSolver, Value, parameter_words
-from harness.iktest.find_function import OWN
 from harness.iktest.worker import serve
 from harness.robot_tools.robot_source import RobotSource
 from harness.suite.warm import Ended, WarmServer
@@ -70,7 +69,7 @@ class Isolated:
         """Start the process.
 
         Args:
-            name: The name as `find_function` takes it, or `own`.
+            name: The name as `find_function` takes it, that of a registered solver, or `own`.
             robot: The arm to be solved.
             tip: The link that is placed; empty for the TCP.
             dof: The number of the arm's joints.
@@ -91,7 +90,7 @@ class Isolated:
         self._socket.settimeout(POLL_SECONDS)
         modules = ["harness.iktest.worker"]
         self._server = WarmServer(
-            [*modules, "harness.robot_tools.builtin_ik"] if name == OWN else modules
+            [*modules, "harness.robot_tools.builtin_ik"] if ":" not in name else modules
         )
         self._connection: Connection | None = None
         try:

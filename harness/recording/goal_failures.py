@@ -65,13 +65,33 @@ class LimitedIkSolution(Detail):
 
 
 @dataclass(frozen=True)
+class RefusedIkSolution(Detail):
+    """A solution of a third-party solver that misses the goal by forward kinematics."""
+
+    joint_positions: Floats
+    residual: IkResidual
+
+
+@dataclass(frozen=True)
 class IkStudy(Detail):
-    """Every solution of inverse kinematics for a goal, and what rules it out."""
+    """Every solution of inverse kinematics for a goal, and what rules it out.
+
+    Attributes:
+        refused_solutions: Solutions of a third-party solver, least error first.
+    """
 
     ik_method: str
     ik_task: str
     ik_solutions: tuple[IkSolution, ...]
     outside_limits: tuple[LimitedIkSolution, ...]
+    refused_solutions: tuple[RefusedIkSolution, ...] | None = None
+
+
+@dataclass(frozen=True)
+class SolverFailure(Detail):
+    """The third-party inverse kinematics solver that fails."""
+
+    ik_solver: str
 
 
 @dataclass(frozen=True)

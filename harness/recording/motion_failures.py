@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from harness.core.details import Detail
-from harness.recording.goal_failures import TouchRecord
+from harness.recording.goal_failures import CollisionFailure, TouchRecord
 from harness.recording.run import Floats
 
 BrokenRule = Literal[
@@ -106,6 +106,25 @@ class SearchFailure(Detail):
     state_checks: int
     gap: float | None = None
     straight_way: BlockedWay | None = None
+
+
+@dataclass(frozen=True)
+class PipelineFailure(Detail):
+    """The third-party planning pipeline whose search or path fails."""
+
+    planner: str
+
+    @property
+    def advice(self) -> str:
+        """What the user can do about a pipeline that does not keep to its contract."""
+        return f"correct the plug-in `{self.planner}`, or plan without `pipeline`"
+
+
+@dataclass(frozen=True)
+class PathCollision(CollisionFailure):
+    """Bodies that are too near on a path, and the first positions of the group where they are."""
+
+    joint_positions: Floats
 
 
 @dataclass(frozen=True)

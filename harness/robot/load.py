@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from harness.core.errors import RobotOptionError
+from harness.core.registry import broken_plugins
 from harness.core.resources import data_folder
 from harness.language.files.xml_file import LARGEST_FILE, read_xml
 from harness.language.files.yaml_file import read_text
@@ -26,6 +27,7 @@ from harness.robot.import_robot import read_robot
 from harness.robot.imported_part import names_integrated_gripper
 from harness.robot.options import with_moveit_files, with_options
 from harness.robot.packages import PackagePath
+from harness.robot.robot_collection import collected_robots
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml, robot_yaml_error
 from harness.robot.srdf.srdf import parse_srdf
 from harness.robot.urdf.urdf import parse_urdf
@@ -46,8 +48,14 @@ def _catalogue() -> dict[str, tuple[Path, RobotYaml]]:
 
 
 def robot_names() -> tuple[str, ...]:
-    """Names of the bundled robots that `model` accepts, grippers included."""
-    return tuple(_catalogue())
+    """Names of the robots that `model` accepts, grippers included: bundled, then installed ones."""
+    return tuple(_every_model())
+
+
+def _every_model() -> dict[str, tuple[Path, RobotYaml]]:
+    """Bundled models, then those of installed collections, which cannot replace a bundled one."""
+    bundled = _catalogue()
+    return {**bundled, **{k: v for k, v in collected_robots().items() if k not in bundled}}
 
 
 def read_bundled(names: Collection[str]) -> None:
@@ -62,8 +70,8 @@ def read_bundled(names: Collection[str]) -> None:
 
 
 def gripper_names() -> tuple[str, ...]:
-    """Names of the bundled grippers that `gripper` accepts."""
-    return tuple(name for name, (_, facts) in _catalogue().items() if facts.kind == "gripper")
+    """Names of the grippers that `gripper` accepts: bundled, then installed ones."""
+    return tuple(name for name, (_, facts) in _every_model().items() if facts.kind == "gripper")
 
 
 def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
@@ -129,13 +137,17 @@ def _part(name: str, key: str, args: Mapping[str, Any], base_dir: Path) -> Robot
     folder = base_dir / name
     if (folder / "robot.yaml").is_file():
         return _read(folder, read_robot_yaml(folder), "", args)
+    if name in collected_robots():
+        folder, facts = collected_robots()[name]
+        return _read(folder, facts, name if facts.variants else "", args)
     names = gripper_names() if key == "gripper" else robot_names()
     hint = ""
     if "/" in name or name.startswith(".") or folder.is_dir():
         hint = f"{folder} has no robot.yaml; "
     elif near := difflib.get_close_matches(name.lower(), names, 1):
         hint = f"did you mean '{near[0]}'? "
-    raise RobotOptionError(key, f"'{name}' is not known; {hint}{_known(names)}")
+    known = "; ".join([_known(names), *broken_plugins()])
+    raise RobotOptionError(key, f"'{name}' is not known; {hint}{known}")
 
 
 def _known(names: tuple[str, ...]) -> str:

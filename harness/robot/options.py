@@ -18,7 +18,7 @@ from harness.robot.urdf.write import write_urdf
 
 
 def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescription:
-    """The robot with a scenario's joint limits, named states and start state.
+    """The robot with a scenario's joint limits, named states, start state and solver.
 
     Raises:
         RobotError: An option refers to an unknown name, or exceeds the robot's limits.
@@ -43,6 +43,8 @@ def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescrip
     if spec.start_state is not None:
         start = {**description.start_state, **_start(description, spec.start_state)}
         description = replace(description, start_state=start)
+    if spec.ik_solver is not None:
+        description = replace(description, ik_solver=spec.ik_solver)
     for name, position in description.start_state.items():
         _within(description, name, position, "start_state")
     return description

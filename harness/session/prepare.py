@@ -15,10 +15,10 @@ from harness.core.errors import Problem, RobotError, RobotOptionError, SpecError
 from harness.core.geometry import Mesh
 from harness.engine.compile import Sources, compile_scenario
 from harness.language.reading.load import (
-    SDF_SUFFIXES,
     LoadedScenario,
     Reading,
     file_path,
+    is_foreign_world,
     load_world,
     read_scenario,
     world_path,
@@ -28,12 +28,13 @@ from harness.language.scenario import RobotSpec
 from harness.observation.findings import about_file
 from harness.planning.backend import make_planning
 from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
-from harness.planning.search.planner_names import check_planner
+from harness.planning.search.find_pipeline import check_planner
 from harness.ports import Kinematics, MotionPlanner, PlanningScene
 from harness.recording.run import Finding
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
 from harness.world.imported import ImportedWorld
+from harness.world.world_format import read_foreign_world
 
 ROBOT: frozenset[Prerequisite] = frozenset({"robot"})
 WORLD: frozenset[Prerequisite] = frozenset({"world"})
@@ -176,11 +177,11 @@ def _world(loaded: LoadedScenario) -> ImportedWorld:
     """The world; one that cannot be found is a mistake of the scenario's line."""
     choice, folder = loaded.scenario.world, loaded.path.parent
     try:
-        if Path(choice.name).suffix.lower() in SDF_SUFFIXES:
-            from harness.world.sdf.world import load_sdf  # few scenarios have such a world
-
+        if is_foreign_world(choice.name):
             searched = [file_path(each, folder) for each in choice.model_path]
-            return load_sdf(world_path(choice.name, folder), searched)
+            foreign = read_foreign_world(world_path(choice.name, folder), searched)
+            if foreign is not None:
+                return foreign
         world = load_world(choice.name, folder)
     except SpecError as error:
         raise SpecError(

@@ -7,6 +7,7 @@ from pathlib import Path
 from harness.core.activity import Activity
 from harness.recording.run import Run
 from harness.recording.store import StoredRun, write_run
+from harness.reporting.reporter import write_with
 from harness.session.pictures import FOLDER, draw_failures
 from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest
@@ -15,27 +16,19 @@ from harness.session.run_request import RunRequest
 def write_report(
     request: RunRequest, folder: Path, prepared: Prepared, stored: StoredRun, activity: Activity
 ) -> tuple[str, ...]:
-    """Write a judged run with its pictures, page and bag, as far as they are requested.
+    """Write a judged run with its pictures, page, bag and other reports, as they are requested.
 
     Returns:
         Notes for the user, such as that no pictures could be drawn.
 
     Raises:
-        HarnessError: The folder cannot be written.
+        HarnessError: The folder cannot be written, or a reporter fails.
     """
 
     def add(target: Path) -> tuple[str, ...]:
         notes = _draw_stills(prepared, stored.run, target, activity) if request.stills else ()
-        if request.page:
-            activity("writing the page", 0, 0)
-            from harness.reporting.html.write import write_page
-
-            write_page(target, stored)
-        if request.bag:
-            activity("writing the bag", 0, 0)
-            from harness.reporting.rosbag.write import BAG, write_bag
-
-            write_bag(target / BAG, stored)
+        reporters = (*["html"] * request.page, *["rosbag"] * request.bag, *request.reporters)
+        write_with(reporters, target, stored, activity)
         return notes
 
     return write_run(folder, stored, extra=add)

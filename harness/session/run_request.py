@@ -47,6 +47,7 @@ class RunRequest:
         stills: Whether the report gets a picture of every step.
         page: Whether the report gets its page.
         bag: Whether the report gets a rosbag2.
+        reporters: Names of other reporters that write into the report.
         case: Name of the case; empty when the file has one case.
         only_failed: Whether a report is written only where the case does not pass.
         text: Content that is read in place of the file's; None reads the file.
@@ -60,6 +61,7 @@ class RunRequest:
     stills: bool = True
     page: bool = True
     bag: bool = False
+    reporters: tuple[str, ...] = ()
     case: str = ""
     only_failed: bool = False
     text: str | None = None

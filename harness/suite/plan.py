@@ -34,6 +34,7 @@ class SuiteRequest:
         page: Whether to write the page of a report.
         bag: Whether to write a rosbag2.
         shard: The part of the suite to run; None runs the whole suite.
+        reporters: Names of other reporters that write into the reports.
     """
 
     expression: str = ""
@@ -46,6 +47,7 @@ class SuiteRequest:
     page: bool = True
     bag: bool = False
     shard: Shard | None = None
+    reporters: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -164,6 +166,7 @@ def _job(file: Path, case: Case, folder: Path | None, request: SuiteRequest) -> 
         folder / case.name if folder is not None and case.name else folder,
         page=request.page,
         bag=request.bag,
+        reporters=tuple(request.reporters),
         case=case.name,
         only_failed=keep == "failed",
         redraw=fixed.redraw,

@@ -50,7 +50,7 @@ class Repetitions:
         if index % self._repeat == 0 and job.report_dir is not None:
             return job
         kept = Path(self._folder.name) / str(index)
-        return replace(job, report_dir=kept, stills=False, page=False, bag=False)
+        return replace(job, report_dir=kept, stills=False, page=False, bag=False, reporters=())
 
     def take(self, index: int, result: CaseResult) -> CaseResult:
         """Note a run's result, and compare it as soon as the first of its case is there.

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from harness.core.registry import described
 from harness.planning.collision.checker import touch_records
 from harness.planning.collision.wording import (
     counted_noun,
@@ -18,6 +19,7 @@ from harness.planning.diagnosis.stage_request import StageFinding, StageRequest,
 from harness.planning.goals.goal_study import GoalStudy
 from harness.planning.ik.nearest_pose import SHIFTS, NearestPose, nearest_free_shift
 from harness.planning.ik.numeric import LinkGoal
+from harness.ports import IkSolver
 from harness.recording.explanation import FreeShift, NearestState, Stage
 
 MOST_DETAILS = 8
@@ -33,13 +35,20 @@ _METHODS = {
 def branches_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> StageFinding:
     """The result of every branch: free, in collision, or beyond a joint limit, with the numbers."""
     answer = study.answer
-    kind = f"{_METHODS[answer.method]}, solved for the {answer.task}"
+    method = _METHODS.get(answer.method) or described(IkSolver.plugin_kind, answer.method)
+    kind = f"{method}, solved for the {answer.task}"
+    if answer.refused and not answer.solutions:
+        text = f"{counted_noun(answer.refused, 'answer')} refused by forward kinematics ({kind})"
+        advice = f"correct the plug-in `{answer.method}`, or give the robot another `ik_solver`"
+        stage = Stage("inverse kinematics", "failed", text, "NO_IK_SOLUTION")
+        return StageFinding(stage, advice=advice)
     if not answer.solutions and not answer.outside_limits:
         return StageFinding(Stage("inverse kinematics", "not reached", f"no branch ({kind})"))
     free = sum(not branch.touches for branch in study.branches)
     ruled_out = {
         "in collision": len(study.branches) - free,
         "beyond a joint limit": len(answer.outside_limits),
+        "refused by forward kinematics": len(answer.refused),
         "more distant ones not checked": study.unchecked,
     }
     counted = [f"{free} free", *(f"{number} {why}" for why, number in ruled_out.items() if number)]

@@ -22,7 +22,7 @@ from harness.planning.model.robot_model import GroupSpace
 from harness.ports import Goal, JointGoal, PlanningOptions, PoseGoal, PositionGoal
 from harness.recording.explanation import Explanation
 
-_NO_STAGE = ("INVALID_GROUP_NAME", "INVALID_LINK_NAME", "UNRECOGNIZED_GOAL_TYPE")
+_NO_STAGE = ("INVALID_GROUP_NAME", "INVALID_LINK_NAME", "UNRECOGNIZED_GOAL_TYPE", "CRASH")
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")

@@ -14,6 +14,8 @@ from harness.recording.goal_failures import CollisionFailure
 from harness.recording.motion_failures import (
     DurationFailure,
     OverloadFailure,
+    PathCollision,
+    PipelineFailure,
     SearchFailure,
     TraceFailure,
     TrajectoryFailure,
@@ -135,7 +137,7 @@ def _blocked(
     failure, options = request.failure.details, request.options
     details: list[str] = []
     shown: NearestState | None = None
-    traced = failure.find(TraceFailure)
+    traced = failure.find(TraceFailure) or failure.find(PathCollision)
     if traced is not None and traced.joint_positions is not None:
         joints = request.joints(np.array(traced.joint_positions))
         shown = NearestState("as far as it goes", joints, touches=traced.touches or ())
@@ -170,6 +172,9 @@ def _blocked(
 def _path_advice(request: StageRequest, shown: NearestState | None) -> str:
     """Advice for a path that was not found, with the state that is drawn."""
     failure = request.failure
+    plugin = failure.details.find(PipelineFailure)
+    if failure.code == "INVALID_MOTION_PLAN" and plugin is not None:
+        return plugin.advice
     if failure.code == "PLANNING_FAILED" and failure.details.find(SearchFailure) is not None:
         return (
             "raise `max_state_checks` or `planning_attempts` in `planning`, put a `move_to` in "

@@ -80,6 +80,7 @@ class GoalStudy:
             answer.task,
             tuple(branch.record for branch in self.branches),
             tuple(solution.record(name) for solution, name in limited),
+            tuple(solution.record for solution in answer.refused) or None,
         )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from harness.core.details import Details
 from harness.core.errors import PlanningFailed
+from harness.core.registry import described
 from harness.core.types import FloatArray
 from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.collision.wording import (
@@ -24,7 +25,7 @@ from harness.planning.ik.answer import LimitedSolution, MissedSolution
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.nearest_pose import nearest_pose, target_of
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import Goal, JointGoal, PoseGoal, PositionGoal, Touch
+from harness.ports import Goal, IkSolver, JointGoal, PoseGoal, PositionGoal, Touch
 from harness.recording.goal_failures import CollisionFailure, IkFailure, LimitFailure
 
 _REACHED = 1e-6  # [m, rad] the point is reached within this distance
@@ -109,6 +110,8 @@ def _no_solution(
 ) -> PlanningFailed:
     """Explain why no solution reaches the goal, with the nearest pose."""
     missed = study.answer.missed
+    if study.answer.refused:
+        return _all_refused(study, goal)
     if missed:
         return _constraints_violated(space, study, missed[0], goal)
     target = target_of(goal)
@@ -142,6 +145,22 @@ def _no_solution(
             f"pose is {length_text(nearest.shift)} and {angle(nearest.turn)} away"
         )
     return PlanningFailed("NO_IK_SOLUTION", message, study.record, failure)
+
+
+def _all_refused(study: GoalStudy, goal: PoseGoal | PositionGoal) -> PlanningFailed:
+    """The failure of a third-party solver none of whose answers reaches the goal."""
+    refused = study.answer.refused
+    nearest = refused[0]
+    solver = described(IkSolver.plugin_kind, study.answer.method)
+    what = "answer" if len(refused) == 1 else f"nearest of {len(refused)} answers"
+    turned = f" and {angle(nearest.turn)}" if nearest.turn else ""
+    return PlanningFailed(
+        "NO_IK_SOLUTION",
+        f"{solver} is wrong: by forward kinematics its {what} puts {goal.link} "
+        f"{length_text(nearest.shift)}{turned} away from {point(target_of(goal))}",
+        study.record,
+        IkFailure(nearest.shift, nearest.turn),
+    )
 
 
 def _constraints_violated(

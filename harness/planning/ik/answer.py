@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.recording.goal_failures import LimitedIkSolution
+from harness.recording.goal_failures import IkResidual, LimitedIkSolution, RefusedIkSolution
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +54,27 @@ class MissedSolution:
     turn: float
 
 
+@dataclass(frozen=True, eq=False)
+class RefusedSolution:
+    """An answer of a third-party solver that misses the goal.
+
+    Attributes:
+        positions: The positions of the group's joints.
+        shift: The position error [m].
+        turn: The orientation error [rad].
+    """
+
+    positions: FloatArray
+    shift: float
+    turn: float
+
+    @property
+    def record(self) -> RefusedIkSolution:
+        """The answer as a step's record has it."""
+        positions = tuple(map(float, self.positions))
+        return RefusedIkSolution(positions, IkResidual(self.shift, self.turn))
+
+
 @dataclass(frozen=True)
 class IkAnswer:
     """The complete result of inverse kinematics.
@@ -62,10 +83,11 @@ class IkAnswer:
         solutions: Solutions inside the limits and the tolerance, nearest to the seed first.
         outside_limits: Geometric solutions outside the limits.
         excess: How far the goal is beyond the chain's reach [m]; 0 when unknown or within reach.
-        method: The solver: `ur`, `open_manipulator_x` or `numeric`.
+        method: The name of the solver, a plug-in of the kind `ik_solver`.
         task: What is solved for: `pose`, or for an arm with too few joints `position and pitch`
             (four or five joints) or `position` (three).
         missed: Solutions of that task outside the pose's tolerance, least error first.
+        refused: Answers of a third-party solver that miss the goal, least error first.
     """
 
     solutions: tuple[FloatArray, ...]
@@ -74,3 +96,4 @@ class IkAnswer:
     method: str
     task: str = "pose"
     missed: tuple[MissedSolution, ...] = ()
+    refused: tuple[RefusedSolution, ...] = ()

@@ -15,7 +15,7 @@ from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.timing.limits import Limits
 from harness.planning.verification.path_constraints import HeldConstraints
 from harness.recording.goal_failures import CollisionFailure
-from harness.recording.motion_failures import BrokenRule, TrajectoryFailure
+from harness.recording.motion_failures import BrokenRule, PathCollision, TrajectoryFailure
 
 FINAL_RESOLUTION = 1 / 128
 """Joint-space distance between states checked on the path that is found and shortened [rad]."""
@@ -106,6 +106,30 @@ def find_departure(
         f"{deviation:.3g} rad are allowed",
         Details.of(TrajectoryFailure("path", time=time, path_deviation=float(away[row]))),
     )
+
+
+def path_collision(waypoints: FloatArray, checker: MotionChecker) -> Defect | None:
+    """Where a path without times is blocked first, or None.
+
+    Args:
+        waypoints: Group positions, shape (N, dof); the first one is free.
+        checker: The checker of the edges, at `FINAL_RESOLUTION`.
+    """
+    for index, (first, second) in enumerate(pairwise(waypoints)):
+        blocked = checker.first_block(first, second, FINAL_RESOLUTION)
+        if blocked is not None:
+            share, touches = blocked
+            state = first + share * (second - first)
+            edge = f" between waypoints {index + 1} and {index + 2}" if len(waypoints) > 2 else ""
+            return Defect(
+                f"after {100 * share:.0f} % of the path{edge} it would come too near: "
+                f"{wording.touches(touches)}",
+                Details.of(
+                    TrajectoryFailure("collision"),
+                    PathCollision(touch_records(touches), tuple(map(float, state))),
+                ),
+            )
+    return None
 
 
 def distances_to_path(positions: FloatArray, waypoints: FloatArray) -> FloatArray:
