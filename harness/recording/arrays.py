@@ -1,7 +1,7 @@
 """Recorded arrays under flat names, and a file of them with the same bytes every time.
 
 `times`, `tcp_pose` ... as they are; those of a mapping as `frames/<link>`, `object_poses/<object>`,
-`contact_forces/<body>|<body>`, `presses/<link>|<body>`,
+`contact_forces/<body>|<body>`, `presses/<link>|<body>`, `frictions/<link>|<body>`,
 `support_forces/<a>|<b>`, `clearances/<a>|<b>`, `clearance_links/<a>|<b>`,
 `planned_clearances/<a>|<b>`.
 """
@@ -24,6 +24,7 @@ BY_NAME = ("frames", "object_poses")
 BY_PAIR = (
     "contact_forces",
     "presses",
+    "frictions",
     "support_forces",
     "clearances",
     "clearance_links",

@@ -397,6 +397,8 @@ class Signals:
         presses: Where a robot link presses on another body, and how: mean of the contact points,
             weighted by their normal forces (world xyz), and the sum of these forces on the other
             body (world xyz) [N], (N, 6) each; NaN without force; keys as in `contact_forces`.
+        frictions: Friction force of a robot link on another body (world xyz) [N], (N, 3) each; zero
+            without contact; keys as in `presses`. A pair that is not in it was recorded without.
         support_forces: Upward part of the normal force [N] that the first of two objects exerts on
             the second; negative where the second carries the first. (N,) each; keys as in
             `contact_forces`, of objects alone. A pair that is not in it was recorded without.
@@ -422,6 +424,7 @@ class Signals:
         default_factory=dict[tuple[str, str], FloatArray]
     )
     presses: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
+    frictions: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
     support_forces: Mapping[Pair, FloatArray] = field(
         default_factory=dict[tuple[str, str], FloatArray]
     )

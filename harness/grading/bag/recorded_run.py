@@ -42,7 +42,7 @@ from harness.recording.run import (
 from harness.robot.description import RobotDescription
 
 NEVER_THERE = (
-    *("contact_forces", "presses", "support_forces"),
+    *("contact_forces", "presses", "frictions", "support_forces"),
     *("clearances", "planned_clearances"),
 )
 """Signals that no recording contains."""
