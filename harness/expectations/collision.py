@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 from pydantic import Field
 
-from harness.assertions.collision import Pair, colliding
+from harness.assertions.collision import Pair, colliding, why_not_excused
 from harness.assertions.contacts import bodies
 from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import Evidence, MarginSignal, measured
@@ -37,7 +37,16 @@ LEFT = Quantity(
 
 
 class Collision(Predicate):
-    """Two bodies touch that may not: no pair allows it, no grasp, no object on its support."""
+    """Two bodies touch that may not: no pair allows it, no grasp, no object on its support.
+
+    What the hand grips, and what it holds (welded or between the fingers) may touch what it stood
+    on until it leaves that, and what it is put down on. Such a contact is excused as far as
+    gripping, carrying and putting down explain it: its force, on average over 50 ms, is at most
+    twice the weight of the object and of what rests on it, plus the grip that the gripper's motor
+    exerts where a link of the hand presses or the gripper moves, plus 1 N (a tenth of a millimetre
+    of position error). An average is an impulse: a blow of a millisecond may peak higher. And the
+    object is dragged along the other body by less than 2 cm. Beyond that it is a collision.
+    """
 
     short = "between"
     judged = "eventually"
@@ -194,10 +203,11 @@ def _collided(window: Window, forces: dict[Pair, FloatArray]) -> MarginSignal:
             largest = float(forces[pair].max())
             lasted = window.time(stop - 1) - window.time(start)
             names = f"{pair[0]} and {pair[1]}"
+            why = why_not_excused(window.run, pair)
             measures.append(measured(FORCE, largest, 0.0, "<=", window.time(start), names))
             texts.append(
                 f"{names} collide from t={window.time(start):.3f} s for {amount(lasted, 's')},"
-                f" with up to {amount(largest, 'N')}"
+                f" with up to {amount(largest, 'N')}{f' ({why})' if why else ''}"
             )
         if total[index] <= 0:
             return Evidence("no collision at this moment", tuple(measures))

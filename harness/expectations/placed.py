@@ -7,8 +7,9 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from harness.assertions.contacts import TOUCH_FORCE, in_hand, robot_contact
+from harness.assertions.contacts import TOUCH_FORCE, robot_contact
 from harness.assertions.expectation import ObjectPredicate
+from harness.assertions.hold import in_hand
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.observations import Observations
 from harness.assertions.poses import UP, calm, frame_poses, object_poses, present, speeds

@@ -42,9 +42,11 @@ class Scene:
         text: The scenario, but for its head and its expectations.
         naive: The check as it is often written, in words.
         says: The naive check on the recorded run.
-        expect: Our expectations, YAML; every one must be refuted.
+        expect: Our expectations, YAML; every one must be refuted. Empty where the naive check is
+            too strict, and ours passes.
         stays: Expectations that hold in the same run, so that nothing is refused wholesale.
         world: Its world.
+        truth: What happens, from poses and forces alone; it shares no code with the verdicts.
     """
 
     title: str
@@ -55,6 +57,7 @@ class Scene:
     expect: tuple[str, ...]
     stays: tuple[str, ...] = ()
     world: str = "empty"
+    truth: Callable[[Run], bool] = lambda _: True
 
     def scenario(self, folder_world: str) -> str:
         """The scenario file."""

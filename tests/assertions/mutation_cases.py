@@ -218,7 +218,11 @@ CASES = [
     ),
     (
         Until(predicate=On(object="box", support="Table"), until=Lifted(object="box", above=0.05)),
-        lift_run(leave=140, object_poses={"box": heights([0.02] * 140 + [0.12] * 60)}),
+        lift_run(
+            leave=140,
+            object_poses={"box": heights([0.02] * 140 + [0.12] * 60)},
+            tcp_pose=heights([0.05] * 140 + [0.15] * 60),
+        ),
         "",
     ),
 ]

@@ -77,7 +77,9 @@ def test_height_without_the_fingers_alone_is_not_lifting(forces, said):
 def test_an_object_put_on_a_shelf_by_a_step_starts_there():
     z = np.full(200, 0.02)
     z[50:] = 0.52
-    run = lift_run(object_poses={"box": heights(z)})
+    run = lift_run(
+        object_poses={"box": heights(z)}, tcp_pose=heights(z + 0.03), grip=(40, 200), leave=50
+    )
     teleported = make_run(
         object_poses={"box": heights(z)},
         contact_forces=run.signals.contact_forces,
