@@ -21,7 +21,15 @@ from itertools import permutations
 
 import numpy as np
 
-from harness.assertions.contacts import attached, bodies, debounced, finger_links, force_between
+from harness.assertions.contacts import (
+    TOUCH_FORCE,
+    attached,
+    bodies,
+    debounced,
+    finger_links,
+    force_between,
+    side_forces,
+)
 from harness.assertions.excused_force import (
     DRAG,
     dragged,
@@ -142,7 +150,8 @@ def _gripping(run: Run, link: str, name: str) -> BoolArray:
         return np.zeros(len(run.signals.times), dtype=bool)
     held = held_by_fingers(run, name)
     begins = _steps_of(run, GRIPPING_VERBS, held)
-    lasts = attached(run, name) | held | _steps_of(run, RESTING_VERBS)
+    touched = np.min(list(side_forces(run, name).values()), axis=0) >= TOUCH_FORCE
+    lasts = attached(run, name) | touched | _steps_of(run, RESTING_VERBS)
     contact = debounced(run, force_between(run, hand, {name})) > 0
     mask = np.zeros(len(contact), dtype=bool)
     for start, stop in episodes(contact & lasts):

@@ -20,7 +20,7 @@ from harness.assertions.hold import (
 )
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.poses import object_poses, present
-from harness.assertions.temporal import episodes
+from harness.assertions.temporal import TIME_RESOLUTION, episodes
 from harness.assertions.text import amount, amounts
 from harness.assertions.window import Window, object_record
 from harness.cell.scope import At
@@ -93,7 +93,7 @@ class Grasped(ObjectPredicate):
         duration = window.cut(held_for(run, in_hand))
         parts += [
             Part(BETWEEN, window.cut(between).astype(float), 1.0, "==", relevant=touched),
-            Part(HELD, duration, HOLD_TIME, ">=", relevant=relevant),
+            Part(HELD, duration + TIME_RESOLUTION, HOLD_TIME, ">=", relevant=relevant),
             *slip,
         ]
 

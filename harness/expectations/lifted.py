@@ -30,6 +30,7 @@ from harness.assertions.hold import (
 from harness.assertions.margins import Evidence, MarginSignal, measured
 from harness.assertions.poses import object_poses, present, start_poses
 from harness.assertions.support import rides_on
+from harness.assertions.temporal import TIME_RESOLUTION
 from harness.assertions.text import amount, amounts
 from harness.assertions.window import Window, object_record
 from harness.cell.scope import At
@@ -150,7 +151,7 @@ class _Hold:
         self._least = CARRIED_SHARE * weight_of(run, name)
         self._moved, self._turned = moves_in_hand(run, name)
         self.raised = raised_by_hand(run, name, self._held)
-        self.is_steady = self._held & (self._duration >= HOLD_TIME - 1e-9)
+        self.is_steady = self._held & (self._duration >= HOLD_TIME - TIME_RESOLUTION)
         self.is_steady &= (self._moved <= STEADY) & (self._turned <= STEADY_TURN)
         if self._carried is not None:
             self.is_steady &= self._carried >= self._least
@@ -164,7 +165,7 @@ class _Hold:
                 f"nothing holds {name}"
             ), []
         duration, moved = float(self._duration[sample]), float(self._moved[sample])
-        if duration < HOLD_TIME:
+        if duration < HOLD_TIME - TIME_RESOLUTION:
             told = " of ".join(amounts(duration, HOLD_TIME, "s"))
             return f"held for {told}", [measured(HELD, duration, HOLD_TIME, ">=", time, name)]
         if self._carried is not None and self._carried[sample] < self._least:

@@ -55,8 +55,8 @@ ORIENTATION = Quantity("orientation error", "rad", "with `tolerance`: at most it
 class Placed(ObjectPredicate):
     """The object rests on a support, released and still, at a pose if one is given.
 
-    A `pose` without a rotation allows every turn about the vertical after which the object looks
-    the same, as `place` does.
+    A `pose` without a rotation allows every turn about the vertical after which the object's
+    collision shapes are the same.
     """
 
     quantities = (SUPPORT, SPEED, TURNING, CONTACT, ATTACHED, POSITION, LEAN, ORIENTATION)

@@ -3,7 +3,7 @@
 `times`, `tcp_pose` ... as they are; those of a mapping as `frames/<link>`, `object_poses/<object>`,
 `contact_forces/<body>|<body>`, `presses/<link>|<body>`, `frictions/<link>|<body>`,
 `support_forces/<a>|<b>`, `clearances/<a>|<b>`, `clearance_links/<a>|<b>`,
-`planned_clearances/<a>|<b>`.
+`planned_clearances/<a>|<b>`, `link_overlaps/<a>|<b>`.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ BY_PAIR = (
     "clearances",
     "clearance_links",
     "planned_clearances",
+    "link_overlaps",
 )
 GROUPS = frozenset(entry.name for entry in fields(Signals)) - {"clearance_cutoff"}
 COMPRESSION = 1

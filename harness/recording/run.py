@@ -139,10 +139,12 @@ class ObjectRecord:
     """An object that took part.
 
     Attributes:
+        shapes: Its collision shapes; planner, physics and verdicts know no others.
         present: Intervals [(from, to)] of simulation time in which it was in the scene [s].
         pose: T_world_object when it was added or put somewhere last (xyz, quat wxyz); empty when
             unknown.
         mass: The mass [kg]; NaN when unknown.
+        visuals: Shapes that pictures show, where they differ from `shapes`.
     """
 
     name: str
@@ -153,6 +155,12 @@ class ObjectRecord:
     present: tuple[tuple[float, float], ...]
     pose: tuple[float, ...] = ()
     mass: float = float("nan")
+    visuals: tuple[Shape, ...] = ()
+
+    @property
+    def looks(self) -> tuple[Shape, ...]:
+        """Shapes that pictures show."""
+        return self.visuals or self.shapes
 
 
 @dataclass(frozen=True)
@@ -407,6 +415,9 @@ class Signals:
             `clearance_cutoff`: a value there means "at least that far".
         clearance_links: The robot link that was nearest, as an index into the robot's link_names,
             (N,) each, for keys of `clearances` that start with `robot`; -1 where none.
+        link_overlaps: How deep two links are inside each other [m] whose contact the SRDF excludes
+            from the physics, (N,) each; only pairs that overlap in the run and do not with every
+            joint at zero.
         planned_clearances: The clearances had the arm been at its commands; recorded when an
             expectation needs them.
     """
@@ -433,6 +444,9 @@ class Signals:
         default_factory=dict[tuple[str, str], np.ndarray]
     )
     planned_clearances: Mapping[Pair, FloatArray] = field(
+        default_factory=dict[tuple[str, str], FloatArray]
+    )
+    link_overlaps: Mapping[Pair, FloatArray] = field(
         default_factory=dict[tuple[str, str], FloatArray]
     )
     clearance_cutoff: float = 0.15

@@ -22,7 +22,7 @@ from harness.observation.contacts import contact_records
 from harness.observation.tracking import as_commanded, plan_against_physics
 from harness.ports import Touch
 from harness.recording.digest import digest
-from harness.recording.run import Outcome, Run, Signals, StepRecord, Verdict
+from harness.recording.run import Finding, Outcome, Run, Signals, StepRecord, Verdict
 from harness.recording.store import PAGE, StoredRun, write_run
 from harness.reporting.explanation import explanation_lines
 from harness.reporting.result import CaseResult, ProgressEvent, StepLine
@@ -286,16 +286,27 @@ def _compared_with_plan(prepared: Prepared, run: Run, *, is_recorded: bool) -> R
     return replace(
         run,
         signals=signals,
-        findings=(*run.findings, *findings),
+        findings=(*run.findings, *_about_shapes(run), *findings),
         contacts=contact_records(run),
     )
 
 
+def _about_shapes(run: Run) -> tuple[Finding, ...]:
+    from harness.observation.link_overlaps import link_overlap_findings
+    from harness.observation.looks_differ import looks_differ
+
+    return (*looks_differ(run.objects), *link_overlap_findings(run))
+
+
 def _observe(prepared: Prepared, signals: Signals, execution: Execution, cutoff: float) -> Signals:
     from harness.observation.clearance import CoalClearance
+    from harness.observation.link_overlaps import with_link_overlaps
 
-    observer = CoalClearance(prepared.program.description)
-    return observer.observe(signals, execution.objects, execution.attachments, cutoff)
+    description = prepared.program.description
+    observed = CoalClearance(description).observe(
+        signals, execution.objects, execution.attachments, cutoff
+    )
+    return with_link_overlaps(observed, description)
 
 
 def _step_teller(program: Program, on_progress: Notify, simulator: TimedSimulator):  # noqa: ANN202

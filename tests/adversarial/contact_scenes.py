@@ -1,4 +1,4 @@
-"""Scenes about holding: excused contacts, struck or cradled objects, grasps beside an object.
+"""Scenes about holding and shapes: excused contacts, struck objects, pictures, hidden overlaps.
 
 Each scene's truth is established from poses alone, which are MuJoCo's raw state: by a balance of
 forces, mass times acceleration less the weight, or by geometry.
@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from harness.recording.run import Run
-from tests.adversarial.scenes import AT_BOX, RED_BOX, Scene, place_of, rose, touched
+from tests.adversarial.scenes import AT_BOX, RED_BOX, Scene, near, place_of, rose, touched
 
 GRASP = AT_BOX.replace("- gripper: {position: -0.01, max_effort: 10}", "- grasp: red_box")
 FIRMLY = GRASP.replace("- grasp: red_box", "- grasp: {object: red_box, max_effort: 200}")
@@ -242,6 +242,48 @@ CONTACT_SCENES = (
         "  - lin: {position: {xyz: [0.25, 0, 0.07]}}\n  - grasp: ball\n" + UP + "  - wait: 0.3 s\n",
         "the gap between the fingers is smaller than the ball",
         lambda run: bool(2 * (0.021 + run.signals.joint_positions[-1, -2]) < 0.047),
+        (),
+        ("grasped: ball", "lifted: {object: ball, above: 5 cm}", "never: collision"),
+        truth=lambda run: bool(
+            rose(run, "ball", 0.05) and in_tcp_moved(run, "ball", slice(-1000, None)) < 0.002
+        ),
+    ),
+    Scene(
+        "ball beside a tray that is shown larger",
+        "the tray is 10 cm wide and shown 40 cm wide; the ball lies 7 cm beside it, on the floor",
+        "objects:\n  - {name: tray, static: true, box: {size: [0.1, 0.1, 0.02]}, "
+        "pose: {xyz: [0.3, 0.3, 0.01]}, "
+        "visuals: [{box: {size: [0.4, 0.4, 0.2]}, pose: {xyz: [0, 0, 0.09]}}]}\n"
+        "  - {name: ball, sphere: {radius: 0.02}, mass: 50 g, pose: {xyz: [0.42, 0.3, 0.02]}}\n"
+        "steps: [{wait: 0.5 s}]\n",
+        "its origin is inside what is shown of the tray",
+        lambda run: near(run, "ball", "tray", (0.2, 0.2, 0.2)),
+        ("in: {object: ball, container: tray}", "on: {object: ball, support: tray}"),
+        ("placed: {object: ball, on: ground_plane}",),
+        truth=lambda run: bool(place_of(run, "ball")[-1, 0] - 0.02 > 0.3 + 0.05),
+    ),
+    Scene(
+        "post that is shown thinner than it is",
+        "a post of 20 cm is shown as a pole of 2 cm, 14 cm from the gripper",
+        "objects:\n  - {name: post, static: true, box: {size: [0.2, 0.2, 0.4]}, "
+        "pose: {xyz: [0.46, 0, 0.2]}, visuals: [{box: {size: [0.02, 0.02, 0.4]}}]}\n"
+        "steps: [{wait: 0.1 s}]\n",
+        "the TCP stays more than 15 cm away from what is shown",
+        lambda run: bool(0.45 - run.signals.tcp_pose[:, 0].max() > 0.15),
+        ("always: {clearance: {between: [robot, post], at_least: 10 cm}}",),
+        ("always: {clearance: {between: [robot, post], at_least: 3 cm}}", "never: collision"),
+        truth=lambda run: bool(0.36 - run.signals.tcp_pose[:, 0].max() < 0.1),
+    ),
+    Scene(
+        "ball shown as a balloon",
+        "a ball of 4 cm that is shown as one of 12 cm is gripped and lifted",
+        "objects:\n  - {name: ball, sphere: {radius: 0.02}, mass: 50 g, friction: 1, "
+        "pose: {xyz: [0.25, 0, 0.06]}, visuals: [{sphere: {radius: 0.06}}]}\n"
+        "  - {name: stand, static: true, box: {size: [0.02, 0.02, 0.04]}, "
+        "pose: {xyz: [0.25, 0, 0.02]}}\nsteps:" + GRASP.replace("red_box", "ball")
+        + UP + "  - wait: 0.3 s\n",
+        "the gap between the fingers is smaller than the ball that is shown",
+        lambda run: bool(2 * (0.021 + run.signals.joint_positions[-1, -2]) < 0.12),
         (),
         ("grasped: ball", "lifted: {object: ball, above: 5 cm}", "never: collision"),
         truth=lambda run: bool(

@@ -8,9 +8,10 @@ from pathlib import Path
 from harness.recording.store import read_run
 from harness.session.run_case import run_case
 from tests.adversarial.contact_scenes import CONTACT_SCENES
+from tests.adversarial.overlap_scenes import OVERLAP_SCENES
 from tests.adversarial.scenes import SCENES, WEIGHTLESS
 
-EVERY = (*SCENES, *CONTACT_SCENES)
+EVERY = (*SCENES, *CONTACT_SCENES, *OVERLAP_SCENES)
 PAGE = Path(__file__).parents[2] / "docs/reference/verdicts.md"
 RENEW = "python -m tests.adversarial.table"
 HEAD = """# Verdicts that cannot lie
@@ -34,6 +35,8 @@ recording may pass (`pytest -m mutation`).
 def run_scene(scene, folder):
     """The case's result and its recorded run."""
     (folder / "weightless.yaml").write_text(WEIGHTLESS)
+    for name, text in scene.files.items():
+        (folder / name).write_text(text)
     path = folder / "scene.scenario.yaml"
     path.write_text(scene.scenario("weightless.yaml"))
     result = run_case(path, report_dir=folder / "report", stills=False)

@@ -132,6 +132,11 @@ CASES = [
         ),
         "late",
     ),
+    (
+        Never(predicate=Collision(count_allowed=True)),
+        late(link_overlaps={("arm_link", "palm"): force(N, (20, 60), value=0.04)}),
+        "late",
+    ),
     (Never(predicate=Collision()), late(clearances={("robot", "box"): DISTANT}), "late"),
     (
         Clearance(between=("robot", "box"), at_least=0.01),

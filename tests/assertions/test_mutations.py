@@ -45,7 +45,7 @@ pytestmark = pytest.mark.mutation
 MOMENTS = range(0, N, 10)
 FORCES_AND_DISTANCES = (
     *("contact_forces", "presses", "frictions", "support_forces"),
-    *("clearances", "planned_clearances"),
+    *("clearances", "planned_clearances", "link_overlaps"),
 )
 MAPPINGS = ("frames", "object_poses", *FORCES_AND_DISTANCES)
 SHOWN_ONLY = {
