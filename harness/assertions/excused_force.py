@@ -30,7 +30,7 @@ from harness.recording.run import Run
 SPAN = 0.05
 """Over which a force is averaged: longer than any blow, shorter than any motion of an arm [s]."""
 FACTOR = 2.0
-"""As `on` asks for half of the weight: an object is accelerated with at most gravity's."""
+"""As `on` requires half of the weight: an object is accelerated with at most gravity's."""
 SLACK = 1.0
 """What a position error of a tenth of a millimetre presses with [N]: the weight of 100 g."""
 DRAG = 0.02
@@ -79,8 +79,8 @@ def held_limit(run: Run, name: str, gripper_moves: BoolArray) -> FloatArray:
     """Largest mean force with which a held object presses another body [N], shape (N,).
 
     Args:
-        run: What happened.
-        name: The object.
+        run: The run with its recorded signals.
+        name: The name of the held object.
         gripper_moves: Samples of steps that move the gripper, shape (N,).
     """
     grip = np.where(gripper_moves, grip_force(run), 0.0)

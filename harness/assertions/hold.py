@@ -62,7 +62,7 @@ def between_fingers(run: Run, name: str) -> BoolArray:
 
     A slab that leans against the tips touches both fingers, and so does what lies on them like on a
     shelf, or what closed tips rest on: `is_antipodal` says what between means. Where no direction
-    was recorded (an older run) nothing speaks against it.
+    was recorded (an older run) every touch counts.
     """
     sides = _side_presses(run, name)
     thickness = least_thickness(object_record(run, name).shapes)

@@ -131,7 +131,7 @@ class Collision(Predicate):
         ]
 
     def _inside_each_other(self, window: Window) -> dict[Pair, FloatArray]:
-        """Depths of links that the expectation speaks of and that the physics lets overlap [m]."""
+        """Depths of links that the expectation names and that the physics lets overlap [m]."""
         run = window.run
         words = self.between or ("robot", "any")
         first, second = (bodies(run, word) for word in words)

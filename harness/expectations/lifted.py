@@ -166,12 +166,12 @@ class _Hold:
             ), []
         duration, moved = float(self._duration[sample]), float(self._moved[sample])
         if duration < HOLD_TIME - TIME_RESOLUTION:
-            told = " of ".join(amounts(duration, HOLD_TIME, "s"))
-            return f"held for {told}", [measured(HELD, duration, HOLD_TIME, ">=", time, name)]
+            shown = " of ".join(amounts(duration, HOLD_TIME, "s"))
+            return f"held for {shown}", [measured(HELD, duration, HOLD_TIME, ">=", time, name)]
         if self._carried is not None and self._carried[sample] < self._least:
             carried = float(self._carried[sample])
-            told = " of ".join(amounts(carried, 2 * self._least, "N"))
-            return f"the hand carries {told}", [
+            shown = " of ".join(amounts(carried, 2 * self._least, "N"))
+            return f"the hand carries {shown}", [
                 measured(CARRIED, carried, self._least, ">=", time, name)
             ]
         if not self.is_steady[sample]:

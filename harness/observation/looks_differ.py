@@ -16,7 +16,7 @@ from harness.recording.run import Finding, ObjectRecord
 from harness.robot.solids import coal_geometry
 
 LEAST_DIFFERENCE = 0.005
-"""Of a side's place [m]: a picture that lies by less on the shape deceives nobody."""
+"""Of a side's place [m]: a picture that is off by less shows the shape."""
 LEAST_SHARE = 0.1
 """Of the object's extent along that axis."""
 CORNERS = np.array(list(product((0, 1), repeat=3)))

@@ -79,9 +79,9 @@ class ContactRecord:
         """Contact points and normal forces between a link of the robot and any other body.
 
         Returns:
-            By link and other body, in samples first to last - 1, shape (samples, 6): the mean of
-            the contact points, weighted by their normal forces, in the world; then the sum of these
-            forces on the other body, in world axes [N]. NaN where there is no force.
+            The presses by link and other body in samples first to last - 1, shape (samples, 6): the
+            mean of the contact points, weighted by their normal forces, in the world; then the sum
+            of these forces on the other body, in world axes [N]. NaN where there is no force.
         """
         found: dict[BodyPair, FloatArray] = {}
         for pair, link, rows, contacts in self._by_link(first, last):
@@ -107,7 +107,7 @@ class ContactRecord:
             count: Number of samples, counted from the first.
 
         Returns:
-            By link and other body, shape (count, 3); zero without contact.
+            The friction forces by link and other body, shape (count, 3); zero without contact.
         """
         found: dict[BodyPair, FloatArray] = {}
         for pair, link, rows, contacts in self._by_link(0, count):

@@ -249,8 +249,8 @@ CONTACT_SCENES = (
         ),
     ),
     Scene(
-        "ball beside a tray that is shown larger",
-        "the tray is 10 cm wide and shown 40 cm wide; the ball lies 7 cm beside it, on the floor",
+        "ball next to a tray that is shown larger",
+        "the tray is 10 cm wide and shown 40 cm wide; the ball lies 7 cm from it, on the floor",
         "objects:\n  - {name: tray, static: true, box: {size: [0.1, 0.1, 0.02]}, "
         "pose: {xyz: [0.3, 0.3, 0.01]}, "
         "visuals: [{box: {size: [0.4, 0.4, 0.2]}, pose: {xyz: [0, 0, 0.09]}}]}\n"

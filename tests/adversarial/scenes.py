@@ -43,7 +43,7 @@ class Scene:
         naive: The check as it is often written, in words.
         says: The naive check on the recorded run.
         expect: Our expectations, YAML; every one must be refuted. Empty where the naive check is
-            too strict, and ours passes.
+            too strict, and the harness passes.
         stays: Expectations that hold in the same run, so that nothing is refused wholesale.
         world: Its world.
         robot: Its robot.

@@ -20,11 +20,11 @@ from tests.second_opinion.runs import (
     FINGER_DROP,
     GRAVITY,
     PALM,
+    TIPS,
     WALL,
     Trial,
 )
 
-TOUCH = 1e-5
 FAR = 0.15
 TIE = 3e-4
 RECENT = 0.01
@@ -112,7 +112,7 @@ class Judge:
 
     def touches(self, name: str) -> np.ndarray:
         """Samples at which the thing touched a body within the last 10 ms."""
-        return self._recently(self.distances["thing", name] <= TOUCH)
+        return self._recently(self.distances["thing", name] <= 0)
 
     def _recently(self, mask: np.ndarray) -> np.ndarray:
         count = round(RECENT / self.step) + 1
@@ -124,9 +124,20 @@ class Judge:
         return np.convolve(padded, np.ones(count) / count, mode="valid")
 
     def pinched(self) -> np.ndarray:
-        """Samples at which both fingers touch the thing and its centre is between their faces."""
-        y = self.pose[:, 1]
+        """Samples at which both fingers touch the thing and its centre is between their faces.
+
+        Tips that stand on top of it touch it too: a ball is pinched up to 45 degrees above its
+        middle, where the cone of a friction of 1 ends, and a box by more than 1 mm below its top.
+        """
+        y, z = self.pose[:, 1], self.pose[:, 2]
         between = (y < self.q["left"]) & (y > -self.q["right"])
+        if self.trial.shape == "ball":
+            top = z + np.sqrt(0.5) * self.trial.size[2] / 2
+        else:
+            w, i, j, k = self.pose[:, 3:].T
+            upward = np.abs([2 * (i * k - w * j), 2 * (j * k + w * i), 1 - 2 * (i * i + j * j)])
+            top = z + upward.T @ np.array(self.trial.size) / 2 - 1e-3
+        between &= top > self.palm[:, 2] - TIPS
         return self.touches("finger_left") & self.touches("finger_right") & between
 
     def held(self) -> np.ndarray:
@@ -192,9 +203,14 @@ class Judge:
         least = min(float(self.distances[link, "wall"].min()) for link in LINKS)
         return None if abs(least - 0.08) < TIE else least >= 0.08
 
-    def knocks(self) -> bool:
-        """A link touches the thing while it neither grips it nor rests after gripping it."""
+    def knocks(self) -> bool | None:
+        """A link touches the thing while it neither grips it nor rests after gripping it.
+
+        A pinch of less than 30 ms is a blow on the edges of the tips: no opinion.
+        """
         pinched = self.pinched()
+        if 0 < pinched.sum() * self.step < 0.03:
+            return None
         grips = np.zeros(len(pinched), dtype=bool)
         rests = grips.copy()
         for record in self.run.steps:
