@@ -91,9 +91,10 @@ class Grasped(ObjectPredicate):
         between = between_fingers(run, name) & ~cradled(run, name)
         touched = np.min([part.margins() for part in parts], axis=0) >= 0
         duration = window.cut(held_for(run, in_hand))
+        # by half of the limit: a gripper that has stalled holds for 0.15 s, and slip says more then
         parts += [
             Part(BETWEEN, window.cut(between).astype(float), 1.0, "==", relevant=touched),
-            Part(HELD, duration + TIME_RESOLUTION, HOLD_TIME, ">=", relevant=relevant),
+            Part(HELD, duration + TIME_RESOLUTION, HOLD_TIME, ">=", HOLD_TIME / 2, relevant),
             *slip,
         ]
 

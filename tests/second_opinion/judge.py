@@ -206,7 +206,8 @@ class Judge:
     def knocks(self) -> bool | None:
         """A link touches the thing while it neither grips it nor rests after gripping it.
 
-        A pinch of less than 30 ms is a blow on the edges of the tips: no opinion.
+        Once pinched, it may slip out between the fingers while both touch it. A pinch of less than
+        30 ms is a blow on the edges of the tips: no opinion.
         """
         pinched = self.pinched()
         if 0 < pinched.sum() * self.step < 0.03:
@@ -219,11 +220,12 @@ class Judge:
                 grips[span] = True
             if record.verb in ("gripper", "wait"):
                 rests[span] = True
+        both = self.touches("finger_left") & self.touches("finger_right")
         touching = np.any([self.distances["thing", link] <= 0 for link in LINKS], axis=0)
         near = self._recently(touching)
         excused, going = np.zeros(len(pinched), dtype=bool), False
         for k in range(len(pinched)):
-            going = near[k] and (going or grips[k]) and (pinched[k] or rests[k])
+            going = near[k] and (going or grips[k]) and (both[k] or rests[k])
             excused[k] = going
         return bool((touching & ~excused).any())
 
