@@ -106,8 +106,9 @@ class Grasped(ObjectPredicate):
                 moved = amount(float(slip[0].values[index]), "m")
                 turned = amount(float(slip[1].values[index]), "rad")
                 drift = f"{name} moved {moved} and turned {turned} in the hand"
-                least = amounts(float(duration[index]), HOLD_TIME, "s")
-                brief = f"; held for {' of '.join(least)}" if measure.name == HELD.name else ""
+                brief = ""
+                if measure.name == HELD.name and measure.value < measure.limit:
+                    brief = f"; held for {' of '.join(amounts(measure.value, HOLD_TIME, 's'))}"
                 return f"{forces}; {drift}{brief}{weld_note(run, name)}"
             where = _where_pressed(run, name, window.start + index)
             return (

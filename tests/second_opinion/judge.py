@@ -152,7 +152,13 @@ class Judge:
         return (since >= count) & (np.linalg.norm(local - earlier, axis=1) <= 0.005)
 
     def grasped(self) -> bool:
-        return bool(self.held()[-1])
+        """Held at the end, and moved and turned little in the palm's frame since it was pinched."""
+        if not self.held()[-1]:
+            return False
+        local = (self.pose[:, :3] - self.palm)[-1 - self.since[-1] :]
+        quats = self.pose[-1 - self.since[-1] :, 3:]
+        turned = 2 * np.arccos(min(1.0, abs(float(quats[0] @ quats[-1]))))
+        return bool(np.linalg.norm(local[-1] - local[0]) <= 0.005 and turned <= 0.1)
 
     def lifted(self) -> bool:
         held = self.held()
@@ -203,6 +209,14 @@ class Judge:
         least = min(float(self.distances[link, "wall"].min()) for link in LINKS)
         return None if abs(least - 0.08) < TIE else least >= 0.08
 
+    def _is_struck(self) -> bool:
+        """Whether the thing meets the hand, or in the hand another body, with 10 g or more.
+
+        How much of such a blow the grip explains cannot be seen from the states.
+        """
+        near = np.any([self.touches(link) for link in LINKS], axis=0)
+        return bool((np.linalg.norm(self.acceleration, axis=1)[near] > 10 * GRAVITY).any())
+
     def knocks(self) -> bool | None:
         """A link touches the thing while it neither grips it nor rests after gripping it.
 
@@ -210,7 +224,7 @@ class Judge:
         30 ms is a blow on the edges of the tips: no opinion.
         """
         pinched = self.pinched()
-        if 0 < pinched.sum() * self.step < 0.03:
+        if 0 < pinched.sum() * self.step < 0.03 or self._is_struck():
             return None
         grips = np.zeros(len(pinched), dtype=bool)
         rests = grips.copy()

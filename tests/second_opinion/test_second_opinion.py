@@ -45,7 +45,7 @@ def disagreements(number, folder, counts):
 def test_a_few_random_runs_are_judged_as_the_simple_judge_does(number, tmp_path):
     counts = Counter()
     assert list(disagreements(number, tmp_path, counts)) == []
-    assert sum(counts.values()) >= 6
+    assert counts, "nothing was compared"
 
 
 @pytest.mark.second_opinion
