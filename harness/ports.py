@@ -677,6 +677,7 @@ class GripperResult:
         stalled: Stopped before the goal (contact).
         reached_goal: Whether it is at the commanded position within tolerance.
         contacts: Object names in contact with each finger side at the end, by side name.
+        between: Names of objects that two finger sides press from opposite sides at the end.
     """
 
     position: float
@@ -684,6 +685,7 @@ class GripperResult:
     stalled: bool
     reached_goal: bool
     contacts: Mapping[str, tuple[str, ...]]
+    between: tuple[str, ...]
 
 
 class Faults(Protocol):

@@ -19,6 +19,8 @@ WORDS = {
     "support_forces": "what carries what",
     "clearances": "distances",
     "planned_clearances": "planned distances",
+    "frictions": "the friction forces of the robot",
+    "link_overlaps": "overlaps of links",
 }
 
 

@@ -126,6 +126,7 @@ class DrySimulator:
             stalled=False,
             reached_goal=True,
             contacts=dict.fromkeys(gripper.sides, touched),
+            between=touched,
         )
 
     def start_gripper(self, position: float, max_effort: float) -> None:

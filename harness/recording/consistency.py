@@ -15,7 +15,7 @@ from harness.recording.run import MeshRecord, RobotRecord, Run, Signals, StepRec
 
 Inconsistency = tuple[str, str]
 """Key, and what is wrong there."""
-COLUMNS = {"tcp_pose": 7, "frames": 7, "object_poses": 7, "presses": 6}
+COLUMNS = {"tcp_pose": 7, "frames": 7, "object_poses": 7, "presses": 6, "frictions": 3}
 """Numbers per sample; the joint signals have one per joint, others one."""
 PER_SAMPLE = tuple(
     entry.name

@@ -19,12 +19,16 @@ from harness.session.timing import Clock
 def with_distances(prepared: Prepared, execution: Execution, recorded: Signals) -> Signals:
     """The recording with the poses of objects that only the planner knows, and with distances."""
     from harness.observation.clearance import CoalClearance
+    from harness.observation.link_overlaps import with_link_overlaps
 
     believed = believed_poses(execution.beliefs, recorded.joint_positions, prepared.kinematics)
     signals = replace(recorded, object_poses={**recorded.object_poses, **believed})
-    observer = CoalClearance(prepared.program.description)
+    description = prepared.program.description
     cutoff = prepared.observations.recorded_cutoff
-    return observer.observe(signals, execution.objects, execution.attachments, cutoff)
+    observed = CoalClearance(description).observe(
+        signals, execution.objects, execution.attachments, cutoff
+    )
+    return with_link_overlaps(observed, description)
 
 
 def observed_run(
@@ -58,7 +62,7 @@ def observed_run(
         executed,
         steps=steps,
         signals=signals,
-        findings=(*executed.findings, *findings, *pictures.findings),
+        findings=(*executed.findings, *_about_shapes(executed), *findings, *pictures.findings),
         contacts=contacts,
         meshes=meshes,
         captures=pictures.captures,
@@ -83,6 +87,14 @@ def _compared_with_plan(prepared: Prepared, run: Run) -> tuple[Signals, tuple[Fi
         return run.signals, findings
     observed = observer.observe(planned, run.objects, run.attachments, cutoff)
     return replace(run.signals, planned_clearances=observed.clearances), findings
+
+
+def _about_shapes(run: Run) -> tuple[Finding, ...]:
+    """Where visuals differ from collision shapes, and links that overlap."""
+    from harness.observation.link_overlaps import link_overlap_findings
+    from harness.observation.looks_differ import looks_differ
+
+    return (*looks_differ(run.objects), *link_overlap_findings(run))
 
 
 def _mesh_records(run: Run) -> tuple[MeshRecord, ...]:

@@ -188,6 +188,10 @@ class Recording:
         """Normal force [N] of pairs that touch in samples first to last - 1, (samples,) each."""
         return self._contacts.forces(first, last)
 
+    def presses(self, first: int) -> Mapping[BodyPair, FloatArray]:
+        """Contact points and normal forces of the robot's links from a sample on, (N, 6) each."""
+        return self._contacts.presses(first, self.count)
+
     def strongest_robot_contacts(self, row: int) -> dict[BodyPair, float]:
         """Largest force [N] of each pair with a robot link just before a sample, largest first."""
         links = set(self._physics.description.link_names)
@@ -226,7 +230,8 @@ class Recording:
             object_poses=dict(object_poses),
             contact_forces=contacts,
             support_forces=self._contacts.support_forces(count),
-            presses=self._contacts.presses(count),
+            presses=self._contacts.presses(0, count),
+            frictions=self._contacts.frictions(count),
         )
 
     def free_poses(self, qpos: int) -> FloatArray:

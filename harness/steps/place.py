@@ -54,8 +54,9 @@ class Place(Step):
     """Approach, lower, release, retreat; expands into the steps it is made of.
 
     Where the arm cannot lower the object to a `pose` without a rotation, or not open its hand
-    there, the object is turned about the vertical, if it looks the same then: by a half, what is
-    square by quarters, what is round by eighths; the step reports which `turn` of how many `turns`.
+    there, the object is turned about the vertical, if it is and looks the same then: by a half,
+    what is square by quarters, what is round by eighths; the step reports which `turn` of how many
+    `turns`.
     A `pose` with a rotation is kept to. An arm of fewer than six joints brings the object to the
     position alone, with the pitch that the gripper has: the object turns with the arm.
     """
@@ -234,7 +235,7 @@ def _equal_poses(name: str, step: Place, cell: Cell) -> list[SE3]:
     if step.pose.has_rotation or not arm_has_six_joints(cell.description, step.group):
         return [stated]
     obj = cell.presence[name].obj
-    count = equal_turns(obj.visuals or obj.shapes, stated.rotation) or TURNS_OF_ROUND
+    count = equal_turns((*obj.shapes, *obj.visuals), stated.rotation) or TURNS_OF_ROUND
     turns = sorted(range(count), key=lambda turn: min(turn, count - turn))
     return [
         SE3(turn_about(UP, 2 * math.pi * turn / count) @ stated.rotation, stated.translation)

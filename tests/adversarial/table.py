@@ -6,9 +6,12 @@ import tempfile
 from pathlib import Path
 
 from harness.recording.store import read_run
+from tests.adversarial.contact_scenes import CONTACT_SCENES
+from tests.adversarial.overlap_scenes import OVERLAP_SCENES
 from tests.adversarial.scenes import SCENES, WEIGHTLESS
 from tests.running import run_case
 
+EVERY = (*SCENES, *CONTACT_SCENES, *OVERLAP_SCENES)
 PAGE = Path(__file__).parents[2] / "docs/reference/verdicts.md"
 RENEW = "python -m tests.adversarial.table"
 HEAD = """# Verdicts that cannot lie
@@ -16,7 +19,8 @@ HEAD = """# Verdicts that cannot lie
 The test suite runs each of these scenes in the physics (`tests/adversarial`). The naive check is
 common in success functions, and it passes in every scene; the expectation, judged from the same
 recording, does not. The last column lists expectations that hold in the same run, so that no scene
-is simply rejected as a whole. `python -m tests.adversarial.table` writes this page from the runs.
+is simply rejected as a whole. A naive check marked as too strict raises a false alarm where the
+expectations pass. `python -m tests.adversarial.table` writes this page from the runs.
 
 | scene | naive check: passes | expectation: does not pass | holds |
 | --- | --- | --- | --- |
@@ -25,16 +29,27 @@ CORRUPTED = """
 Recordings can be wrong as well. `tests/assertions/test_mutations.py` traces the signals that each
 predicate reads; it shifts, freezes and drops each of them and fills it with NaN. No corrupted
 recording may pass (`pytest -m mutation`).
+
+A second opinion comes from a slow and simple judge (`tests/second_opinion`) that shares no code
+with the verdicts: geometry and a balance of forces from MuJoCo's raw states, on random pick, push,
+drop and throw runs of a gantry with two fingers. Of 2813 answers in 360 runs seven differed: two
+where the judge did not yet count slip since the grasp began, and five blows of 150 N and more, of
+which states do not show how much the grip explains; it now counts the one and has no opinion of the
+other.
+Eight runs are part of each test run; `pytest -m second_opinion` compares a thousand.
 """
 
 
 def run_scene(scene, folder):
     """The case's result and its recorded run."""
     (folder / "weightless.yaml").write_text(WEIGHTLESS)
+    for name, text in scene.files.items():
+        (folder / name).write_text(text)
     path = folder / "scene.scenario.yaml"
     path.write_text(scene.scenario("weightless.yaml"))
     result = run_case(path, report_dir=folder / "report", stills=False)
-    assert result.outcome == "failed", (result.outcome, result.problems, result.message)
+    expected = "failed" if scene.expect else "passed"
+    assert result.outcome == expected, (result.outcome, result.problems, result.message)
     return result, read_run(folder / "report").run
 
 
@@ -43,7 +58,8 @@ def row_of(scene, result):
     refuted, kept = result.verdicts[: len(scene.expect)], result.verdicts[len(scene.expect) :]
     ours = "<br>".join(f"`{v.expectation}`: {v.status}: {v.reason}" for v in refuted)
     holds = "<br>".join(f"`{verdict.expectation}`" for verdict in kept)
-    return f"| **{scene.title}**: {scene.happens} | {scene.naive} | {ours} | {holds} |"
+    naive = scene.naive if scene.expect else f"{scene.naive}: too strict"
+    return f"| **{scene.title}**: {scene.happens} | {naive} | {ours} | {holds} |"
 
 
 def without_numbers(text):
@@ -59,7 +75,7 @@ def page(rows):
 def main():
     """Run every scene and write the page."""
     rows = []
-    for scene in SCENES:
+    for scene in EVERY:
         with tempfile.TemporaryDirectory() as folder:
             result, _ = run_scene(scene, Path(folder))
         rows.append(row_of(scene, result))

@@ -42,8 +42,8 @@ from harness.recording.run import (
 from harness.robot.description import RobotDescription
 
 NEVER_THERE = (
-    *("contact_forces", "presses", "support_forces"),
-    *("clearances", "planned_clearances"),
+    *("contact_forces", "presses", "frictions", "support_forces"),
+    *("clearances", "planned_clearances", "link_overlaps"),
 )
 """Signals that no recording contains."""
 JOINT_SIGNALS = (
@@ -181,7 +181,8 @@ def _object_record(
         is_static=obj.is_static,
         in_planning=obj.in_planning,
         in_simulation=obj.in_simulation,
-        shapes=obj.visuals or obj.shapes,
+        shapes=obj.shapes,
+        visuals=obj.visuals,
         present=present,
         pose=tuple(float(value) for value in obj.pose.as_vector()) if is_known else (),
         mass=obj.mass,

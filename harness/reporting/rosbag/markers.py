@@ -82,7 +82,7 @@ def _of_object(run: Run, obj: ObjectRecord, time: float, *, is_moving: bool) -> 
         return []
     base, frame = (SE3.identity(), obj.name) if is_moving else (SE3.from_vector(pose), WORLD)
     markers: list[Any] = []
-    for shape in obj.shapes:
+    for shape in obj.looks:
         for kind, scale, offset in _solids(shape):
             marker = _marker(time, frame, obj.name, len(markers), kind=kind)
             marker.pose = pose_message((base @ shape.pose @ offset).as_vector().tolist())
