@@ -77,10 +77,14 @@ class RobotSpec(SpecModel):
         default=None, description="A URDF file, by its path or as package://name/path."
     )
     xacro: str | None = Field(default=None, description="A xacro file, rendered with `args`.")
-    args: dict[Name, Any] = Field(default_factory=dict, description="Of the xacro file.")
+    args: dict[Name, Any] = Field(
+        default_factory=dict, description="Arguments of the xacro files, `srdf` included."
+    )
     mjcf: str | None = Field(default=None, description="An MJCF file, as MuJoCo reads it.")
     srdf: str | None = Field(
-        default=None, description="Groups, states and allowed pairs, with `urdf`, `xacro`, `mjcf`."
+        default=None,
+        description="SRDF file with groups, states and allowed pairs, for `urdf`, `xacro` or "
+        "`mjcf`; one with xacro elements is rendered with `args`.",
     )
     packages: tuple[str, ...] = Field(
         default=(), description="Folders where package:// is looked up and meshes may be read."

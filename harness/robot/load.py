@@ -27,7 +27,7 @@ from harness.robot.imported_part import names_own_gripper
 from harness.robot.options import with_moveit_files, with_options
 from harness.robot.packages import PackagePath
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml, robot_yaml_error
-from harness.robot.srdf.srdf import parse_srdf
+from harness.robot.srdf.read import read_srdf
 from harness.robot.urdf.urdf import parse_urdf
 from harness.robot.xacro.file import arguments_of, render, render_bundled
 
@@ -168,7 +168,8 @@ def _read(
     urdf = parse_urdf(text, folder, str(path), packages)
     urdf = replace(urdf, joints=tuple(_with_facts(joint, facts) for joint in urdf.joints))
     srdf_path = folder / facts.srdf
-    srdf = parse_srdf(_text(srdf_path), str(srdf_path))
+    around = PackagePath.of_file(srdf_path, packages.given)
+    srdf = read_srdf(srdf_path, _text(srdf_path), args, around)
     unknown = [*unknown_names(facts, urdf, srdf)]
     if unknown:
         raise robot_yaml_error(folder, unknown)

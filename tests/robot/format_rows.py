@@ -201,7 +201,14 @@ def joints(arm: RobotDescription, group: str = "manipulator") -> tuple[str, ...]
     return arm.groups[group].joint_names if group in arm.groups else ()
 
 
+XACRO_STATE = (
+    '<xacro:property xmlns:xacro="http://www.ros.org/wiki/xacro" name="angle" value="${pi / 8}"/>'
+    '<group_state name="home" group="manipulator"><joint name="turn" value="${angle}"/>'
+)
 SRDF_ROWS = (
+    read("xacro elements", "rendered with `args`, by the rules of xacro files",
+          '<group_state name="home" group="manipulator">\n    <joint name="turn" value="0.1"/>',
+          XACRO_STATE, lambda arm: abs(arm.start_state["turn"] - 0.392699) < 1e-6),
     read("`<group>` of a `<chain>`", "pose goals speak of its tip", GROUP,
           GROUP.replace("tool", "lower"), lambda arm: joints(arm) == ("turn", "bend")),
     read("of `<joint>`s", "", GROUP,

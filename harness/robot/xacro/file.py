@@ -6,7 +6,7 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ from harness.language.files.source import Source
 from harness.language.files.xml_file import XmlElement, read_bounded, read_xml
 from harness.robot.packages import PackagePath
 
+XACRO_PREFIX = "xacro:"
 XACRO_ARG = "xacro:arg"
 PROCESSOR_TIME = 8
 """CPU time limit of a rendering [s]."""
@@ -24,9 +25,35 @@ WALL_TIME = 60.0
 """Time limit of a rendering that uses less CPU time [s]."""
 
 
+def is_xacro(root: XmlElement) -> bool:
+    """Whether a document has elements that xacro replaces."""
+    return any(item.tag.startswith(XACRO_PREFIX) for item in root.walk())
+
+
 def arguments_of(root: XmlElement) -> frozenset[str]:
     """Names that a xacro document declares as arguments."""
     return frozenset(item.get("name") for item in root.walk() if item.tag == XACRO_ARG)
+
+
+def refuse_unknown_arguments(args: Mapping[str, Any], paths: Sequence[Path]) -> None:
+    """Refuse arguments that none of a robot's files declares; included files may declare them.
+
+    Raises:
+        SpecError: A file is not XML.
+        RobotError: No file takes one of the arguments.
+    """
+    roots = {path: root for path in paths if args and is_xacro(root := read_xml(path))}
+    if args and not roots:
+        raise RobotError("robot.args: only a xacro file takes arguments, and none is given")
+    declared = {name for root in roots.values() for name in arguments_of(root)}
+    includes = any(item.tag == "xacro:include" for root in roots.values() for item in root.walk())
+    unknown = [key for key in args if key not in declared]
+    if unknown and not includes:
+        names = " and ".join(path.name for path in roots)
+        raise RobotError(
+            f"robot.args: {names} takes no argument '{unknown[0]}'; "
+            f"known are {', '.join(sorted(declared)) or 'none'}"
+        )
 
 
 def render_bundled(path: Path, mappings: Mapping[str, str]) -> str:
@@ -55,17 +82,7 @@ def render(path: Path, args: Mapping[str, Any], packages: PackagePath) -> str:
 
     Raises:
         SpecError: The file, or one that it includes, cannot be rendered.
-        RobotError: The file does not take one of the arguments.
     """
-    root = read_xml(path)
-    declared = arguments_of(root)
-    includes = any(item.tag == "xacro:include" for item in root.walk())
-    for key in args:
-        if key not in declared and not includes:
-            known = ", ".join(sorted(declared)) or "none"
-            raise RobotError(
-                f"robot.args: {path.name} takes no argument '{key}'; known are {known}"
-            )
     order = {
         "file": str(path),
         "mappings": {key: _text(value) for key, value in args.items()},
