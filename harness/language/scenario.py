@@ -93,14 +93,17 @@ class RobotSpec(SpecModel):
         default=None, description="The arm's SRDF group; default: the one with most joints."
     )
     tcp_link: Name | None = Field(
-        default=None, description="The link at the tool's centre; default: the arm group's tip."
+        default=None,
+        description="The link at the tool's centre; default: a frame of the robot at its gripper's "
+        "pads (the end effector's parent or one named as a TCP first), else the arm group's tip.",
     )
     flange_link: Name | None = Field(
         default=None, description="Where `gripper` is mounted; default: the arm group's tip."
     )
     gripper: str | None = Field(
         default=None,
-        description="A gripper mounted on the arm's flange; or the SRDF group of the arm's own.",
+        description="A gripper mounted on the arm's flange; or the SRDF group of the arm's own, "
+        "which is found by itself where one joint closes two sides.",
     )
     base: Pose = Field(default=Pose(), description="Where the base stands in the world.")
     kinematics: str | None = Field(

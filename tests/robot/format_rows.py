@@ -236,7 +236,7 @@ SRDF_ROWS = (
              BENT, BENT + '<joint name="held" value="0 0 1"/>'),
     read("`<end_effector>`", "a gripper, if one joint closes two sides; else told", END,
           TOOL.format("hand") + '<group name="hand"><joint name="left_joint"/></group>' + END,
-          lambda arm: arm.gripper is not None),
+          lambda arm: arm.gripper.group == "hand"),
     read("`<virtual_joint>`", "fixed; floating and planar count as fixed, told",
           '"held" type="fixed"',
           '"held" type="floating"',
