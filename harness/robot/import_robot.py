@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from harness.core.errors import RobotError
 from harness.language.files.xml_file import read_bounded
 from harness.language.scenario import RobotSpec
 from harness.robot.compose import WORLD, Part
 from harness.robot.description import NamedState
+from harness.robot.estimated_masses import with_estimated_masses
 from harness.robot.find_file import find_file, find_folder
 from harness.robot.imported_part import imported_part
 from harness.robot.mjcf.mjcf import read_mjcf
@@ -19,7 +19,6 @@ from harness.robot.srdf.check import checked_srdf
 from harness.robot.srdf.default_group import DEFAULT_GROUP, default_srdf
 from harness.robot.srdf.read import read_srdf
 from harness.robot.srdf.srdf import Srdf
-from harness.robot.tree import carriers
 from harness.robot.urdf.urdf import Urdf, parse_urdf
 from harness.robot.xacro.file import refuse_unknown_arguments, render
 
@@ -52,8 +51,7 @@ def read_robot(spec: RobotSpec, base_dir: Path) -> Part:
         is_xacro = key == "xacro"
         text = render(path, spec.args, packages).encode() if is_xacro else read_bounded(path)
         urdf, states, excluded = parse_urdf(text, path.parent, str(path), packages), (), {}
-    urdf = _without_world(urdf)
-    _refuse_weightless(urdf, str(path))
+    urdf = with_estimated_masses(_without_world(urdf), str(path))
     if srdf_path is None:
         srdf = _default_srdf(spec, urdf, states)
     else:
@@ -106,27 +104,3 @@ def _with_renamed_root(srdf: Srdf) -> Srdf:
         for group in srdf.groups
     )
     return replace(srdf, groups=groups)
-
-
-def _refuse_weightless(urdf: Urdf, source: str) -> None:
-    """Refuse a robot with a massless rigid group that a joint moves.
-
-    Raises:
-        SpecError: A group has no mass; at the link's `<mass>`, or at the link without one.
-    """
-    carrier = carriers(urdf.joints, urdf.root)
-    masses = {carrier[link.name]: 0.0 for link in urdf.links}
-    for link in urdf.links:
-        if link.inertial is not None:
-            masses[carrier[link.name]] += link.inertial.mass
-    for first, mass in masses.items():
-        if mass > 0 or first == urdf.root:
-            continue
-        message = f"link '{first}' moves and weighs nothing"
-        hint = "give it an <inertial> with its mass [kg] and inertia [kg m^2]"
-        element = urdf.elements.get(("link", first))
-        if element is None:
-            raise RobotError(f"{source}: {message}; {hint}")
-        inertial = element.find("inertial")
-        written = None if inertial is None else inertial.find("mass")
-        (written or element).refuse(message, hint, at="value" if written else "name")

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from harness.robot.description import RobotDescription
+from tests.robot.arm_files import INERTIAL as MASS
 from tests.robot.arm_files import LIMIT, SHAPE
 
 Holds = Callable[[RobotDescription], object]
@@ -85,6 +86,7 @@ def shape(arm: RobotDescription):
     return type(link(arm, "upper").collisions[0].geometry).__name__
 
 
+LINK_UPPER = '<link name="upper">'
 CYLINDER = '<cylinder radius="0.03" length="0.14"/>'
 VISUAL = '<visual><geometry>{}</geometry><material name="red"/></visual>'
 RED = '<color rgba="1 0 0 1"/>'
@@ -109,6 +111,9 @@ URDF_ROWS = (
           'izz="0.002"', 'izz="0.9"',
           lambda arm: any("no body has the principal moments" in note for note in arm.notes)),
     refused("a mass below zero", "", '<mass value="1"/>', '<mass value="-1"/>', "weighs -1 kg"),
+    read("no `<inertial>`", "where a joint moves it: 1000 kg/m^3 of its shapes, reported",
+          LINK_UPPER + MASS, LINK_UPPER,
+          lambda arm: abs(link(arm, "upper").inertial.mass - 0.396) < 1e-3),
     refused("a mass of zero", "where a joint moves it", '<mass value="1"/>', '<mass value="0"/>',
              "moves and weighs nothing"),
     read("`<collision>`, `<visual>`", "each with its `<origin>`", SHAPE, SHAPE + SHAPE,
