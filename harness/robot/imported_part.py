@@ -17,6 +17,7 @@ from harness.robot.gripper.find_hand import hand_candidates, named_hand
 from harness.robot.gripper.inferred_gripper import NoGripperError, OwnGripper, recognise
 from harness.robot.gripper.inferred_tcp import tcp_without_gripper, with_own_gripper
 from harness.robot.groups import planning_groups
+from harness.robot.mimic_friction import with_reflected_friction
 from harness.robot.robot_yaml import RobotYaml
 from harness.robot.srdf.default_pairs import touching_pairs
 from harness.robot.srdf.srdf import Srdf
@@ -53,6 +54,7 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
     """
     notes = [*urdf.notes, *srdf.notes]
     urdf = replace(urdf, joints=tuple(_limited(joint, notes) for joint in urdf.joints))
+    urdf = replace(urdf, joints=with_reflected_friction(urdf.joints))
     groups = planning_groups(srdf, urdf.joints, source)
     arm = _arm_group(spec, srdf, groups, source)
     for key in ("tcp_link", "flange_link"):

@@ -19,6 +19,7 @@ from harness.engine.execute import Execution, execute_program
 from harness.language.reading.resolve import resolved_text
 from harness.observation.beliefs import believed_poses
 from harness.observation.contacts import contact_records
+from harness.observation.couplings import coupling_findings
 from harness.observation.tracking import as_commanded, plan_against_physics
 from harness.ports import Touch
 from harness.recording.digest import digest
@@ -286,7 +287,11 @@ def _compared_with_plan(prepared: Prepared, run: Run, *, is_recorded: bool) -> R
     return replace(
         run,
         signals=signals,
-        findings=(*run.findings, *findings),
+        findings=(
+            *run.findings,
+            *findings,
+            *coupling_findings(run, prepared.program.description),
+        ),
         contacts=contact_records(run),
     )
 
