@@ -311,3 +311,19 @@ def test_a_scenario_and_a_folder_name_a_robot_too(folder, capsys):
         code, page = check(capsys, word)
         assert code == 0
         assert "manipulator (the arm): 3 joints, base_link to tool" in page
+
+
+def test_a_gripper_alone_is_checked_without_pose_goals(capsys, folder):
+    """Its longest chain ends at a finger that mimics the driven joint."""
+    joint = (
+        '<joint name="{0}_joint" type="revolute"><parent link="{1}"/><child link="{0}"/>'
+        f'<origin xyz="0 0 0.05"/><axis xyz="1 0 0"/>{LIMIT}{{2}}</joint>'
+        f'<link name="{{0}}">{INERTIAL}</link>'
+    )
+    first = joint.format("knuckle", "palm", "")
+    second = joint.format("tip", "knuckle", '<mimic joint="knuckle_joint"/>')
+    text = f'<robot name="hand"><link name="palm">{INERTIAL}</link>{first}{second}</robot>'
+    (folder / "hand.urdf").write_text(text)
+    code, page = check(capsys, "hand.urdf")
+    assert code == 0, page
+    assert "inverse kinematics: not tried, there are no pose goals: link 'tip'" in page

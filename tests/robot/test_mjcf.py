@@ -120,3 +120,17 @@ def test_a_file_that_cannot_be_used_is_refused_at_its_place(tmp_path, old, new, 
         load(tmp_path)
     for word in words:
         assert word in str(caught.value)
+
+
+@pytest.mark.parametrize("moments", ["0 0 0", "0 1e-4 1e-4", "1e-4 0 1e-4"])
+def test_a_fixed_body_without_inertia_gets_the_least_possible(tmp_path, moments):
+    """MuJoCo accepts zero moments where a joint moves the body together with others."""
+    plate = f"""<body name="plate"><inertial pos="0 0 0" mass="0.1" diaginertia="{moments}"/>
+      <geom type="box" size="0.02 0.02 0.01"/></body>"""
+    inertial = '<inertial pos="0 0 0" mass="1" diaginertia="0.01 0.01 0.01"/>'
+    text = f"""<mujoco><worldbody><body name="a">{inertial}<joint name="j" range="-1 1"/>
+      <geom type="box" size="0.05 0.05 0.05"/>{plate}</body></worldbody></mujoco>"""
+    (tmp_path / "arm.xml").write_text(text)
+    arm = load_robot(RobotSpec.model_validate({"mjcf": "arm.xml"}), tmp_path)
+    assert any(note.startswith("link 'plate': no body has") for note in arm.notes)
+    assert bare_robot(arm).compile().body("plate").mass == pytest.approx(0.1)
