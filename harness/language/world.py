@@ -136,7 +136,9 @@ class ObjectSpec(SpecModel):
 
     name: Name = Field(description="Unique in the scene.")
     pose: Pose = Field(
-        default=Pose(), description="Where it stands at the start; its origin is its centre."
+        default=Pose(),
+        description="Where it stands at the start; its origin is its centre. `frame` may be an "
+        "object that stands in the list before it.",
     )
     static: Flag = Field(default=False, description="Fixed in the world.")
     box: BoxSpec | None = None

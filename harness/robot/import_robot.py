@@ -89,7 +89,8 @@ def _without_world(urdf: Urdf) -> Urdf:
         replace(joint, parent=name(joint.parent), child=name(joint.child)) for joint in urdf.joints
     )
     elements = {**urdf.elements, ("link", RENAMED_ROOT): urdf.elements["link", WORLD]}
-    return replace(urdf, links=links, joints=joints, elements=elements)
+    note = f"the link '{WORLD}' is called '{RENAMED_ROOT}' here: '{WORLD}' is the world's own frame"
+    return replace(urdf, links=links, joints=joints, elements=elements, notes=(*urdf.notes, note))
 
 
 def _with_renamed_root(srdf: Srdf) -> Srdf:

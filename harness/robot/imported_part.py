@@ -35,6 +35,9 @@ VELOCITY = {"prismatic": 0.2}
 TURNING_VELOCITY = 1.5
 """Velocity limit of revolute joints without one in the file [rad/s]."""
 
+DAMPED_SHARE = 0.5
+"""Share of a joint's effort that its damping may take at the velocity limit."""
+
 START_STATES = ("home", "ready", "start", "default", "init", "rest")
 """Names of start states of an imported arm, in order of preference."""
 
@@ -53,8 +56,8 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
         RobotError: There is no arm, or an option refers to an unknown name.
     """
     notes = [*urdf.notes, *srdf.notes]
-    urdf = replace(urdf, joints=tuple(_limited(joint, notes) for joint in urdf.joints))
-    urdf = replace(urdf, joints=with_reflected_friction(urdf.joints))
+    joints = with_reflected_friction(urdf.joints)
+    urdf = replace(urdf, joints=tuple(_limited(joint, notes) for joint in joints))
     groups = planning_groups(srdf, urdf.joints, source)
     arm = _arm_group(spec, srdf, groups, source)
     for key in ("tcp_link", "flange_link"):
@@ -149,6 +152,13 @@ def _limited(joint: Joint, notes: list[str]) -> Joint:
         unit = "m/s" if joint.kind == "prismatic" else "rad/s"
         notes.append(f"joint '{joint.name}' has no velocity limit: {velocity} {unit} is assumed")
         joint = replace(joint, velocity=velocity)
+    most = DAMPED_SHARE * joint.effort / joint.damping if joint.damping > 0 else np.inf
+    if joint.velocity > most:
+        notes.append(
+            f"joint '{joint.name}': its damping takes {joint.damping * joint.velocity:.3g} of its "
+            f"effort of {joint.effort:.3g} at {joint.velocity:.3g}; at most {most:.3g} is planned"
+        )
+        joint = replace(joint, velocity=most)
     return joint
 
 

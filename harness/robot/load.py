@@ -93,6 +93,9 @@ def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
     if spec.kinematics is not None:
         main = _calibrated(main, find_file(spec.kinematics, "kinematics", base_dir, ()))
     description = compose(main, tool, spec.base.se3())
+    if spec.kinematics is not None:
+        note = f"the joints' poses are those of the calibration {spec.kinematics}"
+        description = replace(description, notes=(*description.notes, note))
     description, known = with_moveit_files(description, spec.moveit, base_dir)
     if spec.model is None and main is not None:
         description = with_possible_accelerations(description, known)

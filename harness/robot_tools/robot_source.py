@@ -83,9 +83,11 @@ class RobotSource:
 
     @property
     def own_name(self) -> str:
-        """What a URDF file that can be read calls its robot; else empty."""
-        root = self._root() if self.kind == "urdf" else None
-        return "" if root is None else root.get("name")
+        """The robot's name in a file that can be read, unless xacro computes it; else empty."""
+        if self.kind not in KINDS.values() or (root := self._root()) is None:
+            return ""
+        name = root.get("model" if root.tag == "mujoco" else "name")
+        return "" if "$" in name else name
 
     def words(self) -> dict[str, Any]:
         """What a scenario's `robot:` would say, not of a scenario."""

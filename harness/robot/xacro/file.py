@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
@@ -145,6 +146,11 @@ def _problem(answer: Mapping[str, Any], path: Path, packages: PackagePath) -> Pr
     except SpecError:
         return Problem(named, 0, 0, message)
     source = Source(named, tuple(lines))
+    if "macro" in answer:
+        call = _call_without(lines, str(answer["macro"]), [str(name) for name in answer["lacks"]])
+        if call is not None:
+            number, column = call
+            return Problem(named, number, column, message, "", source.line(number))
     for word in words:
         for number, line in enumerate(lines, 1):
             column = line.find(word)
@@ -152,3 +158,15 @@ def _problem(answer: Mapping[str, Any], path: Path, packages: PackagePath) -> Pr
                 text = source.line(number)
                 return Problem(named, number, column + 1, message, "", text, len(word))
     return Problem(named, 1, 1, message, "", source.line(1))
+
+
+def _call_without(
+    lines: Sequence[str], macro: str, parameters: Sequence[str]
+) -> tuple[int, int] | None:
+    """Line and column of the first call of a macro that lacks parameters."""
+    text = "\n".join(lines)
+    for call in re.finditer(rf"<{re.escape(macro)}\b[^>]*", text):
+        if not any(re.search(rf"\b{re.escape(name)}\s*=", call[0]) for name in parameters):
+            before = text[: call.start()]
+            return before.count("\n") + 1, call.start() - before.rfind("\n")
+    return None
