@@ -8,6 +8,7 @@ from harness.language.schema import schema_text, world_schema_text
 from harness.world.sdf.reference import formats_page
 from tests.docs.readme_samples import with_samples
 from tests.docs.robot_formats import robot_formats_page
+from tests.docs.robot_yaml_page import robot_yaml_page
 
 ROOT = Path(__file__).parents[2]
 RENEW = "python tests/docs/generated.py"
@@ -23,6 +24,7 @@ def generated():
         "scenarios/EXPECTATIONS.md": expectations_reference(),
         "worlds/FORMATS.md": formats_page(),
         "robots/FORMATS.md": robot_formats_page(),
+        "robots/ROBOT_YAML.md": robot_yaml_page(),
         "README.md": with_samples((ROOT / "README.md").read_text(encoding="utf-8")),
     }
 
