@@ -1,7 +1,7 @@
 # Short names for those who have make; the README's commands need none.
 PYTHON ?= python3
 
-.PHONY: demo test lint sweep bench docs
+.PHONY: demo test lint sweep bench docs pictures
 
 demo: .venv/.installed
 	.venv/bin/harness run scenarios/lessons/03_ur_sixteen_steps.scenario.yaml
@@ -22,7 +22,13 @@ bench: .venv/.installed
 	.venv/bin/python -m pytest -m benchmark -s
 
 docs: .venv/.installed
-	.venv/bin/python tests/docs/generated.py
+	.venv/bin/python -m docs.generate
+	.venv/bin/python -m tests.adversarial.table
+
+# Longer: runs the scenes and lessons that the pictures show.
+pictures: .venv/.installed
+	.venv/bin/python -m docs.generators.expectation_pictures
+	.venv/bin/python -m docs.generators.gallery
 
 .venv/.installed: pyproject.toml
 	$(PYTHON) -m venv .venv

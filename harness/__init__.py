@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from harness.suite.api import ScenarioResult
 
 __version__ = "0.1.0"
+__all__ = ["__version__", "register", "run"]
 
 P = TypeVar("P")
 
@@ -30,7 +31,7 @@ def register(plugin: P, *, kind: str = "", name: str = "") -> P:
         name: Needed where the plug-in does not state it.
 
     Returns:
-        The plug-in.
+        The plug-in as it was given.
 
     Raises:
         PluginError: The kind or name is missing, or another package provides the name.
@@ -54,7 +55,7 @@ def run(
         scenario: A file, or the model of one, built in Python.
         overrides: Dotted path -> value, as `--set` has them: `{"robot.model": "ur5e"}`.
         seed: Instead of the scenario's.
-        case: Which one, where it is parametrised.
+        case: The name of the case, where the file is parametrised.
         report_dir: Where its report is written; None: nowhere.
 
     Returns:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, Protocol
 
+from harness.core.details import Details
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
@@ -28,11 +29,12 @@ class PoseGoal:
     """A link at a pose.
 
     Attributes:
-        link: Which link, rigidly behind the group's last joint.
-        pose: T_world_link.
+        link: A link that is rigidly attached after the group's last joint.
+        pose: The pose T_world_link of the link.
         position_tolerance: Radius around the target [m].
         orientation_tolerance: Largest rotation about each axis [rad].
-        axis_tolerances: About the goal's own x, y, z instead [rad]; pi and more: any turn.
+        axis_tolerances: The tolerances about the goal's own x, y, z instead [rad]; pi and more
+            allow any turn.
     """
 
     link: str
@@ -47,7 +49,7 @@ class PositionGoal:
     """A link's origin at a point, its orientation free but for an optional pitch.
 
     Attributes:
-        position: In the world [m], shape (3,).
+        position: The position in the world [m], shape (3,).
         pitch: Angle of the link's x axis below the horizontal [rad] (pi/2 points down), or None.
     """
 
@@ -73,9 +75,9 @@ class OrientationBand:
     """A link stays turned as given.
 
     Attributes:
-        link: Of the robot.
+        link: The link of the robot.
         rotation: R_world_link in the middle of the band, shape (3, 3).
-        tolerance: About its x, y, z [rad]; pi and more: any turn.
+        tolerance: The tolerances about its x, y, z [rad]; pi and more allow any turn.
     """
 
     link: str
@@ -88,7 +90,7 @@ class PositionBox:
     """A link's origin stays in a box.
 
     Attributes:
-        link: Of the robot.
+        link: The link of the robot.
         pose: T_world_box, of its middle.
         size: Along its x, y, z, full [m].
     """
@@ -121,9 +123,11 @@ class CartesianLimits:
     """What a link may do on a line or an arc; None is Pilz's default times the scaling factors.
 
     Attributes:
-        translation_velocity: [m/s]
-        translation_acceleration: [m/s^2], along the path and towards an arc's centre together.
-        rotation_velocity: [rad/s]; the turn's acceleration is in proportion, as Pilz has it.
+        translation_velocity: The largest speed of the link [m/s].
+        translation_acceleration: The largest acceleration [m/s^2], along the path and towards an
+            arc's centre together.
+        rotation_velocity: The largest turning speed [rad/s]; its acceleration is in proportion, as
+            in Pilz.
     """
 
     translation_velocity: float | None = None
@@ -136,8 +140,8 @@ class JumpThreshold:
     """Farthest that a joint may move from one pose of a path to the next.
 
     Attributes:
-        revolute: [rad]
-        prismatic: [m]
+        revolute: The largest step of a revolute joint [rad].
+        prismatic: The largest step of a prismatic joint [m].
     """
 
     revolute: float
@@ -150,7 +154,7 @@ class ArcPoint:
 
     Attributes:
         kind: A point that the arc passes, or the centre of the shorter one.
-        position: In the world [m], shape (3,).
+        position: The position in the world [m], shape (3,).
     """
 
     kind: Literal["interim", "center"]
@@ -162,11 +166,11 @@ class SequenceItem:
     """One motion of a sequence.
 
     Attributes:
-        kind: Of the motion.
-        goal: Where it ends.
+        kind: The kind of the motion.
+        goal: The goal at which it ends.
         point: What makes the arc of a circ; None for others.
         blend_radius: Around its end, inside which it goes over into the next one [m].
-        cartesian_limits: Of lines and arcs.
+        cartesian_limits: The cartesian limits of lines and arcs.
     """
 
     kind: Literal["ptp", "lin", "circ"]
@@ -178,7 +182,7 @@ class SequenceItem:
 
 @dataclass(frozen=True)
 class CartesianPathOptions:
-    """What is asked of a Cartesian path.
+    """The requirements on a Cartesian path.
 
     Attributes:
         max_step: Between the poses that are solved [m].
@@ -201,13 +205,13 @@ class PlanningOptions:
         planner_id: `auto`, or OMPL's or MoveIt's name: `RRTConnectkConfigDefault` ...
         max_state_checks: Budget of state validity checks for one attempt.
         attempts: Plans tried, each with a seed of its own.
-        velocity_scaling: Of the joint velocity limits, (0, 1].
-        acceleration_scaling: Of the joint acceleration limits, (0, 1].
+        velocity_scaling: The share of the joint velocity limits, (0, 1].
+        acceleration_scaling: The share of the joint acceleration limits, (0, 1].
         padding: Distance kept between robot (and what it holds) and every object [m].
-        seed: Of this step.
-        parameters: Of the planner: `range`, `goal_bias` ...
-        max_jerk: Of every joint [rad/s^3 or m/s^3]; inf for none.
-        cartesian_limits: Of the link, on lines and arcs.
+        seed: The seed of this step.
+        parameters: The parameters of the planner: `range`, `goal_bias` ...
+        max_jerk: The max jerk of every joint [rad/s^3 or m/s^3]; inf for none.
+        cartesian_limits: The cartesian limits of the link, on lines and arcs.
         path_only: Leave out the times: the plan jumps from its start to its end.
     """
 
@@ -229,16 +233,29 @@ class MotionPlan:
     """A motion that was found, timed and verified.
 
     Attributes:
-        trajectory: What to command.
-        statistics: planner_id, state checks, attempts, lengths before and after shortening ...
+        trajectory: The trajectory to be commanded.
+        statistics: The planner_id, state checks, attempts, lengths before and after shortening ...
         explanation: IK solutions and what became of each, pairs whose margin was lowered ...
         result: What the step reports of it: the fraction reached, a distance ...
     """
 
     trajectory: JointTrajectory
     statistics: Mapping[str, Any]
-    explanation: Mapping[str, Any]
-    result: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    explanation: Details
+    result: Details = field(default_factory=Details)
+
+
+@dataclass(frozen=True, eq=False)
+class CheckedGoal:
+    """A goal that can be reached.
+
+    Attributes:
+        positions: The group positions of the free solution that is tried first, shape (dof,).
+        explanation: The solutions of inverse kinematics, and what rules each of them out.
+    """
+
+    positions: FloatArray
+    explanation: Details
 
 
 @dataclass(frozen=True)
@@ -247,7 +264,7 @@ class Touch:
 
     Attributes:
         first: Name of a link or an object.
-        second: Name of another.
+        second: The name of another body.
         distance: Negative for penetration [m].
         required: The smallest distance that is allowed [m].
     """
@@ -340,10 +357,10 @@ class Kinematics(Protocol):
         """Every known solution within position limits, nearest to `seed_positions` first.
 
         Args:
-            group: A chain group.
+            group: The name of a chain group.
             goal: What the link must do.
             seed_positions: Description order; joints outside the group stay there.
-            seed: Of the restarts of numeric solvers.
+            seed: The seed of the restarts of numeric solvers.
 
         Returns:
             Group joint positions, shape (dof,) each; empty when there is none.
@@ -411,12 +428,12 @@ class MotionPlanner(Protocol):
         """Move a link along a direction as far as goes between two distances.
 
         Args:
-            group: A chain group.
-            start: In description order.
-            link: Rigidly behind the group's last joint.
+            group: The name of a chain group.
+            start: The start positions in description order.
+            link: A link that is rigidly attached after the group's last joint.
             twist: Unit translation or rotation in world axes, shape (6,): linear, then angular.
             distances: Least and most [m or rad]; equal for a fixed distance.
-            options: How to plan.
+            options: The options of the planning call.
         """
         ...
 
@@ -435,7 +452,7 @@ class MotionPlanner(Protocol):
         group: str,
         start: FloatArray,
         goals: Sequence[PoseGoal | PositionGoal],
-        wanted: CartesianPathOptions,
+        path_options: CartesianPathOptions,
         options: PlanningOptions,
     ) -> MotionPlan:
         """Plan straight lines through waypoints, as far as they go.
@@ -451,7 +468,7 @@ class MotionPlanner(Protocol):
         goal: Goal | AnyGoal,
         options: PlanningOptions,
         constraints: PathConstraints | None = None,
-    ) -> Mapping[str, Any]:
+    ) -> CheckedGoal:
         """What can be said of a goal without planning to it: IK solutions and what became of each.
 
         Raises:
@@ -465,10 +482,10 @@ class GripperResult:
     """What GripperCommand's result says, and more.
 
     Attributes:
-        position: Of the gripper's joint at the end.
-        effort: Of the gripper's joint at the end.
+        position: The position of the gripper's joint at the end.
+        effort: The effort of the gripper's joint at the end.
         stalled: Stopped before the goal (contact).
-        reached_goal: At the commanded position within tolerance.
+        reached_goal: Whether it is at the commanded position within tolerance.
         contacts: Object names in contact with each finger side at the end, by side name.
     """
 
@@ -482,7 +499,7 @@ class GripperResult:
 class Faults(Protocol):
     """What can be broken in the physics while a run goes on.
 
-    Each call returns what stood before, so that a receipt can tell a fault from no change.
+    Each call returns what stood before, so that a receipt can distinguish a fault from no change.
     """
 
     def set_friction(self, name: str, sliding: float) -> float:
@@ -514,7 +531,7 @@ class Simulator(Protocol):
     """The physics; time only moves inside these calls, and every sample of it is recorded.
 
     A call that would take the run beyond `LONGEST_RUN`, or its record beyond what the memory is
-    meant for, raises StepFailed TIMED_OUT.
+    sized for, raises StepFailed TIMED_OUT.
     """
 
     @property

@@ -65,10 +65,10 @@ def bodies_touching(
     """Debounced force of every body that ever touched an object, sorted by name [N].
 
     Args:
-        run: What happened.
-        name: The object.
+        run: The run with its recorded signals.
+        name: The name of the object.
         among: Only these bodies; default any.
-        but: Not these bodies.
+        but: Bodies that are left out.
     """
     touching = {b if a == name else a for a, b in run.signals.contact_forces if name in (a, b)}
     others = sorted(
@@ -110,7 +110,7 @@ def between_fingers(run: Run, name: str) -> BoolArray:
 def _presses_from_both_sides(run: Run, name: str) -> BoolArray:
     """Samples at which two finger sides press an object against each other, shape (N,).
 
-    Where no direction was recorded (an older run) nothing speaks against it.
+    Where no direction was recorded (an older run) the press counts.
     """
     sides = gripper_of(run).sides
     pressures: list[FloatArray] = []

@@ -27,7 +27,7 @@ def recorded_distances(run: Run, first: str, second: str) -> dict[Key, FloatArra
         if not rows and first == "robot" and run.objects:
             raise NotObservable("no distances between the robot and objects were recorded")
         if not rows:
-            raise NotReached(f"there was nothing beside {first}")
+            raise NotReached(f"there was no other body than {first} to measure to")
         return rows
     rows = {
         key: clearances[key]

@@ -55,7 +55,7 @@ def drift_in_hand(run: Run, name: str) -> tuple[str, FloatArray, FloatArray, Boo
         raise NotReached(f"{name} was never attached")
     count, times = len(run.signals.times), run.signals.times
     drift, turn = np.full(count, np.nan), np.full(count, np.nan)
-    speaks = np.zeros(count, dtype=bool)
+    is_held = np.zeros(count, dtype=bool)
     physical = records[-1].represents
     for record in records:
         if not object_record(run, record.represents).in_simulation:
@@ -71,7 +71,7 @@ def drift_in_hand(run: Run, name: str) -> tuple[str, FloatArray, FloatArray, Boo
         first = int(gripped[0])
         held = during & (np.arange(count) >= first) & (times < released_at(run, record))
         held[first] = True
-        speaks |= held
+        is_held |= held
         drift[held] = np.linalg.norm(error[held, :3] - zero[:3], axis=1)
         if equal_turns(object_record(run, record.represents).shapes, np.eye(3)) == ANY:
             axis = np.array([0.0, 0.0, 1.0])
@@ -79,6 +79,6 @@ def drift_in_hand(run: Run, name: str) -> tuple[str, FloatArray, FloatArray, Boo
         else:
             turned = rotation_angle(quat_product(conjugate(zero[3:]), error[:, 3:]))
         turn[held] = turned[held]
-    if not speaks.any():
+    if not is_held.any():
         raise NotReached(f"the fingers never held {physical} while it was attached")
-    return physical, drift, turn, speaks
+    return physical, drift, turn, is_held

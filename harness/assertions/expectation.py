@@ -68,7 +68,7 @@ class Expectation(ExpectationFields):
         """What became of it, without its text and its place in the file.
 
         Args:
-            run: What happened.
+            run: The run with its recorded signals.
             step: The id of the step under which it stands; empty for the whole run.
 
         Raises:
@@ -86,7 +86,7 @@ class Predicate(Expectation, PredicateFields):
     """A condition that holds or does not hold at each sample of a run.
 
     Attributes:
-        is_opposed: Whether its measures show what speaks against it: contacts of a collision.
+        is_opposed: Whether its measures show its violation: contacts of a collision.
     """
 
     word: ClassVar[str] = ""

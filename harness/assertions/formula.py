@@ -5,7 +5,7 @@ would have followed after the last sample and whatever a missing sample was. The
 the record decides. `always[0, 5]` of which three seconds were recorded is at most their minimum
 and at least minus infinity; so it may have failed, and cannot have passed.
 
-Between two samples nobody knows: `always[a, b]` looks at every sample from `a` on up to the first
+Between two samples nothing is known: `always[a, b]` reads every sample from `a` on up to the first
 one that is at `b` or later, `eventually[a, b]` and `until[a, b]` at those from `a` up to `b`.
 
 The package rtamt (0.4.10) was tried and not taken: its discrete monitor counts samples,
@@ -128,7 +128,7 @@ class Evaluation:
     """The bounds of every part of a formula over one window, each calculated once.
 
     Args:
-        window: The samples.
+        window: The samples of the window.
         is_open: Whether the window goes on after its last sample in a way that is not known.
     """
 
@@ -298,7 +298,7 @@ def _minima(values: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
 
 
 def _unbounded(first: FloatArray, second: FloatArray, after: float) -> FloatArray:
-    """A until B from every sample on; `after` is what comes behind the last one."""
+    """A until B from every sample on; `after` is the value after the last one."""
     values: list[float] = []
     for held, comes in zip(first[::-1].tolist(), second[::-1].tolist(), strict=True):
         after = max(comes, min(held, after))

@@ -89,7 +89,7 @@ def near(
     Args:
         window: Where it is judged.
         targets: Position of each joint by its name.
-        tolerance: Of each joint.
+        tolerance: The tolerance of each joint.
         is_given: Whether the file gives the tolerance.
     """
     parts: list[Part] = []

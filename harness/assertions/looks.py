@@ -1,4 +1,4 @@
-"""Which pictures the expectations about cameras need, and for how long each of them speaks."""
+"""Which pictures the expectations about cameras need, and how long each of them counts."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def period(camera: Camera, window: Window) -> float:
 def looks_of_expectations(run: Run, expectations: Sequence[PlacedExpectation]) -> tuple[Look, ...]:
     """What to draw so that every expectation can be judged that reads pictures.
 
-    The last sample of its window; beside a temporal word, `for` or `within` the first one too and
+    The last sample of its window; with a temporal word, `for` or `within` the first one too and
     samples between them, one period apart.
     """
     cameras = {camera.name: camera for camera in run.cameras}
@@ -63,6 +63,6 @@ def _predicates_in(spec: Expectation) -> Iterator[tuple[Predicate, bool]]:
 
 def _watched(window: Window, every: float) -> list[int]:
     times = window.times
-    wanted = np.arange(float(times[0]), float(times[-1]), every)
-    inside = np.searchsorted(times, wanted - 1e-9)
+    due = np.arange(float(times[0]), float(times[-1]), every)
+    inside = np.searchsorted(times, due - 1e-9)
     return sorted({*(window.start + inside).tolist(), window.stop - 1})

@@ -24,11 +24,11 @@ class Evidence:
     """What a sample shows.
 
     Attributes:
-        text: In words, with numbers, without the time.
-        measures: The tightest first.
-        margin: In `unit`, where it says more than the signal's value; else None.
-        unit: Of `margin`.
-        is_moment: Whether the text speaks of the sample, rather than of all the time judged.
+        text: The evidence in words, with numbers, without the time.
+        measures: The measures, the tightest first.
+        margin: The margin in `unit`, where it says more than the signal's value; else None.
+        unit: The unit of `margin`.
+        is_moment: Whether the text is about the sample, rather than of all the time judged.
     """
 
     text: str
@@ -43,11 +43,12 @@ class MarginSignal:
     """How far a predicate is from flipping at each sample of a window.
 
     Attributes:
-        values: Not negative where the predicate holds; NaN where nobody can say, shape (n,).
-        unit: Of the values.
+        values: The values, not negative where the predicate holds; NaN where it is unknown, shape
+            (n,).
+        unit: The unit of the values.
         evidence: What the sample at an index of the window shows.
-        applies: Samples of which the predicate speaks (default all): a distance to an object says
-            nothing before the object is there. `always` skips the others, nothing holds at them.
+        applies: Samples at which the predicate is defined (default all): distance to an object has
+            no value before the object exists. `always` skips the others, nothing holds at them.
         progress: Chooses the sample to show among equal margins.
     """
 
@@ -63,14 +64,14 @@ class Part:
     """One quantity of a predicate, against its limit.
 
     Attributes:
-        quantity: What is measured.
-        values: Shape (n,), in `unit`.
-        limit: In `unit`.
+        quantity: The name of the measured quantity.
+        values: The measured values in `unit`, shape (n,).
+        limit: The limit of the value, in `unit`.
         comparison: How values must stand to the limit.
         scale: What a margin is divided by before it is compared with other parts'; default |limit|.
         relevant: Samples at which the part counts; default all.
-        detail: Which joint, link or pair.
-        points: Of a distance in the world, where something was to be and where it was, shape
+        detail: The joint, link or pair that was measured.
+        points: The two ends of a distance in the world: the required and the actual place, shape
             (n, 3) each.
         ceiling: The largest value that can be measured, in `unit`; inf where there is none. The
             margin of a value that must be large is a share of what lies between limit and ceiling.
@@ -149,12 +150,12 @@ def measured(
     """The measure of a quantity, for a verdict.
 
     Args:
-        quantity: What was measured.
-        value: In the quantity's unit.
-        limit: In the same unit.
+        quantity: The name of the measured quantity.
+        value: The value in the quantity's unit.
+        limit: The limit in the same unit.
         comparison: How the value must stand to the limit.
-        time: Of the sample [s].
-        detail: Which joint, link or pair.
+        time: The time of the sample [s].
+        detail: The joint, link or pair that was measured.
         name: The name of the measure where it holds more than the quantity's.
     """
     return Measure(
@@ -186,12 +187,12 @@ def all_of(
 
     Args:
         window: Where it is judged.
-        parts: At least one.
+        parts: The parts; at least one.
         text: What to say of a sample, given its index and its tightest measure.
         present: Samples at which there is something to judge; NaN elsewhere.
-        applies: Samples of which it speaks, as in `MarginSignal`.
+        applies: Samples at which it is defined, as in `MarginSignal`.
         shown: How many measures a verdict shows.
-        is_moment: Whether the text speaks of the sample.
+        is_moment: Whether the text is about the sample.
     """
     rows: FloatArray = np.stack([part.shares() for part in parts])
     values: FloatArray = rows.min(axis=0)  # NaN in any part is NaN

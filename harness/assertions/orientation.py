@@ -1,4 +1,4 @@
-"""Measures of `never`, and of a collision that is asked for: their limits are turned round."""
+"""Measures of `never`, and of an expected collision: their limits are reversed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def against(measures: Sequence[Measure], *, is_passed: bool) -> tuple[Measure, .
     """A predicate's measures as `never` reads them.
 
     A predicate holds where all its measures stand as they must; `never` passes where one does not.
-    That one is told with its limit turned round, the others as plain numbers. Measures that speak
+    That one is shown with its limit reversed, the others as plain numbers. Measures that count
     against the predicate from the start, as those of `collision` do, stay as they are.
     """
     limited = [each for each in measures if math.isfinite(each.limit)]

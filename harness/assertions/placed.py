@@ -15,9 +15,9 @@ class PlacedExpectation:
     """What is expected, where it is judged, and where the file says so.
 
     Attributes:
-        spec: The expectation's model.
+        spec: The model of the expectation.
         step: Id (or path) of the step it stands on; empty for the whole run.
-        line: In the scenario file, from 1; 0 if unknown.
+        line: The line in the scenario file, from 1; 0 if unknown.
     """
 
     spec: Expectation

@@ -23,7 +23,7 @@ FOREVER = 1e9
 
 @dataclass(frozen=True)
 class Decision:
-    """What a reduction came to.
+    """The result of a reduction over time.
 
     Attributes:
         value: Signed so that the expectation holds where it is not negative (never: positive).
@@ -37,7 +37,7 @@ class Decision:
 
 
 class TooShort(Exception):
-    """No sample of the window leaves room for the time that is asked for."""
+    """No sample of the window leaves room for the required time."""
 
 
 def later(times: FloatArray) -> FloatArray:
@@ -103,14 +103,14 @@ def eventually(
 
     Args:
         values: Margins, shape (n,), n > 0, without NaN.
-        times: Of the samples [s], shape (n,).
+        times: The times of the samples [s], shape (n,).
         hold: Must be held so long without a break [s].
         within: Latest beginning after the first sample [s].
         progress: Chooses the deciding sample among equal margins, shape (n,); among spans of equal
             margins the one with most samples that hold is chosen.
 
     Raises:
-        TooShort: No sample that may begin it has `hold` seconds behind it.
+        TooShort: No sample that may begin it is followed by `hold` seconds.
     """
     starts = np.arange(len(times))
     if within is not None:
@@ -200,7 +200,7 @@ def until(
     Args:
         first: Margins of what must hold before, shape (n,), n > 0, without NaN.
         second: Margins of what must come, shape (n,), without NaN.
-        times: Of the samples [s], shape (n,).
+        times: The times of the samples [s], shape (n,).
         hold: The second must be held so long without a break [s].
         within: Latest beginning of the second after the first sample [s].
 
@@ -208,7 +208,7 @@ def until(
         The decision, and whether it was a sample of the second that decided.
 
     Raises:
-        TooShort: No sample at which the second may begin has `hold` seconds behind it.
+        TooShort: No sample at which the second may begin is followed by `hold` seconds.
     """
     starts = np.arange(len(times))
     if within is not None:

@@ -75,7 +75,7 @@ def window_of(run: Run, step_id: str) -> Window:
 
     Raises:
         NotReached: There is no such step, it was not reached, or nothing was recorded in it.
-        NotObservable: Nobody recorded when steps ran.
+        NotObservable: The recording does not say when steps ran.
     """
     if not step_id:
         window = Window(run, 0, len(run.signals.times))
@@ -106,7 +106,7 @@ def object_record(run: Run, name: str) -> ObjectRecord:
 
 
 def refuse_unrecorded_steps(run: Run) -> None:
-    """Tell a run in which no step reported something from one whose steps are not known.
+    """Refuse a run whose steps are unknown, so that it is not taken for one without results.
 
     Raises:
         NotObservable: The steps were not recorded.

@@ -28,7 +28,7 @@ class Terms:
         hold: How long it must hold without a break [s].
         within: The latest beginning after the window's start [s].
         step: The step it is judged over; empty for the whole run.
-        is_opposed: Whether the predicate's measures show what speaks against it.
+        is_opposed: Whether the predicate's measures show its violation.
     """
 
     word: str
@@ -47,7 +47,7 @@ def terms_of(
         word: The temporal word, or the `judged` word of a bare predicate.
         fields: The temporal word, if there is one, and the predicate.
         step: The step where the expectation stands.
-        is_opposed: As in `Terms`.
+        is_opposed: Whether the measures show a violation, as in `Terms`.
 
     Raises:
         NotObservable: It names two steps.
@@ -67,7 +67,7 @@ def one_step(during: tuple[str | None, ...], step: str) -> str:
     """The step that an expectation is judged over.
 
     Args:
-        during: As its parts say it.
+        during: The `during` of each part, or None.
         step: Where it stands, if none of them does.
 
     Raises:
@@ -132,7 +132,7 @@ def _reduce(
     applies: np.ndarray,
     progress: FloatArray | None,
 ) -> Decision:
-    """What nobody knows speaks against the expectation; where it does not apply, nothing holds."""
+    """The unknown counts against the expectation; where it does not apply, nothing holds."""
     hold, within = terms.hold, terms.within
     unknown = np.isnan(values)
     low = np.where(unknown | ~applies, -np.inf, values)
@@ -180,7 +180,7 @@ def _too_short(terms: Terms, times: FloatArray) -> Verdict:
 
 
 def _held(terms: Terms, values: FloatArray, times: FloatArray, decision: Decision) -> str:
-    """How long it held at most, where a time was asked for and was not reached."""
+    """How long it held at most, where a time was required and was not reached."""
     if terms.hold is None or terms.word == "never" or decision.holds:
         return ""
     longest = longest_hold(np.nan_to_num(values, nan=-1.0), times)

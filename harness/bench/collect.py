@@ -62,8 +62,8 @@ def collect(
     not compared; so are motions with path constraints, which have their own planner.
 
     Args:
-        path: The scenario.
-        planners: `planner_id`s.
+        path: The path of the scenario.
+        planners: The `planner_id`s to compare.
         seeds: Scenario seeds; `harness run --seed` plans the same motions.
         on_motion: Called with each motion when its trials are complete.
         overrides: Dotted path in the file -> new value, as YAML text.

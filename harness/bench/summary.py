@@ -16,10 +16,10 @@ class Quantity:
     """A measured quantity that is compared between planners.
 
     Attributes:
-        key: Key in results.json.
+        key: The key in results.json.
         name: Displayed name with unit.
         value: Value of a trial in that unit; NaN if the trial has none.
-        digits: Number of decimals.
+        digits: The number of decimals shown.
         solved_only: Whether failed trials have no value.
         may_be_log: Whether a plot may use a logarithmic axis.
     """

@@ -13,6 +13,7 @@ from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.planning.collision.scene import CoalScene
 from harness.ports import AnyGoal, Goal, MotionPlanner, PlanningOptions
+from harness.recording.motion_failures import SearchFailure
 
 SPACING = 0.05
 """Joint-space distance between the states that smoothness and clearance are measured at [rad]."""
@@ -29,7 +30,7 @@ class Trial:
     """The result of one planning attempt.
 
     Attributes:
-        planner: The `planner_id`.
+        planner: The `planner_id` of the trial.
         seed: Seed of the scenario; `harness run --seed` plans the same motion.
         error_code: Code of the failure; empty when planning succeeded.
         state_checks: States checked for collision, including shortening and verification.
@@ -72,9 +73,9 @@ def try_plan(
     """Plan once, and measure the result.
 
     Args:
-        planner: Plans in `scene`.
+        planner: The planner, which plans in `scene`.
         scene: The planning scene at the start of the motion.
-        group: The planning group.
+        group: The name of the planning group.
         start: Joint positions in description order.
         goal: Goal of the motion.
         options: Options with the planner and the step's seed.
@@ -84,7 +85,8 @@ def try_plan(
     try:
         plan = planner.plan(group, start, goal, options)
     except PlanningFailed as failure:
-        checks = int(failure.facts.get("state_checks", 0))
+        search = failure.details.find(SearchFailure)
+        checks = 0 if search is None else search.state_checks
         return Trial(options.planner_id, seed, failure.code, checks)
     spent = time.process_time() - begin
     path = even(plan.trajectory.positions)

@@ -62,7 +62,7 @@ class CameraScene:
         """The view of a camera; None while its carrier is not in the scene.
 
         Args:
-            camera: The camera.
+            camera: The camera that is simulated.
             poses: The result of `pose`.
         """
         carrier = poses.get(camera.frame)

@@ -51,7 +51,7 @@ def take_pictures(
     quality, as in its compressed stream. A camera whose carrier is not in the scene takes none.
 
     Args:
-        description: The robot.
+        description: The description of the robot.
         objects: All objects of the scenario.
         run: The run, its cameras included.
         looks: The requested pictures, in order of time.

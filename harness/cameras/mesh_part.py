@@ -18,8 +18,8 @@ class MeshPart:
     """Triangles of one colour.
 
     Attributes:
-        vertices: Shape (V, 3) [m].
-        faces: Shape (F, 3), indices of vertices.
+        vertices: The vertices, shape (V, 3) [m].
+        faces: The faces as indices of vertices, shape (F, 3).
         rgba: None where the file gives no colour.
     """
 

@@ -73,9 +73,9 @@ def build_picture_model(
     """Compile the visuals of a robot and its world.
 
     Args:
-        description: The robot.
+        description: The description of the robot.
         objects: All objects; a plane among them becomes the floor.
-        floor_height: z of the floor [m].
+        floor_height: The z coordinate of the floor [m].
         width: Largest width of a picture [pixels].
         height: Largest height of a picture [pixels].
     """

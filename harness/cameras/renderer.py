@@ -76,7 +76,7 @@ def render_overview(
         radii: Radii of the spheres, shape (N,) [m].
         width: Width of the picture [pixels].
         height: Height of the picture [pixels].
-        backend: As in `make_renderer`.
+        backend: The rendering backend, as in `make_renderer`.
     """
     renderer = make_renderer(picture, width, height, backend)
     try:

@@ -13,13 +13,13 @@ from harness.cameras.caption import DARK, RED, write_captioned
 from harness.cameras.picture_model import build_picture_model, undrawn
 from harness.cameras.recorded_scene import floor_height, poses_at
 from harness.cameras.renderer import make_renderer
-from harness.cameras.robot_poses import link_poses
 from harness.cameras.viewpoint import Viewpoint, fit_viewpoint
 from harness.core.activity import Activity, unobserved
 from harness.core.geometry import bounding_radius
 from harness.core.world import WorldObject
 from harness.recording.run import Run
 from harness.robot.description import RobotDescription
+from harness.robot.forward_kinematics import robot_poses
 
 WIDTH, HEIGHT = 640, 480
 STATES = 40
@@ -63,7 +63,7 @@ def save_stills(
     Args:
         description: The robot, with its visuals.
         world_objects: All objects of the scenario.
-        run: The run.
+        run: The run with its recorded signals.
         folder: Folder of the files, which is created if needed; files are numbered by step.
         backend: `auto`, `egl`, `osmesa` or `rays`.
         activity: Called for each picture.
@@ -120,12 +120,12 @@ def overview(
     }
     samples = np.unique(np.linspace(0, last, STATES).astype(int))
     for sample in samples:
-        poses = link_poses(description, run.signals.joint_positions[sample])
+        poses = robot_poses(description, run.signals.joint_positions[sample])
         for name, size in link_sizes.items():
             if name != "world":
                 points.append(poses[name].translation)
                 radii.append(min(size, 0.15))
-    base = link_poses(description, run.signals.joint_positions[0])[description.base_link]
+    base = robot_poses(description, run.signals.joint_positions[0])[description.base_link]
     for sample in (0, last):
         scene = poses_at(description, world_objects, run, int(sample))
         for obj in world_objects:

@@ -33,7 +33,7 @@ def record_videos(
     """A video of each camera, the files by path, and findings on the videos.
 
     Args:
-        description: The robot.
+        description: The description of the robot.
         objects: All objects of the scenario.
         run: The run, its cameras included.
         rates: Frames per second of simulated time, by camera.

@@ -9,10 +9,12 @@ import numpy as np
 
 from harness.cell.cell import Cell
 from harness.cell.goals import TcpGoal, resolve_goal
+from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.language.goals import GoalFields
 from harness.ports import JointGoal, PlanningOptions
+from harness.recording.explanation import ApproachFailure
 
 MOST_BRANCHES = 2
 """Free solutions of inverse kinematics before the approach from which it is tried."""
@@ -23,9 +25,9 @@ class Approach:
     """A straight motion of the TCP to where something is grasped or put down.
 
     Attributes:
-        before: Where it begins.
-        at: Where it ends.
-        number: Of the grasp or turn, from 0; approaches of several lengths share it.
+        before: The goal at which the approach begins.
+        at: The goal at which the approach ends.
+        number: The number of the grasp or turn, from 0; approaches of several lengths share it.
     """
 
     before: TcpGoal
@@ -38,9 +40,9 @@ class Search:
     """How approaches are tried.
 
     Attributes:
-        group: The planning group.
+        group: The name of the planning group.
         start: The whole robot before, description order.
-        options: Of the straight approach.
+        options: The options of the straight approach.
         may_end: Whether it may end at these positions of the whole robot.
         then: Whether what follows can be carried out from there; preferred, not required.
     """
@@ -79,11 +81,11 @@ def _most_promising(approaches: Sequence[Approach], search: Search, cell: Cell) 
     progress = [_progress(approach, search, cell) for approach in approaches]
     best = approaches[int(np.argmax(progress))]
     for goal, options in ((best.at, search.options), (best.before, cell.current.options)):
-        wanted = resolve_goal(GoalFields(**goal.keys), search.group, cell)
+        joint_goal = resolve_goal(GoalFields(**goal.keys), search.group, cell)
         try:
-            cell.planner.check_goal(search.group, search.start, wanted, options)
+            cell.planner.check_goal(search.group, search.start, joint_goal, options)
         except PlanningFailed as failure:
-            failure.facts["is_start_of_approach"] = goal is best.before
+            failure.details += Details.of(ApproachFailure(goal is best.before))
             raise
     return best
 
@@ -132,10 +134,10 @@ def _ends(approach: Approach, search: Search, cell: Cell) -> Iterator[FloatArray
 
 def _solutions(goal: TcpGoal, search: Search, cell: Cell) -> list[FloatArray]:
     """The whole robot at a goal, nearest to the start first."""
-    wanted = resolve_goal(GoalFields(**goal.keys), search.group, cell)
-    if isinstance(wanted, JointGoal):
+    joint_goal = resolve_goal(GoalFields(**goal.keys), search.group, cell)
+    if isinstance(joint_goal, JointGoal):
         raise TypeError("an approach leads to a pose or a position")
-    solutions = cell.kinematics.solve(search.group, wanted, search.start, search.options.seed)
+    solutions = cell.kinematics.solve(search.group, joint_goal, search.start, search.options.seed)
     return [_with_arm(positions, search.start, search.group, cell) for positions in solutions]
 
 

@@ -30,7 +30,7 @@ class ProgramStep:
         path: Place in the expanded file: `steps[3]`, `steps[3].lift`.
         spec: What the file says.
         summary: One line for a person.
-        line: In the file, from 1.
+        line: The line in the file, from 1.
         options: How its motions are planned, seed included.
         children: Nested steps of the file.
     """
@@ -64,14 +64,14 @@ class Program:
     """What will be executed.
 
     Attributes:
-        title: The scenario's.
-        description: The robot.
+        title: The title of the scenario.
+        description: The description of the robot.
         world: Objects that are there at the start, poses in the world.
         later_objects: Objects that steps add, by name; where they appear is the step's to say.
-        steps: Of the file.
-        expectations: Of steps and run, in file order.
-        seed: Of the run.
-        cameras: Of robot, world and scenario, by name.
+        steps: The steps of the file.
+        expectations: The expectations of steps and run, in file order.
+        seed: The seed of the run.
+        cameras: The cameras of robot, world and scenario, by name.
         step_locs: Where each step is written, by its path.
         object_locs: Where each object is written, by name; the world's own are at `world`.
         videos: Cameras that are recorded all through the run, and their frames a second.

@@ -33,7 +33,7 @@ class Problems:
         """Collect nothing yet.
 
         Args:
-            lines: Of the file.
+            lines: The lines of the file.
             missing: What could not be loaded; something stands in for it.
         """
         self._lines = lines
@@ -68,7 +68,7 @@ class Problems:
         Args:
             loc: Where the name stands.
             what: It should be the name of.
-            name: That nothing has.
+            name: A name that nothing else has.
             known: Names that something has.
             is_key: The name is a key, not a value.
             start: The name is a part of the text there and begins at this character, from 0.
@@ -99,14 +99,14 @@ class Scope:
     """Names that a step or an expectation may use.
 
     Attributes:
-        description: The robot.
+        description: The description of the robot.
         objects: Every object known so far, by name, whether it is in the scene now or not.
-        present: Objects in the scene at this point of the file, as far as the file tells.
+        present: Objects in the scene at this point of the file, as far as the file says.
         attached: Objects attached at this point.
         added: Objects that steps added and nothing removed.
         cameras: Every camera, by name.
-        asked_time: Simulated time that steps have asked for by number [s].
-        problems: Where to report.
+        requested_time: Simulated time that steps have requested as a number [s].
+        problems: The problems, to which mistakes are added.
         link_pose: T_world_link at joint positions in description order.
     """
 
@@ -124,7 +124,7 @@ class Scope:
         self.attached: dict[str, None] = {}
         self.added: dict[str, None] = {}
         self.cameras: dict[str, Camera] = {}
-        self.asked_time = 0.0
+        self.requested_time = 0.0
         self.step_ids: dict[str, None] = {}
 
     def add_object(self, obj: WorldObject, *, present: bool = False) -> None:
@@ -159,19 +159,19 @@ class Scope:
             self.check_link(name, loc)
 
     def take_time(self, seconds: float, loc: Loc) -> None:
-        """Simulated time that a step asks for; all of it must fit into a run."""
-        before, self.asked_time = self.asked_time, self.asked_time + seconds
-        if before <= LONGEST_RUN < self.asked_time:
+        """Simulated time that a step requests; all of it must fit into a run."""
+        before, self.requested_time = self.requested_time, self.requested_time + seconds
+        if before <= LONGEST_RUN < self.requested_time:
             self.problems.add(
                 loc,
-                f"the steps up to here ask for {self.asked_time:g} s, and a run may take"
+                f"the steps up to here request {self.requested_time:g} s, and a run may take"
                 f" {LONGEST_RUN:g} s of simulated time",
                 "shorten it, or make it several scenarios",
                 needs=(),
             )
 
     def check_group(self, name: str | None, loc: Loc) -> str:
-        """A planning group; returns the one that is meant."""
+        """Check a planning group; returns its name, or the default group's."""
         if name is None:
             return self.description.default_group
         if name not in self.description.groups:
@@ -192,7 +192,7 @@ class Scope:
         elif simulated and not obj.in_simulation:
             self.problems.add(
                 loc,
-                f"'{name}' is known to the planner alone, so the physics cannot tell of it",
+                f"'{name}' is known to the planner alone, so the physics has no record of it",
                 "name an object that is `in: both` or `in: simulation`",
             )
 

@@ -18,7 +18,7 @@ MOST_CASES = 100
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Check files; problems of all of them are told."""
+    """Check files; problems of all of them are reported."""
     return guarded(lambda: _run(arguments))
 
 
@@ -33,7 +33,7 @@ def _run(arguments: argparse.Namespace) -> int:
     code = 0
     documents: list[object] = []
     lines: list[str] = []
-    told_in = problem_annotation if arguments.format == "github" else short_problem
+    format_problem = problem_annotation if arguments.format == "github" else short_problem
     for file, case, overrides in _cases(arguments, files):
         found = check_file(file, overrides=overrides, seed=arguments.seed)
         outcome = "invalid" if found.problems else "failed" if found.predicted else "passed"
@@ -44,7 +44,7 @@ def _run(arguments: argparse.Namespace) -> int:
                           "explanations": found.explanations,
                           "notes": found.notes})  # fmt: skip
         if arguments.format != "full":
-            lines += [told_in(problem) for problem in (*found.problems, *found.predicted)]
+            lines += [format_problem(problem) for problem in (*found.problems, *found.predicted)]
             continue
         for note in found.notes:
             say(f"note: {note}")
@@ -54,13 +54,13 @@ def _run(arguments: argparse.Namespace) -> int:
             say_text(str(problem))
             say(*(f"    {line}" for line in explained))
         count = len(found.problems)
-        told = {
+        summaries = {
             "invalid": f"{count} problem{'s' if count != 1 else ''}",
             "failed": "steps that will fail",
             "passed": "ok",
-        }[outcome]
+        }
         name = f"{file} [{case}]" if case else str(file)
-        say(f"{name}: {style.outcome(outcome, told)}")
+        say(f"{name}: {style.outcome(outcome, summaries[outcome])}")
     if arguments.format == "json":
         with only_json_on_stdout() as write_json:
             write_json({"format": "armharness-check/1", "exit_code": code, "files": documents})

@@ -59,7 +59,7 @@ def _export(arguments: argparse.Namespace, stored: StoredRun) -> None:
 
 
 def _refuse_taken(target: Path, *, is_forced: bool) -> None:
-    """Only a bag makes way for a bag, and only when asked to."""
+    """Only a bag is replaced by a bag, and only with --force."""
     if not target.exists():
         return
     if not is_forced:
@@ -69,7 +69,7 @@ def _refuse_taken(target: Path, *, is_forced: bool) -> None:
 
 
 def _write_bag(bag: Path, stored: StoredRun, options: BagOptions) -> None:
-    """Write it beside its place, then put it there."""
+    """Write it next to its place, then move it there."""
     from harness.reporting.rosbag.write import write_bag
 
     try:

@@ -36,7 +36,7 @@ def _run(arguments: argparse.Namespace) -> int:
             write_json(_document(grade))
         return _code(grade)
     grade = grade_bag(scenarios[0], Path(arguments.bag), topics, dict(arguments.overrides))
-    _tell(grade)
+    _print_grade(grade)
     return _code(grade)
 
 
@@ -46,7 +46,7 @@ def _code(grade: Grade) -> int:
     return 0 if is_full else EXIT_CODES["failed"]
 
 
-def _tell(grade: Grade) -> None:
+def _print_grade(grade: Grade) -> None:
     from harness.reporting.terminal import Style, measure_text, verdict_line
 
     style = Style.of(sys.stdout)

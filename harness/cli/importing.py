@@ -1,4 +1,4 @@
-"""`harness import`: files of other programs as files of ours."""
+"""`harness import`: files of other programs as harness files."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MOST_NOTES = 20
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write a world file or a robot's folder; what of the other file is left out is told."""
+    """Write a world file or a robot's folder; what is left out of the other file is reported."""
     return guarded(lambda: _import(arguments))
 
 

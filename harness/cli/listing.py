@@ -56,13 +56,13 @@ def _expectations() -> Rows:
 def _plugins(kind: str) -> Rows:
     """Name, package and first sentence of every plug-in of a kind."""
     from harness.core.registry import broken_plugins, registry
-    from harness.language.reference import sentence
+    from harness.language.annotations import description_of
 
     for broken in broken_plugins():
         complain(f"harness: {broken}")
     registered = registry(kind)
     return [
-        (name, registered.package_of(name), sentence(model).split("\n")[0])
+        (name, registered.package_of(name), description_of(model).split("\n")[0])
         for name, model in registered.items()
     ]
 

@@ -55,7 +55,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line.
 
     Returns:
-        The exit code.
+        The exit code of the command.
     """
     import gc
     import importlib
@@ -186,18 +186,17 @@ def _parser() -> argparse.ArgumentParser:
         return added
 
     options.for_run(command("run", "run scenarios and judge them"))
+    options.for_merge(command("merge", "merge the parts of a suite that ran with --shard"))
     options.for_check(command("check", "validate scenarios and the reach of their goals"))
     options.for_explain(command("explain", "print the program that a scenario becomes"))
     options.for_list(command("list", "list what a scenario may name", module="listing"))
     options.for_view(command("view", "open the page of a run"))
     options.for_judge(command("judge", "judge a saved run again"))
     options.for_grade(command("grade", "grade a recording of another program by a scenario"))
-    options.for_compare(command("compare", "tell what changed from one saved run to another"))
+    options.for_compare(command("compare", "report what changed from one saved run to another"))
     options.for_new(command("new", "write a commented scenario that passes"))
     options.for_export(command("export", "write a saved run as a rosbag2, and its robot as a URDF"))
-    options.for_import(
-        command("import", "write files of other programs as ours", module="importing")
-    )
+    options.for_import(command("import", "convert files of other programs", module="importing"))
     options.for_robot(command("robot", "look a robot over, or draw it"))
     options.for_ik_test(
         command("ik-test", "test a function that solves inverse kinematics", module="ik_test")

@@ -89,6 +89,13 @@ def for_run(run: argparse.ArgumentParser) -> None:
     run.add_argument(
         "--report-dir", metavar="DIR", default="reports", help="where reports go (default: reports)"
     )
+    run.add_argument(
+        "--shard",
+        metavar="N/COUNT",
+        default="",
+        help="run part N of COUNT of the suite, or with 'auto' the part that SLURM, Kubernetes or"
+        " GitLab names; `harness merge` joins the parts",
+    )
     run.add_argument("--no-report", action="store_true", help="write no report")
     run.add_argument("--no-page", action="store_true", help="write the report without its page")
     run.add_argument("--bag", action="store_true", help="write a rosbag2 into the report too")
@@ -108,6 +115,26 @@ def for_run(run: argparse.ArgumentParser) -> None:
     )
     run.add_argument("--in-process", action="store_true",
                      help="no process for each scenario: for debuggers")  # fmt: skip
+
+
+def for_merge(merge: argparse.ArgumentParser) -> None:
+    """Of `harness merge`."""
+    merge.add_argument(
+        "folders", metavar="DIR", nargs="+", help="report folder of `harness run --shard`"
+    )
+    merge.add_argument(
+        "--report-dir",
+        metavar="DIR",
+        default="reports",
+        help="where the results go (default: reports)",
+    )
+    merge.add_argument(
+        "--history",
+        metavar="DIR",
+        default=None,
+        help="a folder of earlier results.json files, whose margins the suite's page shows",
+    )
+    _format_options(merge)
 
 
 def for_check(check: argparse.ArgumentParser) -> None:
@@ -154,7 +181,7 @@ def for_list(listing: argparse.ArgumentParser) -> None:
 def for_view(view: argparse.ArgumentParser) -> None:
     """Of `harness view`."""
     view.add_argument("run", metavar="RUN", help="the run's report folder, or a file in it;"
-                      " '#t=10.1' behind it opens that moment")  # fmt: skip
+                      " '#t=10.1' after it opens that moment")  # fmt: skip
     view.add_argument("--rebuild", action="store_true", help="write the page anew")
     view.add_argument("--no-open", action="store_true", help="only say where the page is")
 
@@ -242,7 +269,7 @@ def for_import(importing: argparse.ArgumentParser) -> None:
 def for_ik_test(test: argparse.ArgumentParser) -> None:
     """Of `harness ik-test`."""
     add = test.add_argument
-    add("solver", metavar="SOLVER", help="module:function or file.py:function; `own` is ours")
+    add("solver", metavar="SOLVER", help="module:function or file.py:function; `own` is built in")
     add("--robot", metavar="ROBOT", required=True, help=ROBOT)
     add_robot_options(test)
     add("--link", metavar="LINK", default="", help="that is placed (default: the TCP)")

@@ -18,7 +18,7 @@ from harness.suite.warm import WarmServer
 
 if TYPE_CHECKING:
     from harness.reporting.terminal import Style
-    from harness.suite.cases import CaseJob
+    from harness.session.run_request import RunRequest
     from harness.suite.suite_run import SuiteRun
 
 BRIEF_FROM = 20
@@ -45,15 +45,15 @@ def _run(arguments: argparse.Namespace) -> int:
 
             with only_json_on_stdout() as write_json:
                 suite.collect(server)
-                _write(arguments, suite)
+                write_files(arguments, suite)
                 _show_interruption(arguments, suite, time.monotonic() - start)
                 write_json(results_document(suite.record, suite.exit_code))
             return suite.exit_code
         if arguments.format != "full":
             suite.collect(server)
-            _write(arguments, suite)
+            write_files(arguments, suite)
             _show_interruption(arguments, suite, time.monotonic() - start)
-            return _tell_lines(arguments, suite)
+            return show_lines(arguments, suite)
         from harness.cli.progress import ProgressLines
         from harness.reporting.terminal import Style
 
@@ -67,14 +67,15 @@ def _run(arguments: argparse.Namespace) -> int:
         )
         suite.collect(server, progress.step, progress.result)
         output().status(lambda: "  writing the results")
-    page = _write(arguments, suite)
+    page = write_files(arguments, suite)
     output().status(None)
-    _tell(arguments, suite, time.monotonic() - start, page)
+    show_results(arguments, suite, time.monotonic() - start, page)
     return suite.exit_code
 
 
 def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
-    from harness.suite.plan import RunRequest, planned_cases
+    from harness.suite.plan import SuiteRequest, planned_cases, record_of
+    from harness.suite.shards import shard_of, write_shard_record
     from harness.suite.suite_run import How, SuiteRun
 
     if arguments.history and not Path(arguments.history).is_dir():
@@ -82,39 +83,42 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
     root = None if arguments.no_report else Path(arguments.report_dir)
     if root is not None:
         clean_report_folder(root)
-    plan = planned_cases(
-        files,
-        RunRequest(
-            expression=arguments.expression,
-            cases=arguments.cases,
-            overrides=dict(arguments.overrides),
-            seed=arguments.seed,
-            samples=arguments.samples,
-            report_root=root,
-            keep=arguments.keep,
-            page=not arguments.no_page,
-            bag=arguments.bag,
-        ),
+    shard = shard_of(arguments.shard) if arguments.shard else None
+    request = SuiteRequest(
+        expression=arguments.expression,
+        cases=arguments.cases,
+        overrides=dict(arguments.overrides),
+        seed=arguments.seed,
+        samples=arguments.samples,
+        report_root=root,
+        keep=arguments.keep,
+        page=not arguments.no_page,
+        bag=arguments.bag,
+        shard=shard,
     )
-    is_streamed = arguments.resume or (len(plan) > 1 and arguments.repeat == 1)
+    plan = planned_cases(files, request)
+    if shard is not None and root is not None:
+        write_shard_record(record_of(files, request, shard, root))
+    is_whole = arguments.repeat == 1 and (len(plan) > 1 or shard is not None)
     how = How(
         workers=arguments.workers,
         repeat=arguments.repeat,
         in_process=arguments.in_process,
         hard_cap=arguments.hard_cap,
-        stream=root if is_streamed else None,
+        stream=root if arguments.resume or is_whole else None,
         resume=arguments.resume,
+        is_part=shard is not None,
     )
     return SuiteRun(plan, how)
 
 
-def _write(arguments: argparse.Namespace, suite: SuiteRun) -> Path | None:
+def write_files(arguments: argparse.Namespace, suite: SuiteRun) -> Path | None:
     """The files of a suite; GitHub's summary of the job where there is one."""
     from harness.reporting.suite.github import append_summary
 
     append_summary(suite.record)
     page = None
-    if not arguments.no_report and len(suite.plan) > 1 and arguments.repeat == 1:
+    if not arguments.no_report and (len(suite.plan) > 1 or suite.is_part) and arguments.repeat == 1:
         from harness.reporting.suite.history import history_of
         from harness.reporting.suite.write import write_suite
 
@@ -123,7 +127,7 @@ def _write(arguments: argparse.Namespace, suite: SuiteRun) -> Path | None:
     return page
 
 
-def _tell_lines(arguments: argparse.Namespace, suite: SuiteRun) -> int:
+def show_lines(arguments: argparse.Namespace, suite: SuiteRun) -> int:
     """A line for each thing that went wrong: for editors, or as GitHub's annotations."""
     from harness.reporting.suite.cause import short_lines
     from harness.reporting.suite.github import error_annotations
@@ -137,7 +141,7 @@ def _tell_lines(arguments: argparse.Namespace, suite: SuiteRun) -> int:
     return suite.exit_code
 
 
-def _case_names(arguments: argparse.Namespace, jobs: Sequence[CaseJob]) -> list[str]:
+def _case_names(arguments: argparse.Namespace, jobs: Sequence[RunRequest]) -> list[str]:
     is_alone = arguments.workers == 1
     names = [str(job.file) if is_alone else job.file.name.split(".")[0] for job in jobs]
     names = [
@@ -148,7 +152,7 @@ def _case_names(arguments: argparse.Namespace, jobs: Sequence[CaseJob]) -> list[
     return [f"{name} #{number % arguments.repeat + 1}" for number, name in enumerate(names)]
 
 
-def _tell(
+def show_results(
     arguments: argparse.Namespace, suite: SuiteRun, seconds: float, page: Path | None
 ) -> None:
     """Failures, rates, tables and the last lines."""
@@ -157,7 +161,7 @@ def _tell(
     from harness.reporting.terminal import Style, repeats, report_link, summary
 
     style = Style.of(sys.stdout)
-    _tell_failures(arguments, suite, style)
+    _print_failures(arguments, suite, style)
     say("")
     if arguments.repeat > 1:
         for runs in suite.repetitions():
@@ -166,7 +170,7 @@ def _tell(
         for index, said in suite.differences.items():
             say(f"  run {index % arguments.repeat + 1} of {suite.jobs[index].file}: {said}")
     else:
-        _tell_rates(suite, style)
+        _print_rates(suite, style)
     rates = missed(suite.rates)
     rate_text = f"; {style.outcome('failed', rates)}" if rates else ""
     if suite.results:
@@ -200,7 +204,7 @@ def _show_interruption(arguments: argparse.Namespace, suite: SuiteRun, seconds: 
         complain("the same command with --resume runs the rest")
 
 
-def _tell_failures(arguments: argparse.Namespace, suite: SuiteRun, style: Style) -> None:
+def _print_failures(arguments: argparse.Namespace, suite: SuiteRun, style: Style) -> None:
     from harness.reporting.terminal import failure
     from harness.suite.header import source_lines
 
@@ -223,7 +227,7 @@ def _tell_failures(arguments: argparse.Namespace, suite: SuiteRun, style: Style)
         say("", f"... and {shown_failures - MOST_FAILURES} more that did not pass")
 
 
-def _tell_rates(suite: SuiteRun, style: Style) -> None:
+def _print_rates(suite: SuiteRun, style: Style) -> None:
     from harness.reporting.sampled import rate_line, table_lines
 
     for group in suite.rates:
@@ -238,7 +242,7 @@ def _tell_rates(suite: SuiteRun, style: Style) -> None:
         say(line)
 
 
-def _command(arguments: argparse.Namespace, job: CaseJob) -> str:
+def _command(arguments: argparse.Namespace, job: RunRequest) -> str:
     """The command that runs one case again as it was run."""
     words = ["harness", "run", str(job.file)]
     if job.case:

@@ -21,7 +21,7 @@ class Camera:
     Attributes:
         name: The name, unique in a run.
         frame: The robot link or object that carries the camera, or `world`.
-        pose: T_frame_camera.
+        pose: The pose T_frame_camera of the camera.
         horizontal_fov: Angle between the picture's left and right edge [rad].
         width: Width of the picture [pixels].
         height: Height of the picture [pixels].

@@ -68,9 +68,9 @@ class Friction:
     """Coulomb coefficients of a surface. A contact uses the smaller of its two, as Gazebo's ODE.
 
     Attributes:
-        sliding: Sliding friction, dimensionless.
+        sliding: The sliding friction coefficient, dimensionless.
         torsional: Friction about the contact normal [m].
-        rolling: Rolling friction [m].
+        rolling: The rolling friction coefficient [m].
     """
 
     sliding: float = 1.0
@@ -83,8 +83,8 @@ class Shape:
     """A geometry placed on a body.
 
     Attributes:
-        geometry: The geometry.
-        pose: T_body_shape.
+        geometry: The geometry of the shape.
+        pose: The pose T_body_shape of the shape.
         rgba: Colour, each channel 0 to 1.
         name: Name from the file, unique on the body; else empty.
         friction: Friction of this shape's surface; None for the body's friction.

@@ -45,7 +45,7 @@ def distinct(first: float, second: float, text: Callable[[float, int], str]) -> 
     """The texts of two numbers, with as many more digits as needed to distinguish them.
 
     Args:
-        first: A number.
+        first: The first of the numbers.
         second: Another; equal numbers have equal texts.
         text: Formats a number with the given number of additional digits.
     """

@@ -15,7 +15,7 @@ class JointPath:
 
     Attributes:
         joint_names: The planning group's joints, in order.
-        waypoints: Shape (N, dof), rad or m.
+        waypoints: The joint positions, shape (N, dof), rad or m.
     """
 
     joint_names: tuple[str, ...]
@@ -33,9 +33,9 @@ class JointTrajectory:
     Attributes:
         joint_names: The planning group's joints, in order.
         times: Strictly rising [s], shape (N,), times[0] == 0.
-        positions: Shape (N, dof), rad or m.
-        velocities: Shape (N, dof).
-        accelerations: Shape (N, dof).
+        positions: The joint positions, shape (N, dof), rad or m.
+        velocities: The joint velocities, shape (N, dof).
+        accelerations: The joint accelerations, shape (N, dof).
     """
 
     joint_names: tuple[str, ...]

@@ -68,7 +68,7 @@ class World:
         objects: Objects in file order.
         gravity: Gravity in world axes [m/s^2].
         timestep: Time step of the physics [s].
-        lights: Lights of pictures.
+        lights: The lights that pictures use.
     """
 
     name: str

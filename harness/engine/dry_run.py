@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -20,6 +19,7 @@ from harness.ports import (
     AnyGoal,
     ArcPoint,
     CartesianPathOptions,
+    CheckedGoal,
     Goal,
     GripperResult,
     JointGoal,
@@ -172,14 +172,14 @@ class DryPlanner:
         options: PlanningOptions,
         constraints: PathConstraints | None = None,
     ) -> MotionPlan:
-        facts = self.check_goal(group, start, goal, options, constraints)
-        positions = goal.positions if isinstance(goal, JointGoal) else facts["positions"]
+        checked = self.check_goal(group, start, goal, options, constraints)
+        positions = goal.positions if isinstance(goal, JointGoal) else checked.positions
         names = self._description.groups[group].joint_names
         indices = list(self._description.group_indices(group))
         ends = np.vstack([start[indices], positions])
         still = np.zeros_like(ends)
         trajectory = JointTrajectory(names, np.array([0.0, 1e-3]), ends, still, still)
-        return MotionPlan(trajectory, {}, facts)
+        return MotionPlan(trajectory, {}, checked.explanation)
 
     def plan_joint_motion(
         self,
@@ -218,11 +218,11 @@ class DryPlanner:
         group: str,
         start: FloatArray,
         goals: Sequence[PoseGoal | PositionGoal],
-        wanted: CartesianPathOptions,
+        path_options: CartesianPathOptions,
         options: PlanningOptions,
     ) -> MotionPlan:
         options = replace(options, path_only=True)
-        return self._planner.plan_cartesian_path(group, start, goals, wanted, options)
+        return self._planner.plan_cartesian_path(group, start, goals, path_options, options)
 
     def plan_relative(
         self,
@@ -243,5 +243,5 @@ class DryPlanner:
         goal: Goal | AnyGoal,
         options: PlanningOptions,
         constraints: PathConstraints | None = None,
-    ) -> Mapping[str, Any]:
+    ) -> CheckedGoal:
         return self._planner.check_goal(group, start, goal, options, constraints)

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import Literal
 
 from harness.cell.cell import Belief, Cell, Presence, StepNotes
 from harness.cell.program import Program, ProgramStep
+from harness.core.details import Details
 from harness.core.errors import StepFailed
 from harness.engine.advice import advice
 from harness.ports import Kinematics, MotionPlanner, PlanningScene, Simulator
+from harness.recording.execution_failures import TimeoutFailure
+from harness.recording.explanation import Explanation
 from harness.recording.run import AttachmentRecord, ObjectRecord, StepRecord, StepStatus
 
 TIMEOUT_SLACK = 0.05  # [s] how often the physics is looked at while something is waited for
@@ -37,8 +40,8 @@ class _RunEndedError(Exception):
     """A step failed in a way that nothing expected; carries the failure up through nesting.
 
     Attributes:
-        failure: Of the innermost step.
-        summary: Of that step.
+        failure: The failure of the innermost step.
+        summary: The summary of that step.
     """
 
     def __init__(self, failure: StepFailed, summary: str) -> None:
@@ -82,7 +85,7 @@ class _Runner:
             end_index=cell.simulator.sample_count,
             trajectory=notes.trajectory,
             planner=notes.planner,
-            explanation={**notes.explanation, **(_facts(failure, cell) if failure else {})},
+            explanation=(notes.explanation + _details(failure, cell)).plain(),
             result=notes.result,
         )
         self.on_step("step_finished", step, self.records[place])
@@ -117,7 +120,7 @@ def execute_program(
     Args:
         program: What to do.
         scene: Empty; the world's objects are added here.
-        kinematics: Of the program's robot.
+        kinematics: The kinematics of the program's robot.
         planner: Plans in `scene`.
         simulator: At the start state, with every object of the program prepared and the world's
             present.
@@ -164,10 +167,12 @@ def _own(failure: StepFailed | _RunEndedError | None) -> StepFailed | None:
     return failure
 
 
-def _facts(failure: StepFailed, cell: Cell) -> dict[str, Any]:
-    """A failure's facts, with what to do about it where that is known."""
+def _details(failure: StepFailed | None, cell: Cell) -> Details:
+    """A failure's details, with what to do about it where that is known."""
+    if failure is None:
+        return Details()
     said = advice(failure, cell)
-    return {**failure.facts, "advice": said} if said else failure.facts
+    return failure.details + Details.of(Explanation(advice=said) if said else None)
 
 
 def _too_long(step: ProgramStep, seconds: float) -> StepFailed | None:
@@ -178,7 +183,7 @@ def _too_long(step: ProgramStep, seconds: float) -> StepFailed | None:
     return StepFailed(
         "TIMED_OUT",
         f"the step took {seconds:.3f} s, its timeout is {timeout:g} s",
-        {"duration": seconds, "timeout": timeout},
+        TimeoutFailure(seconds, timeout),
     )
 
 

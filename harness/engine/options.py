@@ -30,7 +30,7 @@ def merged_options(
     Args:
         scenario: The scenario's `planning`.
         step: The step's, which wins key by key.
-        seed: Of the step.
+        seed: The seed of the step.
         checks_per_second: State checks that a second of `planning_time` buys.
         planner_name: Normalises `planner_id`.
     """
@@ -71,7 +71,7 @@ def check_planning(
         planning: The scenario's, or a step's.
         loc: Where it is said.
         problems: Added to.
-        check_planner: Of a planner's name and parameters.
+        check_planner: Checks the name and the parameters of a planner.
         scenario: What a step's goes before.
     """
     inherited = scenario or Planning()

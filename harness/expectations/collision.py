@@ -104,7 +104,7 @@ class Collision(Predicate):
         return MarginSignal(-np.maximum(spoken, LEAST_DISTANCE), "m", evidence)
 
     def _pairs(self, run: Run) -> list[Pair]:
-        """Pairs that ever touched and that the expectation speaks of."""
+        """Pairs that ever touched and that the expectation covers."""
         every = sorted(run.signals.contact_forces)
         if self.between is None:
             return every
@@ -114,7 +114,7 @@ class Collision(Predicate):
         ]
 
     def _distance(self, window: Window, pairs: list[Pair]) -> tuple[FloatArray | None, str]:
-        """The smallest recorded distance that the expectation speaks of and nothing excuses.
+        """The smallest recorded distance that the expectation covers and nothing excuses.
 
         Only distances to what is in the physics count: nothing can collide with a belief.
         """

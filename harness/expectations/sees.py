@@ -136,7 +136,7 @@ class Sees(Predicate):
     def signal(self, window: Window) -> MarginSignal:
         """Pixels against `min_area`; of an object its visible share against `min_visible` too.
 
-        Between two pictures the earlier one speaks, for one period of watching.
+        Between two pictures the earlier one counts, for one period of watching.
         """
         pictures = self._pictures(window)
         spoken_by = self._spoken_by(window, pictures)

@@ -117,7 +117,7 @@ def _low(margins: MarginSignal, skipped: float) -> FloatArray:
     """Margins with unknown samples counted against the expectation.
 
     Args:
-        margins: Of a predicate.
+        margins: The margins of a predicate.
         skipped: What counts where the predicate does not apply: before an object is there, nothing
             is required of it, and nothing comes true.
 

@@ -10,8 +10,6 @@ from pathlib import Path
 import numpy as np
 
 from harness.assertions.judge import judge
-from harness.assertions.observations import Observations, merged
-from harness.assertions.placed import PlacedExpectation
 from harness.grading.bag.content import BagTopics
 from harness.grading.bag.recorded_run import Recorded, run_of_bag
 from harness.recording.run import Run, Verdict
@@ -24,8 +22,8 @@ class Graded:
     """An expectation's verdict, and what it is worth.
 
     Attributes:
-        points: That can be had; 0 where others have points and this one none.
-        earned: Of them.
+        points: The points that can be earned; 0 where only other rows have points.
+        earned: The points that were earned.
     """
 
     verdict: Verdict
@@ -35,7 +33,7 @@ class Graded:
 
 @dataclass(frozen=True)
 class Grade:
-    """What a recording came to.
+    """The grade of a recording.
 
     Attributes:
         run: The recording, as far as it goes.
@@ -82,25 +80,20 @@ def grade_bag(
     """
     prepared = prepare(scenario, overrides)
     program = prepared.program
-    placed = [
-        PlacedExpectation.of(item.spec, item.step, item.line) for item in program.expectations
-    ]
-    needed = merged(expectation.spec.observations() for expectation in placed)
-    links = set(program.description.link_names)
     known = Recorded(
         robot=robot_record(program.description, prepared.kinematics),
         description=program.description,
         objects=program.all_objects(),
         at_start=frozenset(obj.name for obj in program.world.objects),
-        frames=[name for name in needed.frames if name in links],
+        frames=prepared.observed_links,
         steps=_steps(prepared),
         title=program.title,
         gravity=program.world.gravity,
     )
     run = run_of_bag(bag, topics or BagTopics(), known)
-    if needed.reads_distances:
-        run = _with_distances(prepared, run, needed)
-    verdicts = [_honest(verdict) for verdict in judge(run, placed)]
+    if prepared.observations.reads_distances:
+        run = _with_distances(prepared, run)
+    verdicts = [_honest(verdict) for verdict in judge(run, prepared.expectations)]
     notes = tuple(finding.message for finding in run.findings)
     return Grade(run, graded(verdicts), notes)
 
@@ -116,7 +109,7 @@ def graded(verdicts: Sequence[Verdict]) -> tuple[Graded, ...]:
 
 
 def _honest(verdict: Verdict) -> Verdict:
-    """What failed only because a number is missing was not observed; in a run of ours it fails."""
+    """A failure for a missing number alone is not an observation; a simulated run fails."""
     if verdict.status != "failed" or math.isfinite(verdict.margin):
         return verdict
     reason = f"{verdict.reason}: the recording has a gap there"
@@ -130,7 +123,7 @@ def _steps(prepared: Prepared) -> dict[str, tuple[int, str]]:
     return known
 
 
-def _with_distances(prepared: Prepared, run: Run, needed: Observations) -> Run:
+def _with_distances(prepared: Prepared, run: Run) -> Run:
     """With distances from joints and poses, where all joints are known."""
     if np.isnan(run.signals.joint_positions).any():
         return run
@@ -138,6 +131,7 @@ def _with_distances(prepared: Prepared, run: Run, needed: Observations) -> Run:
 
     there = [obj for obj in run.objects if obj.pose or obj.name in run.signals.object_poses]
     observer = CoalClearance(prepared.program.description)
-    signals = observer.observe(run.signals, there, (), needed.recorded_cutoff)
+    cutoff = prepared.observations.recorded_cutoff
+    signals = observer.observe(run.signals, there, (), cutoff)
     missing = tuple(name for name in run.unrecorded if name != "clearances")
     return replace(run, signals=signals, unrecorded=missing)

@@ -22,13 +22,13 @@ Kind = Literal["answered", "refused", "raised", "unreadable", "hung", "died"]
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What came of a call.
+    """The outcome of a call.
 
     Attributes:
-        kind: What happened.
+        kind: The kind of outcome.
         answers: Joint positions, shape (dof,) each; they may hold anything, NaN too.
         seconds: Wall time of the call.
-        text: Of an exception, a signal, or what was returned instead of joint positions.
+        text: The text of an exception, a signal, or what was returned instead of joint positions.
         place: File and line where an exception was raised.
     """
 

@@ -19,7 +19,7 @@ Value = float | FloatArray
 
 
 class UnusableSolver(UsageError):
-    """The function cannot be tested: it is not there, or speaks in words that nobody knows."""
+    """The function cannot be tested: it is not there, or has parameters that are not known."""
 
 
 @dataclass(frozen=True)
@@ -28,8 +28,8 @@ class Word:
 
     Attributes:
         says: What its argument is.
-        fixes: Parts of the target that it tells: x, y, z, pitch, turn; or none.
-        value: Of a target T_world_link and a seed.
+        fixes: Parts of the target that it fixes: x, y, z, pitch, turn; or none.
+        value: The value of a target T_world_link and a seed.
     """
 
     says: str
@@ -94,18 +94,18 @@ def parameter_words(function: Callable[..., Any]) -> tuple[str, ...]:
 
 
 def task_of(words: Sequence[str]) -> Task:
-    """What a function with such parameters is asked for.
+    """The task of a function with such parameters.
 
     Raises:
-        UnusableSolver: They do not tell where the target is.
+        UnusableSolver: They do not say where the target is.
     """
-    told = set(" ".join(WORDS[word].fixes for word in words).split())
-    if not {"x", "y", "z"} <= told:
+    fixed = set(" ".join(WORDS[word].fixes for word in words).split())
+    if not {"x", "y", "z"} <= fixed:
         raise UnusableSolver(
-            "the function is not told where the target is: it needs the parameters "
+            "the function does not receive the target's position: it needs the parameters "
             "`x, y, z`, `position` or `matrix`"
         )
-    return "pose" if "turn" in told else "position and pitch" if "pitch" in told else "position"
+    return "pose" if "turn" in fixed else "position and pitch" if "pitch" in fixed else "position"
 
 
 def arguments_of(words: Sequence[str], target: SE3, seed: FloatArray) -> dict[str, Value]:
@@ -115,8 +115,8 @@ def arguments_of(words: Sequence[str], target: SE3, seed: FloatArray) -> dict[st
 
 def call_text(name: str, arguments: dict[str, Value]) -> str:
     """A call as Python, numbers to a billionth."""
-    told = ", ".join(f"{word}={_number_text(value)}" for word, value in arguments.items())
-    return f"{name}({told})"
+    text = ", ".join(f"{word}={_number_text(value)}" for word, value in arguments.items())
+    return f"{name}({text})"
 
 
 def _number_text(value: Any) -> str:

@@ -52,7 +52,7 @@ def _from_file(path: Path) -> ModuleType:
     module = importlib.util.module_from_spec(spec)
     sys.modules.setdefault(path.stem, module)
     sys.path.insert(0, str(path.parent.resolve()))
-    with _Told(str(path)):
+    with _ImportErrorsReported(str(path)):
         spec.loader.exec_module(module)
     return module
 
@@ -67,12 +67,12 @@ def _from_name(name: str) -> ModuleType:
             f"no module '{name}' in this folder or among the installed packages; "
             "a file is named with its ending: my_ik.py:ik"
         )
-    with _Told(name):
+    with _ImportErrorsReported(name):
         return importlib.import_module(name)
 
 
-class _Told:
-    """Whatever an import raises, told as the import's failure."""
+class _ImportErrorsReported:
+    """Report whatever an import raises as the import's failure."""
 
     def __init__(self, name: str) -> None:
         self._name = name
@@ -92,9 +92,9 @@ class _Told:
         ) from error
 
 
-def _offers(module: ModuleType, wanted: str) -> str:
+def _offers(module: ModuleType, name: str) -> str:
     names = [name for name, value in vars(module).items()
              if inspect.isfunction(value) and value.__module__ == module.__name__]  # fmt: skip
-    near = get_close_matches(wanted, names, 1)
+    near = get_close_matches(name, names, 1)
     hint = f"did you mean '{near[0]}'? " if near else ""
     return f"{hint}functions there: {', '.join(names) or 'none'}"

@@ -37,12 +37,12 @@ class IkTest:
         solver: `module:function`, `file.py:function` or `own`, called in a process of its own
             that is ended when it hangs; or a function, called in this process.
         robot: A bundled name, a folder, a file; or with more words about it.
-        link: That is placed; by default the TCP.
+        link: The link that is placed; by default the TCP.
         branches: The function claims to answer every way to reach a target.
         examples: Cases of each property.
-        seed: Of the cases; the same seed draws the same ones.
-        position_tolerance: That answers may miss their targets by [m].
-        orientation_tolerance: The same of orientation or pitch [rad].
+        seed: The seed of the cases; the same seed draws the same ones.
+        position_tolerance: The largest position error of an answer [m].
+        orientation_tolerance: The largest orientation or pitch error of an answer [rad].
         patience: Wall time after which a call counts as hanging [s].
         report_dir: Where pictures and `ik_test.json` go; None writes nothing.
     """
@@ -115,8 +115,8 @@ def check_ik(
     """Test a function, for tests: raise AssertionError with everything that was found.
 
     Args:
-        solver: As in `IkTest`.
-        robot: As in `IkTest`.
+        solver: The solver, as in `IkTest`.
+        robot: The robot, as in `IkTest`.
         **options: Other attributes of `IkTest`.
     """
     __tracebackhide__ = True
@@ -133,7 +133,7 @@ def _solver(test: IkTest, chain: Chain) -> Solver:
 
 
 def _probe(trial: Trial) -> None:
-    """Ask for a few poses within reach, and refuse a function whose answers cannot be read.
+    """Query a few poses within reach, and refuse a function whose answers cannot be read.
 
     Raises:
         UnusableSolver: None of its answers has the shape of joint positions.
@@ -142,7 +142,7 @@ def _probe(trial: Trial) -> None:
     rng = np.random.default_rng(0)
     states = [chain.home, *rng.uniform(chain.lower, chain.upper, (4, chain.dof))]
     for state in states:
-        outcome = trial.ask(Target(chain.link_pose(state), state))
+        outcome = trial.query(Target(chain.link_pose(state), state))
         if outcome.kind == "unreadable":
             raise UnusableSolver(
                 f"{trial.solver.name} {outcome.text}; it must return {chain.dof} joint positions "
@@ -179,7 +179,7 @@ class _Search:
         times: list[float] = []
 
         def visit(target: Target) -> bool:
-            outcome = self._trial.ask(target)
+            outcome = self._trial.query(target)
             if outcome.kind in ("answered", "refused"):
                 times.append(outcome.seconds)
             return not self._trial.has_hung
@@ -191,11 +191,11 @@ class _Search:
         return Speed(float(median), float(slow), max(times), len(times))
 
     def _learn_offset(self) -> None:
-        """Whether answers are off by the same wherever asked."""
+        """Whether answers are off by the same at every target."""
         trial, misses = self._trial, []
 
         def visit(target: Target) -> bool:
-            for answer in trial.ask(target).answers:
+            for answer in trial.query(target).answers:
                 if trial.misses(target, answer) is not None:
                     misses.append((target.pose, trial.chain.link_pose(answer)))
             return not trial.has_hung

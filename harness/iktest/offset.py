@@ -1,4 +1,4 @@
-"""An error that is the same wherever one asks: a wrong base height, a wrong tool, a turned base."""
+"""An error that is the same at every target: a wrong base height, a wrong tool, a turned base."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ class Offset:
     frame: Literal["world", "link"]
     error: FloatArray
 
-    def explains(self, task: Task, asked: SE3, reached: SE3) -> bool:
+    def explains(self, task: Task, target: SE3, reached: SE3) -> bool:
         """Whether a miss is this one."""
-        return bool(np.abs(_error(self.frame, task, asked, reached) - self.error).max() < SAME)
+        return bool(np.abs(_error(self.frame, task, target, reached) - self.error).max() < SAME)
 
     def text(self) -> str:
         """The kind of flaw that this is."""
@@ -43,22 +43,22 @@ class Offset:
             turn = f"turned by {np.degrees(angle):.1f} deg about ({axis})"
             parts = [*(parts if np.linalg.norm(self.error[:3]) > SAME else []), turn]
         where = "the world's axes" if self.frame == "world" else "the link's own axes"
-        return f"is {' and '.join(parts)} in {where}, wherever asked"
+        return f"is {' and '.join(parts)} in {where}, at every target"
 
 
 def common_offset(task: Task, misses: Sequence[tuple[SE3, SE3]]) -> Offset | None:
     """The error that many misses share, if one does.
 
     Args:
-        task: What was asked for.
-        misses: Poses asked for and reached.
+        task: What the function solves for.
+        misses: Target poses and poses reached.
     """
     best: tuple[int, Offset] | None = None
     frames: tuple[Literal["world", "link"], ...] = ("world", "link")
     for frame in frames:
         if not misses:
             return None
-        errors = np.array([_error(frame, task, asked, reached) for asked, reached in misses])
+        errors = np.array([_error(frame, task, target, reached) for target, reached in misses])
         alike = np.abs(errors[:, None] - errors[None]).max(axis=2) < SAME
         counts = alike.sum(axis=1)
         winner = int(np.argmax(counts))
@@ -79,12 +79,12 @@ def _different(places: Sequence[FloatArray]) -> int:
     return len(kept)
 
 
-def _error(frame: str, task: Task, asked: SE3, reached: SE3) -> FloatArray:
+def _error(frame: str, task: Task, target: SE3, reached: SE3) -> FloatArray:
     """Shift of the link's origin, and for poses the whole change as one motion."""
     if task != "pose":
-        shift = reached.translation - asked.translation
+        shift = reached.translation - target.translation
         return shift if frame == "world" else reached.rotation.T @ shift
-    change = reached @ asked.inverse() if frame == "world" else asked.inverse() @ reached
+    change = reached @ target.inverse() if frame == "world" else target.inverse() @ reached
     return np.concatenate([change.translation, rotation_vector(change.rotation)])
 
 
@@ -101,5 +101,5 @@ def rotation_vector(rotation: FloatArray) -> FloatArray:
 
 
 def numbers_text(values: FloatArray, digits: int) -> str:
-    """Numbers with so many digits behind the point, none of them a negative zero."""
+    """Numbers with so many digits after the point, none of them a negative zero."""
     return ", ".join(f"{round(float(value), digits) + 0.0:.{digits}f}" for value in values)

@@ -32,12 +32,12 @@ class Property:
     """Something that must hold for every case.
 
     Attributes:
-        name: One word.
-        says: The property.
+        name: The name in one word.
+        says: The property in a sentence.
         cases: What it is tried on.
         flaws: What is wrong with a case.
-        size: Of a case, for the smallest.
-        share: Of the examples that other properties get.
+        size: The size of a case, for the smallest.
+        share: The share of the examples that other properties get.
     """
 
     name: str
@@ -68,12 +68,12 @@ def _around(trial: Trial) -> st.SearchStrategy[Target]:
 
 
 def _reaches(trial: Trial, target: Target) -> list[Flaw]:
-    found = (trial.misses(target, answer) for answer in trial.ask(target).answers)
+    found = (trial.misses(target, answer) for answer in trial.query(target).answers)
     return [flaw for flaw in found if flaw is not None]
 
 
 def _answers(trial: Trial, target: Target) -> list[Flaw]:
-    outcome = trial.ask(target)
+    outcome = trial.query(target)
     if outcome.kind == "refused":
         return [trial.flaw("refuses a target within reach", "", target)]
     flaw = trial.breakdown(target, outcome)
@@ -81,13 +81,13 @@ def _answers(trial: Trial, target: Target) -> list[Flaw]:
 
 
 def _limits(trial: Trial, target: Target) -> list[Flaw]:
-    answers = (each for each in trial.ask(target).answers if np.all(np.isfinite(each)))
+    answers = (each for each in trial.query(target).answers if np.all(np.isfinite(each)))
     found = (trial.outside(target, answer) for answer in answers)
     return [flaw for flaw in found if flaw is not None]
 
 
 def _refuses(trial: Trial, target: Target) -> list[Flaw]:
-    outcome = trial.ask(target)
+    outcome = trial.query(target)
     flaw = trial.breakdown(target, outcome)
     if flaw is not None:
         return [flaw]
@@ -99,7 +99,7 @@ def _refuses(trial: Trial, target: Target) -> list[Flaw]:
 
 
 def _anywhere(trial: Trial, target: Target) -> list[Flaw]:
-    outcome = trial.ask(target)
+    outcome = trial.query(target)
     flaw = trial.breakdown(target, outcome)
     wrong = (trial.misses(target, answer) for answer in outcome.answers)
     return [each for each in (flaw, *wrong) if each is not None]
@@ -107,9 +107,9 @@ def _anywhere(trial: Trial, target: Target) -> list[Flaw]:
 
 def _repeats(trial: Trial, targets: tuple[Target, Target]) -> list[Flaw]:
     target, other = targets
-    first = trial.ask(target, afresh=True)
-    trial.ask(other, afresh=True)
-    second = trial.ask(target, afresh=True)
+    first = trial.query(target, afresh=True)
+    trial.query(other, afresh=True)
+    second = trial.query(target, afresh=True)
     if [each.tobytes() for each in first.answers] == [each.tobytes() for each in second.answers]:
         return []
     if len(first.answers) != len(second.answers):
@@ -119,7 +119,7 @@ def _repeats(trial: Trial, targets: tuple[Target, Target]) -> list[Flaw]:
         change = max(float(np.abs(one - two).max()) for one, two in pairs)
         detail = f"a joint differs by {change:.3g}"
     answer = first.answers[0] if first.answers else None
-    return [trial.flaw("answers differently when asked again", detail, target, answer)]
+    return [trial.flaw("answers differently when called again", detail, target, answer)]
 
 
 def _follows(trial: Trial, line: StraightLine) -> list[Flaw]:
@@ -166,15 +166,15 @@ def _jump(
 def _nearest(trial: Trial, positions: FloatArray, near: FloatArray) -> FloatArray | None:
     """The answer nearest to positions, for the pose of others; None where there is none."""
     target = Target(trial.chain.link_pose(positions), positions)
-    answers = [each for each in trial.ask(target, near).answers if np.all(np.isfinite(each))]
+    answers = [each for each in trial.query(target, near).answers if np.all(np.isfinite(each))]
     return min(answers, key=lambda each: float(np.abs(each - near).max()), default=None)
 
 
 def _all_ways(trial: Trial, target: Target) -> list[Flaw]:
     way = target.joint_positions
     if way is None or manipulability(trial.chain, trial.task, way[None])[0] < REGULAR:
-        return []  # beside a singularity ways run into each other
-    outcome = trial.ask(target)
+        return []  # near a singularity solution branches merge
+    outcome = trial.query(target)
     if outcome.kind not in ("answered", "refused"):
         return []
     if any(is_same_way(trial.chain, way, answer) for answer in outcome.answers):

@@ -44,10 +44,10 @@ def draw(
     """Visit what a strategy draws, until a visit returns False.
 
     Args:
-        strategy: Of the cases.
+        strategy: The strategy of the cases.
         visit: What is done with each.
-        count: Of the cases at most.
-        number: Seed; `shrink` with the same one draws the same cases.
+        count: The largest number of cases.
+        number: The seed; `shrink` with the same one draws the same cases.
     """
 
     @seed(_inner_seed(number))
@@ -72,12 +72,12 @@ def shrink(
     """What the smallest case shows that shows something.
 
     Args:
-        strategy: Of the cases.
+        strategy: The strategy of the cases.
         shows: What a case shows, or None.
         size: What makes one case smaller than another.
         count: Cases drawn at most until one shows it.
-        number: Seed.
-        cost: Of the last case, in cases: hangs use the budget up sooner.
+        number: The seed of the draw.
+        cost: The cost of the last case, in cases: hangs use the budget up sooner.
     """
     best: list[tuple[tuple[float, ...], F]] = []
     spent = 0
@@ -94,7 +94,7 @@ def shrink(
         return flaw is not None
 
     limits = settings(QUIET, max_examples=count, phases=[Phase.generate, Phase.shrink])
-    # Enough; none; or a function that answers differently when asked again.
+    # Enough; none; or a function that answers differently when called again.
     ends = (_Enough, HypothesisException, ExceptionGroup)
     with _whatever_is_loaded(), suppress(*ends):
         find(strategy, condition, settings=limits, random=Random(number))

@@ -1,4 +1,4 @@
-"""Functions under test behind one face: in a process of their own, or in this one."""
+"""Functions under test with one interface: in a process of their own, or in this one."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Solver(Protocol):
     """A function under test.
 
     Attributes:
-        name: For people.
+        name: A name for people.
         words: Names of the parameters that it is given.
     """
 
@@ -57,7 +57,7 @@ class InProcess:
         return call(self._function, arguments, self._dof)
 
     def close(self) -> None:
-        """Nothing is left behind."""
+        """Release nothing: the function runs in this process."""
 
 
 class Isolated:
@@ -70,10 +70,10 @@ class Isolated:
         """Start the process.
 
         Args:
-            name: As `find_function` takes it, or `own`.
-            robot: The arm.
+            name: The name as `find_function` takes it, or `own`.
+            robot: The arm to be solved.
             tip: The link that is placed; empty for the TCP.
-            dof: Its joints.
+            dof: The number of the arm's joints.
             patience: Wall time that an answer may take [s].
 
         Raises:
@@ -134,15 +134,15 @@ class Isolated:
                     f"'{self._arguments[0]}' was not imported within {IMPORT_SECONDS:g} s: "
                     "does its file do more than define functions?"
                 )
-            kind, told = self._connection.recv()
+            kind, content = self._connection.recv()
         except (EOFError, OSError):
             ended = self._end()
             raise UnusableSolver(
                 f"the process ended while '{self._arguments[0]}' was imported: {_last_words(ended)}"
             ) from None
         if kind == "unusable":
-            raise UnusableSolver(told)
-        return told
+            raise UnusableSolver(content)
+        return content
 
     def _accept(self) -> Connection:
         while True:

@@ -20,19 +20,19 @@ def report_lines(report: IkReport, folder: Path = Path()) -> list[str]:
     ]
     for each in report.properties:
         if each.note:
-            told = each.note
+            outcome = each.note
         elif each.flawed:
             numbers = ", ".join(map(str, each.findings))
-            told = f"FAILED in {each.flawed} of {each.tried}: finding {numbers}"
+            outcome = f"FAILED in {each.flawed} of {each.tried}: finding {numbers}"
         else:
-            told = f"ok, {each.tried} tried"
-        lines.append(f"  {each.name:<{NAME_WIDTH}}{told:<36}{'' if each.note else each.says}")
+            outcome = f"ok, {each.tried} tried"
+        lines.append(f"  {each.name:<{NAME_WIDTH}}{outcome:<36}{'' if each.note else each.says}")
     lines.append(f"  {'speed':<{NAME_WIDTH}}{_speed_text(report.speed)}")
     for finding in report.findings:
         lines += ["", *finding_lines(report, finding, folder)]
     count = len(report.findings)
-    told = f"{count} finding{'s' if count != 1 else ''}" if count else "nothing found"
-    return [*lines, "", f"{told} in {report.seconds:.1f} s"]
+    count_text = f"{count} finding{'s' if count != 1 else ''}" if count else "nothing found"
+    return [*lines, "", f"{count_text} in {report.seconds:.1f} s"]
 
 
 def finding_lines(report: IkReport, finding: Finding, folder: Path = Path()) -> list[str]:
@@ -63,10 +63,10 @@ def positions_text(names: tuple[str, ...], positions: FloatArray, home: FloatArr
     if home is None:
         return ", ".join(f"{name} {value:g}" for name, value in pairs)
     moved = np.abs(positions - home) > 1e-12
-    told = ", ".join(
+    offsets = ", ".join(
         f"{name} {value:g}" for (name, value), is_off in zip(pairs, moved, strict=True) if is_off
     )
-    return f"home, but {told}" if told else "home"
+    return f"home, but {offsets}" if offsets else "home"
 
 
 def _speed_text(speed: Speed | None) -> str:

@@ -1,4 +1,4 @@
-"""A function under test on one arm: asking it, and measuring what it answers."""
+"""A function under test on one arm: calling it, and measuring its answers."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from harness.strategies.tasks import Task, miss
 LIMIT_SLACK = 1e-9  # [rad or m] that rounding may put an answer beyond a limit
 HANGS = "does not come back"
 COSTS = {"hung": 75, "died": 6}
-"""What calls cost of a search's budget, beside 1 for others."""
+"""Cost of such a call in a search's budget; any other call costs 1."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,10 +27,10 @@ class Flaw:
     """Something wrong with what a function does for one target.
 
     Attributes:
-        kind: By which equal flaws are told.
+        kind: Flaws of one kind are reported as one finding.
         detail: The numbers of this one; may be empty.
-        target: That was asked for.
-        seed: That was given with it.
+        target: The target of the call.
+        seed: The seed of the call, joint positions.
         answer: What came back, if joint positions did.
     """
 
@@ -46,14 +46,14 @@ class Trial:
     """A function under test.
 
     Attributes:
-        chain: Of the arm.
-        task: What the function is asked for.
-        solver: The function.
-        position_tolerance: That an answer may miss its target by [m].
-        orientation_tolerance: The same of orientation or pitch [rad].
-        offset: What answers are off by wherever asked, once that is known.
-        last_cost: Of what was asked since it was last read.
-        has_hung: Whether it ever was.
+        chain: The chain of the arm.
+        task: What the function solves for.
+        solver: The function under test.
+        position_tolerance: The largest position error of an answer [m].
+        orientation_tolerance: The largest orientation or pitch error of an answer [rad].
+        offset: Error that all answers share, once it is known.
+        last_cost: Cost of the calls since it was last read.
+        has_hung: Whether a call ever hung.
     """
 
     chain: Chain
@@ -66,12 +66,12 @@ class Trial:
     _cost: int = 0
     _known: dict[bytes, Outcome] = field(default_factory=dict[bytes, Outcome])
 
-    def ask(
+    def query(
         self, target: Target, seed: FloatArray | None = None, *, afresh: bool = False
     ) -> Outcome:
         """Call the function for a target; the seed is home by default.
 
-        What was asked before is remembered, unless it is asked afresh.
+        Outcomes of earlier calls are remembered, unless `afresh` repeats the call.
         """
         start = self.chain.home if seed is None else seed
         key = target.pose.matrix().tobytes() + start.tobytes()
@@ -148,8 +148,8 @@ class Trial:
         return Flaw(kind, detail, target, self.chain.home, answer)
 
 
-def shift_text(asked: SE3, reached: SE3) -> str:
+def shift_text(target: SE3, reached: SE3) -> str:
     """How far a pose is from where it should be, in words."""
-    shift = reached.translation - asked.translation
+    shift = reached.translation - target.translation
     parts = numbers_text(1000 * shift, 2)
     return f"position off by {1000 * float(np.linalg.norm(shift)):.3g} mm, ({parts})"

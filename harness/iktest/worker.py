@@ -20,11 +20,11 @@ def serve(name: str, robot: RobotSource, tip: str, dof: int, address: str, _noti
     arguments that it receives.
 
     Args:
-        name: As `find_function` takes it, or `own`.
+        name: The name as `find_function` takes it, or `own`.
         robot: The arm, for `own`.
         tip: The link that is placed, for `own`; empty for the TCP.
-        dof: Its joints.
-        address: Of the caller's Unix socket.
+        dof: The number of the arm's joints.
+        address: The address of the caller's Unix socket.
     """
     link = socket.socket(socket.AF_UNIX)
     link.connect(address)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import types
 from collections.abc import Iterable
 from typing import Annotated, Any, TypeGuard, Union, get_args, get_origin
@@ -44,8 +45,8 @@ def units_of(annotation: Any, metadata: Iterable[Any] = ()) -> tuple[str, ...]:
     """SI units of a number that may carry one; none of anything else.
 
     Args:
-        annotation: Of a field, or of a part of one.
-        metadata: Of the field, where pydantic has taken it out of the annotation.
+        annotation: The annotation of a field, or of a part of one.
+        metadata: The metadata of the field, where pydantic has taken it out of the annotation.
     """
     members = [each for each in branches(annotation) if each is not type(None)]
     if len(members) == 1:
@@ -55,6 +56,12 @@ def units_of(annotation: Any, metadata: Iterable[Any] = ()) -> tuple[str, ...]:
         metadata = (*more, *metadata)
     functions = (item.func for item in metadata if isinstance(item, BeforeValidator))
     return next((func.units for func in functions if hasattr(func, "units")), ())  # type: ignore[union-attr]
+
+
+def description_of(model: type[SpecModel]) -> str:
+    """A model's docstring, one line for each paragraph."""
+    paragraphs = inspect.cleandoc(model.__doc__ or "").split("\n\n")
+    return "\n\n".join(" ".join(each.split()) for each in paragraphs)
 
 
 def keys_of(model: type[SpecModel]) -> dict[str, FieldInfo]:

@@ -123,7 +123,7 @@ Color = Annotated[tuple[ColorPart, ColorPart, ColorPart, ColorPart], BeforeValid
 
 
 def kind_of(value: Any) -> str:
-    """`many` for a mapping, list or model, `one` for anything else: tells a union's branch."""
+    """`many` for a mapping, list or model, `one` for anything else: it selects a union's branch."""
     return "many" if isinstance(value, dict | list | tuple | BaseModel) else "one"
 
 

@@ -17,18 +17,20 @@ Pixels = Annotated[Count, Field(ge=8, le=2048)]
 
 
 class ImageSpec(SpecModel):
-    """The picture's size and channels."""
+    """The size and channels of the picture."""
 
-    width: Pixels = Field(default=640, description="In pixels.")
-    height: Pixels = Field(default=480, description="In pixels.")
-    format: Literal["R8G8B8", "L8"] = Field(default="R8G8B8", description="Colour, or grey.")
+    width: Pixels = Field(default=640, description="The width of the picture in pixels.")
+    height: Pixels = Field(default=480, description="The height of the picture in pixels.")
+    format: Literal["R8G8B8", "L8"] = Field(
+        default="R8G8B8", description="The channels: colour (`R8G8B8`) or grey (`L8`)."
+    )
 
 
 class ClipSpec(SpecModel):
-    """What is nearer or farther along the optical axis is not seen."""
+    """The range of distances along the optical axis in which things are seen."""
 
-    near: PositiveLength = Field(default=0.01, description="[m]")
-    far: PositiveLength = Field(default=15.0, description="[m]")
+    near: PositiveLength = Field(default=0.01, description="Nothing nearer than this is seen [m].")
+    far: PositiveLength = Field(default=15.0, description="Nothing farther than this is seen [m].")
 
     @model_validator(mode="after")
     def _near_before_far(self) -> ClipSpec:
@@ -38,14 +40,16 @@ class ClipSpec(SpecModel):
 
 
 class NoiseSpec(SpecModel):
-    """Added to every channel of every pixel, from the run's seed."""
+    """The noise added to every channel of every pixel, from the run's seed."""
 
-    type: Literal["gaussian", "none"] = Field(default="gaussian", description="Its distribution.")
+    type: Literal["gaussian", "none"] = Field(
+        default="gaussian", description="The distribution of the noise."
+    )
     mean: Annotated[Number, Field(ge=-1, le=1)] = Field(
-        default=0.0, description="As a share of full white."
+        default=0.0, description="The mean as a share of full white."
     )
     stddev: Annotated[Number, Field(ge=0, le=1)] = Field(
-        default=0.0, description="As a share of full white."
+        default=0.0, description="The standard deviation as a share of full white."
     )
 
 
@@ -53,19 +57,23 @@ class CameraFields(SpecModel):
     """Words of any camera."""
 
     horizontal_fov: Annotated[Angle, Field(ge=0.01, le=2.9)] = Field(
-        default=1.0471975511965976, description="Between the left and right edge of the picture."
+        default=1.0471975511965976,
+        description="The angle between the left and right edge of the picture.",
     )
-    image: ImageSpec = Field(default=ImageSpec(), description="Size and format.")
-    clip: ClipSpec = Field(default=ClipSpec(), description="Nearest and farthest.")
-    noise: NoiseSpec = Field(default=NoiseSpec(), description="Of every pixel.")
+    image: ImageSpec = Field(default=ImageSpec(), description="The size and format of the picture.")
+    clip: ClipSpec = Field(
+        default=ClipSpec(), description="The nearest and farthest visible distance."
+    )
+    noise: NoiseSpec = Field(default=NoiseSpec(), description="The noise of every pixel.")
     update_rate: Annotated[Rate, Field(gt=0, le=120)] = Field(
-        default=20.0, description="Pictures a second of simulated time."
+        default=20.0, description="The number of pictures in a second of simulated time."
     )
     optical_frame_id: str = Field(
-        default="", description="In message headers; default: `<camera>_optical_frame`."
+        default="",
+        description="The frame in message headers; the default is `<camera>_optical_frame`.",
     )
     jpeg_quality: Annotated[Count, Field(ge=1, le=100)] = Field(
-        default=80, description="Of compressed pictures."
+        default=80, description="The JPEG quality of compressed pictures."
     )
 
     def camera(self, name: str, frame: str, pose: SE3) -> Camera:
@@ -94,12 +102,14 @@ class CameraFields(SpecModel):
 class CameraSpec(CameraFields):
     """A camera in the world, on an object or on a robot link; looks along +x of its pose."""
 
-    name: Name = Field(description="Unique, the robot's cameras included.")
+    name: Name = Field(description="The name of the camera, unique among the robot's cameras too.")
     pose: Pose = Field(
-        default=Pose(), description="Where it is; `frame` is `world`, a link or an object."
+        default=Pose(),
+        description="The pose of the camera; `frame` is `world`, a link or an object.",
     )
     look_at: Xyz | None = Field(
-        default=None, description="Turns it to this point of the same frame, instead of a rotation."
+        default=None,
+        description="The point of the same frame at which the camera looks, instead of a rotation.",
     )
 
     @model_validator(mode="after")
@@ -125,9 +135,10 @@ class VideoSpec(SpecModel):
 
     short = "camera"
 
-    camera: Name = Field(description="Its name.")
+    camera: Name = Field(description="The name of the camera.")
     rate: Annotated[Rate, Field(gt=0, le=120)] | None = Field(
-        default=None, description="Frames a second; default: the camera's `update_rate`."
+        default=None,
+        description="The frames in a second; the default is the camera's `update_rate`.",
     )
 
 

@@ -114,7 +114,7 @@ class PredicateFields(ExpectationFields, TimeFields):
 
     Attributes:
         judged: When a bare predicate is judged.
-        quantities: What it measures.
+        quantities: The quantities that the predicate measures.
     """
 
     word: ClassVar[str] = ""

@@ -46,8 +46,8 @@ EXPECTATIONS = WordsOf(ExpectationFields)
 PREDICATES = WordsOf(PredicateFields)
 TEMPORAL = WordsOf(TemporalFields)
 
-BESIDE_VERB = tuple(keys_of(Step))
+KEYS_BY_VERB = tuple(keys_of(Step))
 """Reserved keys: they stand next to a verb, never inside its content."""
 
-BESIDE_CHECK = tuple(keys_of(TemporalFields))
+KEYS_BY_PREDICATE = tuple(keys_of(TemporalFields))
 """Words that stand next to a predicate or a temporal word (or inside, as in the models)."""

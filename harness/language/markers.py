@@ -46,12 +46,16 @@ def marker_count(dictionary: str) -> int:
 
 
 class MarkerName(SpecModel):
-    """Which marker."""
+    """An ArUco marker by its dictionary and number."""
 
     short = "id"
 
-    id: Annotated[Count, Field(ge=0)] = Field(description="Its number in the dictionary.")
-    dictionary: MarkerDictionary = Field(default="DICT_4X4_50", description="OpenCV's name.")
+    id: Annotated[Count, Field(ge=0)] = Field(
+        description="The number of the marker in its dictionary."
+    )
+    dictionary: MarkerDictionary = Field(
+        default="DICT_4X4_50", description="The dictionary of the marker, by OpenCV's name."
+    )
 
     @model_validator(mode="after")
     def _is_in_the_dictionary(self) -> MarkerName:
@@ -66,7 +70,8 @@ class MarkerSpec(MarkerName):
 
     short = ""
 
-    size: PositiveLength = Field(description="Side of the black square [m].")
+    size: PositiveLength = Field(description="The side of the black square [m].")
     margin: PositiveLength | None = Field(
-        default=None, description="White around it [m]; default: one of its cells."
+        default=None,
+        description="The width of the white border [m]; the default is one of its cells.",
     )

@@ -30,42 +30,52 @@ class Planning(SpecModel):
 
     pipeline: Literal["ompl", "pilz_industrial_motion_planner"] | None = Field(
         default=None,
-        description="Only `ompl`, the default; Pilz's planners are the steps `ptp`, `lin`, `circ`.",
+        description="The planning pipeline, `ompl` by default; Pilz's planners are the steps "
+        "`ptp`, `lin`, `circ`.",
     )
     planner_id: Name | None = Field(
         default=None,
-        description="Default `auto`: a straight joint motion, else the fast planner, else the "
-        "patient one; `harness list planners` has the others.",
+        description="The planner. The default `auto` tries a straight joint motion, then the fast "
+        "planner, then the patient one; `harness list planners` has the others.",
     )
     planning_time: Annotated[Duration, Field(gt=0)] | None = Field(
-        default=None, description="Converted to state checks at a fixed rate; never a wall clock."
+        default=None,
+        description="A time budget that is converted to state checks at a fixed rate; it is never "
+        "a wall clock.",
     )
     max_state_checks: Annotated[Count, Field(ge=1, le=10_000_000)] | None = Field(
         default=None,
-        description="Budget of a search: states checked for collision and path constraints; "
-        "default 200000. Planners that improve their path (`RRTstar`, `PRMstar`, `BITstar` ...) "
-        "do so for a fifth of it.",
+        description="The budget of a search: states checked for collision and path constraints; "
+        "the default is 200000. Planners that improve their path (`RRTstar`, "
+        "`PRMstar`, `BITstar` ...) do so for a fifth of it.",
     )
     planning_attempts: Annotated[Count, Field(ge=1, le=100)] | None = Field(
         default=None,
-        description="Searches at most, each with its own seed, until one succeeds; default 1.",
+        description="The largest number of searches, each with its own seed, until one succeeds; "
+        "the default is 1.",
     )
     max_velocity_scaling_factor: Scaling | None = Field(
-        default=None, description="Share of the joints' velocity limits; default 0.3."
+        default=None,
+        description="The share of the joints' velocity limits that a motion may use; the default "
+        "is 0.3.",
     )
     max_acceleration_scaling_factor: Scaling | None = Field(
-        default=None, description="Share of the joints' acceleration limits; default 0.3."
+        default=None,
+        description="The share of the joints' acceleration limits that a motion may use; the "
+        "default is 0.3.",
     )
     max_jerk: Annotated[JointJerk, Field(gt=0)] | None = Field(
-        default=None, description="Of every joint; by default the jerk is not limited."
+        default=None,
+        description="The largest jerk of every joint; by default the jerk is not limited.",
     )
     padding: NonNegativeLength | None = Field(
         default=None,
-        description="Kept between every object and the robot with what it holds [m]; default 2 mm.",
+        description="The distance kept between every object and the robot with what it holds [m]; "
+        "the default is 2 mm.",
     )
     parameters: dict[Name, Number] | None = Field(
         default=None,
-        description="Of the planner, by OMPL's names: `range`, `goal_bias`, "
+        description="The parameters of the planner, by OMPL's names: `range`, `goal_bias`, "
         "`max_nearest_neighbors`, `samples_per_batch` ...",
     )
 
@@ -78,37 +88,52 @@ BandLength = Annotated[Length, Field(ge=0.0005)]
 class OrientationConstraint(SpecModel):
     """Keep a link turned as given, within a tolerance about each axis."""
 
-    link: Name | None = Field(default=None, description="Default: the TCP.")
-    pose: Pose = Field(description="Its rotation.")
+    link: Name | None = Field(
+        default=None, description="The link that is constrained; the default is the TCP."
+    )
+    pose: Pose = Field(description="The pose whose rotation the link keeps.")
     tolerance: tuple[BandAngle, BandAngle, BandAngle] = Field(
-        description="About x, y, z of `pose`, 0.001 at least; 3.15 and more: any turn [rad]."
+        description="The tolerances about x, y, z of `pose`, at least 0.001; 3.15 and more allow "
+        "any turn [rad]."
     )
 
 
 class PositionConstraint(SpecModel):
     """Keep a link's origin inside a box."""
 
-    link: Name | None = Field(default=None, description="Default: the TCP.")
-    center: Position = Field(description="Of the box.")
+    link: Name | None = Field(
+        default=None, description="The link that is constrained; the default is the TCP."
+    )
+    center: Position = Field(description="The centre of the box.")
     size: tuple[BandLength, BandLength, BandLength] = Field(
-        description="Full size along the axes of the centre's frame, 0.5 mm at least [m]."
+        description="The full size along the axes of the centre's frame, at least 0.5 mm [m]."
     )
 
 
 class JointConstraint(SpecModel):
     """Keep a joint near a position."""
 
-    position: JointValue = Field(description="Where it shall stay.")
-    tolerance_above: BandValue = Field(description="So much more, 0.0005 at least.")
-    tolerance_below: BandValue = Field(description="So much less, 0.0005 at least.")
+    position: JointValue = Field(description="The position near which the joint stays.")
+    tolerance_above: BandValue = Field(
+        description="The largest excess over the position, at least 0.0005."
+    )
+    tolerance_below: BandValue = Field(
+        description="The largest deficit below the position, at least 0.0005."
+    )
 
 
 class PathConstraints(SpecModel):
-    """moveit_msgs/Constraints held along the path; at least one."""
+    """The moveit_msgs/Constraints that hold along the path; at least one is given."""
 
-    orientation: OrientationConstraint | None = Field(default=None, description="Of a link.")
-    position: PositionConstraint | None = Field(default=None, description="Of a link.")
-    joints: dict[Name, JointConstraint] | None = Field(default=None, description="By name.")
+    orientation: OrientationConstraint | None = Field(
+        default=None, description="The orientation constraint of a link."
+    )
+    position: PositionConstraint | None = Field(
+        default=None, description="The position constraint of a link."
+    )
+    joints: dict[Name, JointConstraint] | None = Field(
+        default=None, description="The joint constraints by joint name."
+    )
 
     @model_validator(mode="after")
     def _some(self) -> PathConstraints:

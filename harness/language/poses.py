@@ -25,15 +25,21 @@ QUATERNION_NORM_TOLERANCE = 1e-2
 
 
 class Pose(SpecModel):
-    """A position and at most one of `rpy`, `quat_xyzw`, `quat_wxyz`, in a frame."""
+    """A pose: a position and at most one of `rpy`, `quat_xyzw`, `quat_wxyz`, in a frame."""
 
-    xyz: Xyz = Field(default=(0.0, 0.0, 0.0), description="Position [m].")
-    rpy: Rpy | None = Field(
-        default=None, description="Fixed-axis roll, pitch, yaw [rad], as in URDF."
+    xyz: Xyz = Field(
+        default=(0.0, 0.0, 0.0), description="The position along x, y, z of the frame [m]."
     )
-    quat_xyzw: Quaternion | None = Field(default=None, description="Quaternion in ROS order.")
-    quat_wxyz: Quaternion | None = Field(default=None, description="Quaternion in MuJoCo's order.")
-    frame: Name = Field(default="world", description="`world`, a robot link, or an object's name.")
+    rpy: Rpy | None = Field(
+        default=None, description="The fixed-axis roll, pitch and yaw [rad], as in URDF."
+    )
+    quat_xyzw: Quaternion | None = Field(default=None, description="The quaternion in ROS order.")
+    quat_wxyz: Quaternion | None = Field(
+        default=None, description="The quaternion in MuJoCo's order."
+    )
+    frame: Name = Field(
+        default="world", description="The frame: `world`, a robot link, or an object's name."
+    )
 
     @field_validator("quat_xyzw", "quat_wxyz")
     @classmethod
@@ -76,19 +82,25 @@ class Pose(SpecModel):
 
 
 class Position(SpecModel):
-    """A point in a frame."""
+    """A position: a point in a frame."""
 
     short = "xyz"
 
-    xyz: Xyz = Field(description="Position [m].")
-    frame: Name = Field(default="world", description="`world`, a robot link, or an object's name.")
+    xyz: Xyz = Field(description="The position along x, y, z of the frame [m].")
+    frame: Name = Field(
+        default="world", description="The frame: `world`, a robot link, or an object's name."
+    )
 
 
 class Direction(SpecModel):
     """A direction of travel, or an axis to turn about; its length does not matter."""
 
-    xyz: tuple[Number, Number, Number] = Field(description="Along x, y, z of the frame.")
-    frame: Name = Field(default="world", description="`world`, a robot link, or an object's name.")
+    xyz: tuple[Number, Number, Number] = Field(
+        description="The components along x, y, z of the frame."
+    )
+    frame: Name = Field(
+        default="world", description="The frame: `world`, a robot link, or an object's name."
+    )
 
     @field_validator("xyz")
     @classmethod
@@ -99,9 +111,9 @@ class Direction(SpecModel):
 
 
 class PoseTolerance(SpecModel):
-    """How near is there: MoveIt's goal tolerances."""
+    """The tolerance of a pose: MoveIt's goal tolerances."""
 
-    position: PositiveLength = Field(default=1e-3, description="Radius around the target [m].")
+    position: PositiveLength = Field(default=1e-3, description="The radius around the target [m].")
     orientation: NonNegativeAngle = Field(
-        default=1e-2, description="Largest rotation about each axis [rad]."
+        default=1e-2, description="The largest rotation about each axis [rad]."
     )

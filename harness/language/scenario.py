@@ -28,53 +28,60 @@ from harness.language.world import ObjectSpec
 
 
 class StartState(SpecModel):
-    """Where the robot stands at the start."""
+    """The state in which the robot starts."""
 
     short = "named_target"
 
-    named_target: Name | None = Field(default=None, description="An SRDF group state of the arm.")
+    named_target: Name | None = Field(
+        default=None, description="The arm starts at this SRDF group state."
+    )
     joints: dict[Name, JointValue] | None = Field(
-        default=None, description="Joint positions by name."
+        default=None, description="The joints start at these positions, by name."
     )
 
 
 class JointLimits(SpecModel):
-    """MoveIt's joint_limits.yaml words; narrows what the robot's description says."""
+    """Limits of a joint in the words of MoveIt's joint_limits.yaml; narrower than the robot's."""
 
-    min_position: JointValue | None = Field(default=None, description="Lowest position.")
-    max_position: JointValue | None = Field(default=None, description="Highest position.")
+    min_position: JointValue | None = Field(
+        default=None, description="The lowest position that planning uses."
+    )
+    max_position: JointValue | None = Field(
+        default=None, description="The highest position that planning uses."
+    )
     max_velocity: Annotated[JointVelocity, Field(gt=0)] | None = Field(
-        default=None, description="Largest speed."
+        default=None, description="The largest velocity that planning uses."
     )
     max_acceleration: Annotated[JointAcceleration, Field(gt=0)] | None = Field(
-        default=None, description="Largest acceleration."
+        default=None, description="The largest acceleration that planning uses."
     )
     max_effort: Annotated[JointEffort, Field(gt=0)] | None = Field(
-        default=None, description="Largest effort."
+        default=None, description="The largest effort of the joint's motor."
     )
 
 
 class MoveItFiles(SpecModel):
-    """Files of a MoveIt configuration package."""
+    """The files of a MoveIt configuration package."""
 
     joint_limits: str | None = Field(
-        default=None, description="joint_limits.yaml: narrows the robot's limits."
+        default=None, description="The path of joint_limits.yaml, which narrows the robot's limits."
     )
     kinematics: str | None = Field(
-        default=None, description="kinematics.yaml: `position_only_ik` of each group."
+        default=None,
+        description="The path of kinematics.yaml; `position_only_ik` of each group is read.",
     )
 
 
 class RobotSpec(SpecModel):
-    """The robot: a bundled model or files, with its gripper and where it stands."""
+    """The robot: a bundled model or files, with its gripper and its start state."""
 
     short = "model"
 
     model: str | None = Field(
-        default=None, description="A name under robots/, or a path to such a folder."
+        default=None, description="The name of a folder under robots/, or the path of one."
     )
     urdf: str | None = Field(
-        default=None, description="A URDF file, by its path or as package://name/path."
+        default=None, description="The URDF file, by its path or as package://name/path."
     )
     xacro: str | None = Field(default=None, description="A xacro file, rendered with `args`.")
     args: dict[Name, Any] = Field(
@@ -87,10 +94,10 @@ class RobotSpec(SpecModel):
         "`mjcf`; one with xacro elements is rendered with `args`.",
     )
     packages: tuple[str, ...] = Field(
-        default=(), description="Folders where package:// is looked up and meshes may be read."
+        default=(), description="The folders where package:// is looked up and meshes may be read."
     )
     group: Name | None = Field(
-        default=None, description="The arm's SRDF group; default: the one with most joints."
+        default=None, description="The arm's SRDF group; the default is the group with most joints."
     )
     tcp_link: Name | None = Field(
         default=None,
@@ -98,26 +105,31 @@ class RobotSpec(SpecModel):
         "pads (the end effector's parent or one named as a TCP first), else the arm group's tip.",
     )
     flange_link: Name | None = Field(
-        default=None, description="Where `gripper` is mounted; default: the arm group's tip."
+        default=None,
+        description="The link on which `gripper` is mounted; the default is the arm group's tip.",
     )
     gripper: str | None = Field(
         default=None,
         description="A gripper mounted on the arm's flange; or the SRDF group of the arm's own, "
         "which is found by itself where one joint closes two sides.",
     )
-    base: Pose = Field(default=Pose(), description="Where the base stands in the world.")
+    base: Pose = Field(default=Pose(), description="The pose of the base in the world.")
     kinematics: str | None = Field(
-        default=None, description="A UR calibration file, as ur_calibration writes it."
+        default=None, description="The UR calibration file, as ur_calibration writes it."
     )
-    moveit: MoveItFiles = Field(default=MoveItFiles(), description="Files that MoveIt has.")
+    moveit: MoveItFiles = Field(
+        default=MoveItFiles(), description="The files of the robot's MoveIt configuration."
+    )
     joint_limits: dict[Name, JointLimits] = Field(
-        default_factory=dict, description="By joint; narrower than the robot's own."
+        default_factory=dict,
+        description="Limits by joint name; they are narrower than the robot's own.",
     )
     named_states: dict[Name, dict[Name, dict[Name, JointValue]]] = Field(
-        default_factory=dict, description="Extra group states: group -> state -> joint -> position."
+        default_factory=dict,
+        description="Additional group states: group -> state -> joint -> position.",
     )
     start_state: StartState | None = Field(
-        default=None, description="Default: from the robot's folder."
+        default=None, description="The start state; the default comes from the robot's folder."
     )
 
     @model_validator(mode="before")
@@ -144,7 +156,9 @@ class WorldChoice(SpecModel):
 
     short = "name"
 
-    name: str = Field(description="A name under worlds/, or the path of a .yaml or .sdf file.")
+    name: str = Field(
+        description="The name of a world under worlds/, or the path of a .yaml or .sdf file."
+    )
     model_path: tuple[str, ...] = Field(
         default=(),
         description="Folders where an SDF world's models are looked up and may be read;"
@@ -153,45 +167,55 @@ class WorldChoice(SpecModel):
 
 
 class Scenario(SpecModel):
-    """One test of an arm application."""
+    """A scenario: one test of an arm application."""
 
-    scenario: Annotated[str, Field(min_length=1, max_length=200)] = Field(description="Its title.")
-    description: str = Field(default="", description="For people.")
-    tags: tuple[Name, ...] = Field(default=(), description="pytest marks.")
-    points: Annotated[Number, Field(ge=0)] | None = Field(
-        default=None, description="Of a graded scenario."
+    scenario: Annotated[str, Field(min_length=1, max_length=200)] = Field(
+        description="The title of the scenario."
     )
-    verifies: tuple[str, ...] = Field(default=(), description="Requirements.")
-    robot: RobotSpec = Field(description="A model's name, or its keys.")
+    description: str = Field(default="", description="A description of the scenario for people.")
+    tags: tuple[Name, ...] = Field(default=(), description="The tags become pytest marks.")
+    points: Annotated[Number, Field(ge=0)] | None = Field(
+        default=None, description="Points awarded when this scenario passes."
+    )
+    verifies: tuple[str, ...] = Field(
+        default=(),
+        description="The requirements that this scenario verifies, by their identifiers.",
+    )
+    robot: RobotSpec = Field(description="The robot: the name of a model, or its keys.")
     world: WorldChoice = Field(
-        default=WorldChoice(name="empty"), description="A world's name, or its keys."
+        default=WorldChoice(name="empty"), description="The world: its name, or its keys."
     )
     objects: tuple[ObjectSpec, ...] = Field(
-        default=(), description="Added to, or replacing, the world's."
+        default=(), description="Objects that are added to the world's, or replace them."
     )
     cameras: tuple[CameraSpec, ...] = Field(
-        default=(), description="Added to the world's and the robot's."
+        default=(), description="Cameras that are added to those of the world and the robot."
     )
     videos: tuple[VideoSpec, ...] = Field(
         default=(), description="Cameras that are recorded all through the run."
     )
     seed: Annotated[Count, Field(ge=0, le=2**31 - 1)] = Field(
-        default=0, description="Of everything random; each step's seed follows from it."
+        default=0, description="The seed of everything random; each step's seed follows from it."
     )
-    params: dict[Name, Any] = Field(default_factory=dict, description="For ${name} in the file.")
+    params: dict[Name, Any] = Field(
+        default_factory=dict, description="The values that ${name} in the file stands for."
+    )
     planning: Planning = Field(
-        default=Planning(), description="For all steps that do not say otherwise."
+        default=Planning(),
+        description="Planning parameters of all steps that have none of their own.",
     )
     deterministic: Flag = Field(
-        default=True, description="`false` allows planners that cannot be repeated."
+        default=True, description="`false` allows planners whose result cannot be repeated."
     )
     steps: Annotated[tuple[AnyStep, ...], Field(min_length=1)] = Field(
-        description="What the arm does, in order."
+        description="The steps that the arm executes, in order."
     )
-    expect: tuple[AnyExpectation, ...] = Field(default=(), description="Judged over the whole run.")
+    expect: tuple[AnyExpectation, ...] = Field(
+        default=(), description="Expectations that are judged over the whole run."
+    )
     parametrize: Parametrize | None = Field(
         default=None,
-        description="Cases: a grid `{robot.model: [ur3e, ur5e]}`, or a list of named ones.",
+        description="The cases: a grid `{robot.model: [ur3e, ur5e]}`, or a list of named cases.",
     )
     randomize: dict[str, Distribution] | None = Field(
         default=None,
@@ -199,14 +223,16 @@ class Scenario(SpecModel):
         " name: `objects.cube.pose.xyz.0`.",
     )
     samples: Annotated[Count, Field(ge=1, le=MOST_SAMPLES)] | None = Field(
-        default=None, description="How many random cases; default 20 where something is random."
+        default=None,
+        description="The number of random cases; the default is 20 where something is random.",
     )
     redraw_overlaps: Flag | None = Field(
         default=None,
         description="Draws a sample again, up to 100 times, while objects overlap at the start.",
     )
     expect_rate: Expected | None = Field(
-        default=None, description="Of the samples; without it every one must pass."
+        default=None,
+        description="The required success rate of the samples; without it every sample must pass.",
     )
 
     @model_validator(mode="after")

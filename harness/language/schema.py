@@ -17,9 +17,9 @@ from pydantic_core import core_schema
 from harness.language.base import SpecModel
 from harness.language.expectation import ExpectationFields, TemporalFields
 from harness.language.language import (
-    BESIDE_CHECK,
-    BESIDE_VERB,
     EXPECTATIONS,
+    KEYS_BY_PREDICATE,
+    KEYS_BY_VERB,
     PREDICATES,
     TEMPORAL,
     UNTIL,
@@ -158,12 +158,12 @@ def _without_null(schema: Schema) -> Schema:
 
 
 def _with_references(schema: Schema) -> Schema:
-    """Where a number, list or word stands, `${name}` may; where a unit fits, text with one."""
+    """Allow `${name}` for a number, list or word, and text with a unit for a number."""
     units: tuple[str, ...] | None = schema.pop("units", None)
     around = {key: schema.pop(key) for key in ("description", "default") if key in schema}
     if units is not None:
         unit = f"{' or '.join(units)} (as text: {written(units)})"
-        unit = "As a number, or a percentage" if units == SHARE else f"In {unit}"
+        unit = "It is a number or a percentage" if units == SHARE else f"The unit is {unit}"
         around["description"] = f"{around.get('description', '')} {unit}.".strip()
         pattern = EXPRESSION if "rad" in units else PERCENTAGE if units == SHARE else QUANTITY
         return {**around, "anyOf": [schema, {"type": "string", "pattern": pattern}]}
@@ -176,7 +176,7 @@ def _with_short_form(definition: Schema, model: type[SpecModel]) -> Schema:
     """A model's schema without its tag, and the bare value that may stand for it."""
     properties: dict[str, Schema] = definition.get("properties", {})
     is_step, is_check = issubclass(model, Step), issubclass(model, ExpectationFields)
-    hidden = BESIDE_VERB if is_step else ()
+    hidden = KEYS_BY_VERB if is_step else ()
     kept = {key: value for key, value in properties.items() if key not in hidden}
     mapping = {**definition, "properties": kept}
     branches: list[Schema] = [mapping]
@@ -200,7 +200,10 @@ def _with_short_form(definition: Schema, model: type[SpecModel]) -> Schema:
 
 def _accept_ur_type(robot: Schema) -> None:
     properties = robot["anyOf"][0]["properties"]
-    properties["ur_type"] = {"type": "string", "description": "As `model`: the course's word."}
+    properties["ur_type"] = {
+        "type": "string",
+        "description": "The model; the course's word for `model`.",
+    }
 
 
 def _language(
@@ -225,11 +228,13 @@ def _language(
 
     plain_step = _properties(Step)
     plain_check = _properties(TemporalFields)
-    beside_verb = {key: _written(plain_step[key]) for key in BESIDE_VERB}
-    beside_check = {key: _written(plain_check[key]) for key in BESIDE_CHECK if key in plain_check}
+    next_to_verb = {key: _written(plain_step[key]) for key in KEYS_BY_VERB}
+    next_to_predicate = {
+        key: _written(plain_check[key]) for key in KEYS_BY_PREDICATE if key in plain_check
+    }
     bare_words = content(_predicates_and_formula())
     predicates = {word: bare_words[word] for word in PREDICATES}
-    predicate = _one_word(predicates, beside_check, PREDICATES)
+    predicate = _one_word(predicates, next_to_predicate, PREDICATES)
     temporal = {
         word: {"description": model.__doc__ or "", "allOf": [{"$ref": "#/$defs/Predicate"}]}
         for word, model in TEMPORAL.items()
@@ -241,10 +246,10 @@ def _language(
         }
     }
     words = bare_words | temporal
-    expectation = _one_word(words, beside_check | until, PREDICATES)
+    expectation = _one_word(words, next_to_predicate | until, PREDICATES)
     expectation["anyOf"][0]["dependencies"] = {UNTIL: ["always"]}
     return {
-        "Step": _one_word(content(STEPS), beside_verb, STEPS),
+        "Step": _one_word(content(STEPS), next_to_verb, STEPS),
         "Predicate": predicate,
         "Expectation": expectation,
     }
@@ -256,12 +261,14 @@ def _predicates_and_formula() -> dict[str, type[ExpectationFields]]:
 
 
 def _one_word(
-    words: Mapping[str, Schema], beside: Mapping[str, Schema], models: Mapping[str, type[SpecModel]]
+    words: Mapping[str, Schema],
+    siblings: Mapping[str, Schema],
+    models: Mapping[str, type[SpecModel]],
 ) -> Schema:
     bare = [word for word, model in models.items() if _may_be_bare(model)]
     mapping: Schema = {
         "type": "object",
-        "properties": {**words, **beside},
+        "properties": {**words, **siblings},
         "additionalProperties": False,
         "oneOf": [{"required": [word]} for word in words],
     }

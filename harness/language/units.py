@@ -1,4 +1,4 @@
-"""Numbers that may carry a unit as text: `5 cm` is 0.05 where metres are meant."""
+"""Numbers that may carry a unit as text: `5 cm` is 0.05 where metres are expected."""
 
 from __future__ import annotations
 
@@ -88,10 +88,10 @@ LONGEST = 60
 def quantity(*units: str) -> Callable[[Any], float]:
     """A validator that turns `5 cm` into a number of the first unit that fits; numbers pass.
 
-    Where an angle fits, so do expressions such as `pi/2`; where a share is meant, percentages.
+    Where an angle fits, so do expressions such as `pi/2`; where a share is expected, percentages.
 
     Args:
-        units: SI units accepted here, told apart by dimension (a joint is `rad` or `m`).
+        units: SI units accepted here, distinguished by dimension (a joint is `rad` or `m`).
     """
 
     def parse(value: Any) -> float:
@@ -125,7 +125,7 @@ def in_si(text: str, units: tuple[str, ...]) -> float:
     if unit == "%":
         if units == SHARE:
             return number / 100
-        raise MistakeError(f"`{text}` is a share; {expected(units)} is meant", usage(units))
+        raise MistakeError(f"`{text}` is a share; {expected(units)} is expected", usage(units))
     for target in units:
         if unit in COMMON.get(target, {}):
             return number * COMMON[target][unit]
@@ -138,17 +138,21 @@ def in_si(text: str, units: tuple[str, ...]) -> float:
             f"`{text}`: no unit is called `{unit}`", f"{start}units: {written(units)}"
         )
     for target in units:
-        wanted = _parsed(target)
-        if wanted is not None and given.is_compatible_with(wanted):
-            return number * float(_registry().Quantity(1.0, given).to(wanted).magnitude)
-    raise MistakeError(f"`{text}` is {_measured(given)}; {expected(units)} is meant", usage(units))
+        target_unit = _parsed(target)
+        if target_unit is not None and given.is_compatible_with(target_unit):
+            return number * float(_registry().Quantity(1.0, given).to(target_unit).magnitude)
+    raise MistakeError(
+        f"`{text}` is {_measured(given)}; {expected(units)} is expected", usage(units)
+    )
 
 
 def _measures(unit: str, units: tuple[str, ...]) -> bool:
     """Whether a unit has the dimension of one of the SI units."""
     given = _parsed(unit)
     return given is not None and any(
-        given.is_compatible_with(wanted) for wanted in map(_parsed, units) if wanted is not None
+        given.is_compatible_with(target_unit)
+        for target_unit in map(_parsed, units)
+        if target_unit is not None
     )
 
 
@@ -169,7 +173,7 @@ def written(units: tuple[str, ...]) -> str:
 
 
 def usage(units: tuple[str, ...]) -> str:
-    """What may be written where these units are meant."""
+    """What may be written where these units are expected."""
     if units == SHARE:
         return "write a number, or a percentage: `90 %`"
     return f"write a number in {' or '.join(units)}, or one with a unit: {written(units)}"
@@ -177,8 +181,8 @@ def usage(units: tuple[str, ...]) -> str:
 
 def _measured(unit: Any) -> str:
     for target, (meaning, _) in MEANINGS.items():
-        wanted = _parsed(target)
-        if wanted is not None and unit.is_compatible_with(wanted):
+        target_unit = _parsed(target)
+        if target_unit is not None and unit.is_compatible_with(target_unit):
             return meaning
     return "something else"
 

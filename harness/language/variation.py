@@ -17,7 +17,7 @@ VARIATION_KEYS = ("parametrize", "randomize", "samples", "redraw_overlaps", "exp
 
 def _is_finite_quantity(value: object) -> object:
     if not math.isfinite(split_quantity(value)[0]):
-        raise ValueError("a finite number is wanted")
+        raise ValueError("a finite number is expected")
     return value
 
 
@@ -27,10 +27,14 @@ Quantity = Annotated[Any, AfterValidator(_is_finite_quantity)]
 class Normal(SpecModel):
     """A normal distribution, cut at its bounds where there are some."""
 
-    mean: Quantity = Field(description="A number, with or without a unit.")
-    std: Quantity = Field(description="Standard deviation, in the unit of the mean.")
-    low: Quantity | None = Field(default=None, description="Drawn again below this.")
-    high: Quantity | None = Field(default=None, description="Drawn again above this.")
+    mean: Quantity = Field(description="The mean: a number, with or without a unit.")
+    std: Quantity = Field(description="The standard deviation, in the unit of the mean.")
+    low: Quantity | None = Field(
+        default=None, description="The value is drawn again when it is below this."
+    )
+    high: Quantity | None = Field(
+        default=None, description="The value is drawn again when it is above this."
+    )
 
     @model_validator(mode="after")
     def _reachable(self) -> Normal:
@@ -48,14 +52,15 @@ class Normal(SpecModel):
 
 
 class Distribution(SpecModel):
-    """Where a random value comes from: exactly one of these."""
+    """The distribution of a random value: exactly one of these keys."""
 
     uniform: tuple[Quantity, Quantity] | None = Field(
-        default=None, description="Between two numbers, with or without a unit."
+        default=None,
+        description="The value is uniform between two numbers, with or without a unit.",
     )
-    normal: Normal | None = Field(default=None, description="About a mean.")
+    normal: Normal | None = Field(default=None, description="The value has a normal distribution.")
     choice: Annotated[tuple[Any, ...], Field(min_length=1, max_length=1000)] | None = Field(
-        default=None, description="One of these values, each as likely."
+        default=None, description="The value is one of these, each with equal probability."
     )
 
     @model_validator(mode="after")
@@ -72,16 +77,16 @@ class Distribution(SpecModel):
 
 
 class Expected(SpecModel):
-    """A success rate to be shown by random cases: `90 %` is short for `{at_least: 90 %}`."""
+    """A success rate that random cases must show: `90 %` is short for `{at_least: 90 %}`."""
 
     short = "at_least"
 
-    at_least: Fraction = Field(description="Share of the samples that pass.")
+    at_least: Fraction = Field(description="The share of the samples that must pass.")
     confidence: Annotated[Share, Field(gt=0.5, lt=1)] = Field(
-        default=0.95, description="With which this is to be shown."
+        default=0.95, description="The confidence with which the rate must be shown."
     )
     stop_early: bool = Field(
-        default=True, description="End as soon as a sequential test has decided."
+        default=True, description="Whether sampling ends as soon as a sequential test has decided."
     )
 
 

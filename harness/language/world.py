@@ -27,7 +27,7 @@ COLOR = "Red, green, blue, opacity from 0 to 1; or a name as in CSS: `red`."
 
 
 class BoxSpec(SpecModel):
-    """Full size along x, y, z [m]."""
+    """A box by its full size along x, y, z [m]."""
 
     size: tuple[PositiveLength, PositiveLength, PositiveLength] = Field(
         description="Full size along x, y, z [m]."
@@ -35,51 +35,54 @@ class BoxSpec(SpecModel):
 
 
 class CylinderSpec(SpecModel):
-    """About its z axis [m]."""
+    """A cylinder about its z axis [m]."""
 
-    radius: PositiveLength = Field(description="[m]")
-    length: PositiveLength = Field(description="[m]")
+    radius: PositiveLength = Field(description="The radius of the cylinder [m].")
+    length: PositiveLength = Field(description="The length of the cylinder along z [m].")
 
 
 class SphereSpec(SpecModel):
-    """A radius [m]."""
+    """A sphere by its radius [m]."""
 
-    radius: PositiveLength = Field(description="[m]")
+    radius: PositiveLength = Field(description="The radius of the sphere [m].")
 
 
 class CapsuleSpec(SpecModel):
-    """About its z axis; `length` is the cylindrical part [m]."""
+    """A capsule about its z axis; `length` is that of the cylindrical part [m]."""
 
-    radius: PositiveLength = Field(description="[m]")
-    length: PositiveLength = Field(description="Without the round ends [m].")
+    radius: PositiveLength = Field(description="The radius of the capsule [m].")
+    length: PositiveLength = Field(description="The length without the round ends [m].")
 
 
 class PlaneSpec(SpecModel):
-    """Solid below z = 0 of its pose."""
+    """A plane that is solid below z = 0 of its pose."""
 
 
 class MeshSpec(SpecModel):
-    """A triangle mesh file beside the world or scenario file."""
+    """A triangle mesh file next to the world or scenario file."""
 
-    file: str = Field(description="Path from the file that names it.")
+    file: str = Field(description="The path of the mesh, from the file that names it.")
     scale: Annotated[
         Annotated[Number, Tag("one")] | Annotated[tuple[Number, Number, Number], Tag("many")],
         Discriminator(kind_of),
     ] = Field(
         default=1.0,
-        description="Of the file's numbers to metres; one number, or one for each axis.",
+        description="The factor from the file's numbers to metres; one number, or one for each "
+        "axis.",
     )
 
 
 class FrictionSpec(SpecModel):
     """Coulomb friction of the surface; a contact takes the smaller of its two."""
 
-    sliding: Annotated[Number, Field(ge=0)] = Field(default=1.0, description="Along the surface.")
+    sliding: Annotated[Number, Field(ge=0)] = Field(
+        default=1.0, description="The friction coefficient along the surface."
+    )
     torsional: Annotated[Number, Field(ge=0)] = Field(
-        default=0.005, description="About the contact's normal [m]."
+        default=0.005, description="The friction coefficient about the contact's normal [m]."
     )
     rolling: Annotated[Number, Field(ge=0)] = Field(
-        default=0.0001, description="Against rolling [m]."
+        default=0.0001, description="The friction coefficient against rolling [m]."
     )
 
 
@@ -92,13 +95,15 @@ SurfaceFriction = Annotated[
 
 
 class ShapeSpec(SpecModel):
-    """Exactly one geometry, placed on its object."""
+    """A shape: exactly one geometry, placed on its object."""
 
-    name: Name | None = Field(default=None, description="For people.")
-    pose: Pose = Field(default=Pose(), description="On the object; its frame word is ignored.")
+    name: Name | None = Field(default=None, description="A name of the shape for people.")
+    pose: Pose = Field(
+        default=Pose(), description="The pose of the shape on the object; its frame is ignored."
+    )
     color: Color | None = Field(default=None, description=COLOR)
     friction: SurfaceFriction | None = Field(
-        default=None, description="Where it differs from its object's."
+        default=None, description="The friction of the shape, where it differs from its object's."
     )
     box: BoxSpec | None = None
     cylinder: CylinderSpec | None = None
@@ -118,7 +123,7 @@ class ShapeSpec(SpecModel):
 
 
 class InertiaSpec(SpecModel):
-    """About the centre of mass, body axes [kg m^2]."""
+    """The inertia about the centre of mass, along the body's axes [kg m^2]."""
 
     ixx: Number
     iyy: Number
@@ -129,18 +134,18 @@ class InertiaSpec(SpecModel):
 
 
 class ObjectSpec(SpecModel):
-    """An object: one geometry beside its keys, or several under `shapes`.
+    """An object: one geometry next to its keys, or several under `shapes`.
 
     One with `visuals` alone is seen and touches nothing.
     """
 
-    name: Name = Field(description="Unique in the scene.")
+    name: Name = Field(description="The name of the object, unique in the scene.")
     pose: Pose = Field(
         default=Pose(),
-        description="Where it stands at the start; its origin is its centre. `frame` may be an "
-        "object that stands in the list before it.",
+        description="The pose of the object at the start; its origin is its centre. `frame` "
+        "may be an object that stands in the list before it.",
     )
-    static: Flag = Field(default=False, description="Fixed in the world.")
+    static: Flag = Field(default=False, description="Whether the object is fixed in the world.")
     box: BoxSpec | None = None
     cylinder: CylinderSpec | None = None
     sphere: SphereSpec | None = None
@@ -149,30 +154,34 @@ class ObjectSpec(SpecModel):
     mesh: MeshSpec | None = None
     marker: MarkerSpec | None = None
     shapes: tuple[ShapeSpec, ...] = Field(
-        default=(), description="Several geometries of one object."
+        default=(), description="The geometries of an object that has several."
     )
     visuals: tuple[ShapeSpec, ...] = Field(
-        default=(), description="What pictures show in place of the shapes."
+        default=(), description="The geometries that pictures show in place of the shapes."
     )
     mass: Mass | None = Field(
         default=None,
-        description="[kg]; default from the volume at 1000 kg/m^3, of a mesh that of its hull.",
+        description="The mass [kg]; the default follows from the volume at 1000 kg/m^3, of a mesh "
+        "from that of its hull.",
     )
     center_of_mass: Xyz = Field(
-        default=(0.0, 0.0, 0.0), description="From the object's origin [m]."
+        default=(0.0, 0.0, 0.0), description="The centre of mass, from the object's origin [m]."
     )
-    inertia: InertiaSpec | None = Field(default=None, description="Default: of the solid shapes.")
+    inertia: InertiaSpec | None = Field(
+        default=None, description="The inertia; the default is that of the solid shapes."
+    )
     friction: SurfaceFriction | None = Field(
-        default=None, description="Sliding friction alone, or all three."
+        default=None, description="The friction: the sliding coefficient alone, or all three."
     )
     color: Color | None = Field(default=None, description=COLOR)
     in_: Literal["planning", "simulation", "both"] = Field(
         default="both",
         alias="in",
-        description="Who knows it: the planning scene, the physics, or both.",
+        description="The scenes that know the object: the planning scene, the physics, or both.",
     )
     replace: Flag = Field(
-        default=False, description="In `objects`: replaces the world's object so named."
+        default=False,
+        description="Whether this replaces the world's object of this name; used in `objects`.",
     )
 
     @model_validator(mode="after")
@@ -187,30 +196,40 @@ class ObjectSpec(SpecModel):
 
 
 class LightSpec(SpecModel):
-    """A directional light."""
+    """A directional light of the world."""
 
     direction: tuple[Number, Number, Number] = Field(
-        default=(-0.5, 0.1, -0.9), description="Where it shines to."
+        default=(-0.5, 0.1, -0.9), description="The direction in which the light shines."
     )
     diffuse: Color = Field(default=(0.8, 0.8, 0.8, 1.0), description=COLOR)
-    casts_shadow: Flag = Field(default=True, description="In pictures.")
+    casts_shadow: Flag = Field(
+        default=True, description="Whether the light casts shadows in pictures."
+    )
 
 
 class PhysicsSpec(SpecModel):
-    """Of the simulation."""
+    """The settings of the physics simulation."""
 
-    timestep: Annotated[Duration, Field(ge=1e-4, le=0.02)] = Field(default=0.001, description="[s]")
-    gravity: tuple[Length, Length, Length] = Field(default=(0.0, 0.0, -9.8), description="[m/s**2]")
+    timestep: Annotated[Duration, Field(ge=1e-4, le=0.02)] = Field(
+        default=0.001, description="The time step of the physics [s]."
+    )
+    gravity: tuple[Length, Length, Length] = Field(
+        default=(0.0, 0.0, -9.8), description="The gravity vector in the world [m/s**2]."
+    )
 
 
 class WorldSpec(SpecModel):
-    """What stands around the robot, and the physics it stands in."""
+    """A world: what stands around the robot, and its physics."""
 
-    world: Name = Field(description="Its title.")
-    description: str = Field(default="", description="For people.")
-    objects: tuple[ObjectSpec, ...] = Field(default=(), description="What stands in it.")
-    lights: tuple[LightSpec, ...] = Field(default=(), description="For pictures.")
-    cameras: tuple[CameraSpec, ...] = Field(
-        default=(), description="In the world, on objects, or on links of whatever robot."
+    world: Name = Field(description="The title of the world.")
+    description: str = Field(default="", description="A description of the world for people.")
+    objects: tuple[ObjectSpec, ...] = Field(
+        default=(), description="The objects that stand in the world."
     )
-    physics: PhysicsSpec = Field(default=PhysicsSpec(), description="Time step and gravity.")
+    lights: tuple[LightSpec, ...] = Field(default=(), description="The lights, for pictures.")
+    cameras: tuple[CameraSpec, ...] = Field(
+        default=(), description="The cameras in the world, on objects, or on links of the robot."
+    )
+    physics: PhysicsSpec = Field(
+        default=PhysicsSpec(), description="The time step and gravity of the physics."
+    )

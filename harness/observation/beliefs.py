@@ -18,9 +18,9 @@ def believed_poses(
     """T_world_object of every sample, NaN while absent, shape (N, 7) each.
 
     Args:
-        beliefs: Of each object, in order of time.
+        beliefs: The beliefs of each object, in order of time.
         joint_positions: Recorded, description order, shape (N, n).
-        kinematics: Of the robot that carries some of them.
+        kinematics: The kinematics of the robot that carries some of them.
     """
     count = len(joint_positions)
     poses: dict[str, FloatArray] = {}

@@ -15,8 +15,8 @@ from harness.core.geometry import Shape
 from harness.core.spatial import rotation_from_quat_wxyz
 from harness.core.types import BoolArray, FloatArray
 from harness.planning.collision.geometry import coal_geometry
-from harness.planning.model.forward_kinematics import LinkPoses
 from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
+from harness.robot.forward_kinematics import LinkPoses
 
 
 @dataclass(frozen=True, eq=False)

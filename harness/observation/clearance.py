@@ -26,10 +26,10 @@ from harness.observation.sampled_clearance import (
     knots,
     nearest_measured,
 )
-from harness.planning.model.forward_kinematics import LinkPoses
 from harness.planning.model.robot_model import RobotModel
 from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
 from harness.robot.description import RobotDescription
+from harness.robot.forward_kinematics import LinkPoses
 
 ROBOT = "robot"
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from harness.cell.program import Program
 from harness.core.errors import Problem
 from harness.ports import Touch
+from harness.recording.explanation import lowered_margins_of
 from harness.recording.run import Finding, StepRecord
 
 NOTHING_EXPECTED = (
@@ -20,7 +20,7 @@ def about_file(program: Program, notes: Sequence[Problem]) -> tuple[Finding, ...
     """What the scenario file allows and probably does not intend.
 
     Args:
-        program: The compiled scenario.
+        program: The program of the run.
         notes: Places in the file, as the language found them.
     """
     found = [Finding("note", noted(problem)) for problem in notes]
@@ -35,7 +35,7 @@ def noted(problem: Problem) -> str:
     return f"{problem.path}:{problem.line}:{problem.column}: {problem.message}; {problem.hint}"
 
 
-def told(notes: Sequence[str]) -> tuple[Finding, ...]:
+def notes_of_files(notes: Sequence[str]) -> tuple[Finding, ...]:
     """What of the robot's and the world's files was left out or assumed."""
     return tuple(Finding(kind="note", message=note) for note in notes)
 
@@ -69,10 +69,9 @@ def findings_of(steps: Sequence[StepRecord]) -> tuple[Finding, ...]:
     """
     found: list[Finding] = []
     for step in steps:
-        lowered: Sequence[dict[str, Any]] = step.explanation.get("lowered_margins", ())
-        for entry in lowered:
-            first, second = entry["pair"]
-            distance = float(entry["start_distance"]) * 1e3
+        for entry in lowered_margins_of(step.explanation):
+            first, second = entry.pair
+            distance = entry.start_distance * 1e3
             stood = f"{-distance:.1f} mm deep" if distance < 0 else f"{distance:.1f} mm apart"
             found.append(
                 Finding(
@@ -81,7 +80,7 @@ def findings_of(steps: Sequence[StepRecord]) -> tuple[Finding, ...]:
                     " let stay so near, no nearer",
                     time=step.start_time,
                     step=step.id,
-                    values=entry,
+                    values=entry.plain(),
                 )
             )
     return tuple(found)

@@ -24,7 +24,7 @@ GRIP_GAP = 0.05
 """Fingers that touch an object less than this before the end of a hold still held it [s]."""
 
 DIFFERENT = 1e-3
-"""Planned and actual clearance that differ by more are told step by step [m]."""
+"""Planned and actual clearance that differ by more are reported step by step [m]."""
 
 Distances = Callable[[Signals], Mapping[Pair, FloatArray]]
 
@@ -33,7 +33,7 @@ def plan_against_physics(run: Run, planned: Signals, distances: Distances) -> tu
     """What differed between belief and physics, and by how much, in every run.
 
     Args:
-        run: With clearances observed.
+        run: The run, with its clearances observed.
         planned: The run's signals `as_commanded`.
         distances: Measures clearances at every sample it is given.
     """
@@ -45,13 +45,13 @@ def plan_against_physics(run: Run, planned: Signals, distances: Distances) -> tu
 def as_commanded(run: Run, kinematics: Kinematics) -> Signals:
     """The recording had the arm been at its commands, with what is attached where it is carried.
 
-    Fingers stay where they were: one that presses is meant to stay behind its command.
+    Fingers stay where they were: one that presses lags its command.
     """
     signals, joints = run.signals, run.robot.joints
     hand = gripper_joints(run)
     follows = np.array([joint.name not in hand for joint in joints])
-    is_told = np.isfinite(signals.joint_commands) & follows
-    positions = np.where(is_told, signals.joint_commands, signals.joint_positions)
+    is_commanded = np.isfinite(signals.joint_commands) & follows
+    positions = np.where(is_commanded, signals.joint_commands, signals.joint_positions)
     poses = dict(signals.object_poses)
     for record in run.attachments:
         held = (signals.times >= record.start_time) & (signals.times <= record.end_time)
@@ -68,7 +68,7 @@ def held_finding(run: Run, record: AttachmentRecord) -> Finding | None:
     times = run.signals.times
     during = (times >= record.start_time) & (times < min(record.end_time, times[-1]))
     try:
-        _, drift, turn, speaks = drift_in_hand(run, record.object)
+        _, drift, turn, is_held = drift_in_hand(run, record.object)
         gripped = np.flatnonzero(held_by_fingers(run, name) & during)
     except (NotReached, NotObservable):
         return (
@@ -81,7 +81,7 @@ def held_finding(run: Run, record: AttachmentRecord) -> Finding | None:
             if _is_physical(run, name)
             else None
         )
-    rows = np.flatnonzero(during & speaks)
+    rows = np.flatnonzero(during & is_held)
     if not len(rows):
         return None
     worst = int(rows[np.nanargmax(drift[rows])])
@@ -112,7 +112,7 @@ def _tracking(run: Run) -> tuple[Finding, ...]:
     hand = gripper_joints(run)
     for column, joint in enumerate(run.robot.joints):
         if joint.name in hand:
-            errors[:, column] = 0.0  # a gripper that presses is meant to stay behind its command
+            errors[:, column] = 0.0  # a gripper that presses lags its command
     row, column = (int(place) for place in np.unravel_index(int(np.argmax(errors)), errors.shape))
     worst = float(errors[row, column])
     joint = run.robot.joints[column]

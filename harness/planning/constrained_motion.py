@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
+from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
@@ -21,6 +21,7 @@ from harness.planning.timing.timing import time_stopping, time_straight
 from harness.planning.verification.path_constraints import HeldConstraints
 from harness.planning.verification.verify import FINAL_RESOLUTION, Defect
 from harness.ports import MotionPlan
+from harness.recording.motion_failures import SearchFailure
 
 PLANNER_ID = "RRTConnect, projected"
 
@@ -40,7 +41,7 @@ def find_constrained_motion(
     task: PlanningTask,
     held: HeldConstraints,
     goals: Sequence[FloatArray],
-    explanation: dict[str, Any],
+    explanation: Details,
 ) -> MotionPlan:
     """Plan a verified motion to a goal that satisfies the constraints at every sample.
 
@@ -83,13 +84,15 @@ def find_constrained_motion(
         raise PlanningFailed(
             "INVALID_MOTION_PLAN",
             "paths were found, but none passes verification: " + defect.message,
-            {**explanation, **defect.facts},
+            *explanation,
+            *defect.details,
         )
     raise PlanningFailed(
         "PLANNING_FAILED",
         "no free path that satisfies the constraints was found in at most "
         f"{task.options.max_state_checks} state checks",
-        {**explanation, "state_checks": task.checker.checks + held.checks},
+        *explanation,
+        SearchFailure(task.checker.checks + held.checks),
     )
 
 

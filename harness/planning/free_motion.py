@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.collision import wording
-from harness.planning.collision.checker import touch_facts
+from harness.planning.collision.checker import touch_records
 from harness.planning.search.path_search import Effort, FoundPath, verified_paths
 from harness.planning.search.shortening import shorten
 from harness.planning.task import PlanningTask
@@ -26,6 +27,8 @@ from harness.planning.verification.verify import (
     verified_resolution,
 )
 from harness.ports import MotionPlan, PlanningOptions
+from harness.recording.goal_failures import IkStudy
+from harness.recording.motion_failures import BlockedWay, SearchFailure
 
 BLEND_DEVIATIONS = (0.05, 0.01)
 """Largest deviations of the blends at the corners [rad]; after these, the motion stops there."""
@@ -49,7 +52,7 @@ class _Motion:
 
 
 def find_motion(
-    task: PlanningTask, goals: Sequence[FloatArray], explanation: dict[str, Any]
+    task: PlanningTask, goals: Sequence[FloatArray], explanation: Details
 ) -> MotionPlan:
     """Plan a verified motion from the task's start to the goal with the least effort.
 
@@ -58,7 +61,7 @@ def find_motion(
     straight effort is less than the candidate's are then searched with a small budget.
 
     Args:
-        task: The planning call.
+        task: The planning call with its options.
         goals: Free group positions, nearest first.
         explanation: The explanation of the goals; the plan contains it with the chosen solution.
 
@@ -88,9 +91,7 @@ def _straight(task: PlanningTask, goals: Sequence[FloatArray]) -> _Motion | None
     return None
 
 
-def _searched(
-    task: PlanningTask, goals: Sequence[FloatArray], explanation: dict[str, Any]
-) -> _Motion:
+def _searched(task: PlanningTask, goals: Sequence[FloatArray], explanation: Details) -> _Motion:
     """Search, shorten, time and verify; with a finer resolution after a failed verification."""
     effort = Effort()
     found = _first_verified_motion(task, goals, task.options, effort)
@@ -188,7 +189,7 @@ def _timed(task: PlanningTask, waypoints: FloatArray) -> JointTrajectory | Defec
 def _search_failure(
     task: PlanningTask,
     goals: Sequence[FloatArray],
-    explanation: dict[str, Any],
+    explanation: Details,
     used: int,
     gaps: list[float],
     defect: Defect | None,
@@ -197,7 +198,8 @@ def _search_failure(
         return PlanningFailed(
             "INVALID_MOTION_PLAN",
             "paths were found, but none passes verification: " + defect.message,
-            {**explanation, **defect.facts},
+            *explanation,
+            *defect.details,
         )
     options = task.options
     attempts = "" if options.attempts == 1 else f"{options.attempts} searches with "
@@ -205,29 +207,28 @@ def _search_failure(
         f"no free path to the goal was found in {attempts}at most {options.max_state_checks} "
         "state checks"
     )
-    facts: dict[str, Any] = {**explanation, "state_checks": used}
-    if gaps:
-        facts["gap"] = min(gaps)
+    straight_way = None
     blocked = task.checker.first_block(task.start, goals[0], FINAL_RESOLUTION)
     if blocked is not None:
         share, touches = blocked
-        facts["straight_way"] = {"free_share": share, "touches": touch_facts(touches)}
+        straight_way = BlockedWay(share, touch_records(touches))
         message += (
             f"; the straight path is blocked after {100 * share:.0f} % by "
             f"{wording.touches(touches)}"
         )
-    return PlanningFailed("PLANNING_FAILED", message, facts)
+    search = SearchFailure(used, min(gaps, default=None), straight_way)
+    return PlanningFailed("PLANNING_FAILED", message, *explanation, search)
 
 
-def _chosen(explanation: dict[str, Any], end: FloatArray) -> dict[str, Any]:
+def _chosen(explanation: Details, end: FloatArray) -> Details:
     """The explanation, with the status `chosen` for the solution at the end of the motion."""
-    solutions = explanation.get("ik_solutions")
-    if not solutions:
+    study = explanation.find(IkStudy)
+    if study is None:
         return explanation
-    marked = [
-        {**solution, "status": "chosen"}
-        if np.allclose(solution["joint_positions"], end, atol=1e-9)
+    marked = tuple(
+        replace(solution, status="chosen")
+        if np.allclose(solution.joint_positions, end, atol=1e-9)
         else solution
-        for solution in solutions
-    ]
-    return {**explanation, "ik_solutions": marked}
+        for solution in study.ik_solutions
+    )
+    return explanation.replaced(replace(study, ik_solutions=marked))

@@ -66,7 +66,7 @@ class ScenarioItem(pytest.Item):
     def runtest(self) -> None:
         from harness.pytest_plugin.running import run_item  # imports the rest of the harness
 
-        run_item(self)
+        run_item(self, self.header, self.case, self.number)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         from harness.pytest_plugin.running import SELF_EXPLANATORY_ERRORS

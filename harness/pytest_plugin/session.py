@@ -7,8 +7,7 @@ from typing import Any
 
 import pytest
 
-RECORD = "harness_record"
-"""Attribute of a test report that holds an item's record as plain data."""
+from harness.pytest_plugin.session_options import RECORD, report_root
 
 
 class SessionResults:
@@ -33,7 +32,6 @@ class SessionResults:
             return
         from harness.core.errors import HarnessError
         from harness.core.printable import printable, terminal_text
-        from harness.pytest_plugin.running import report_root
         from harness.pytest_plugin.session_files import (
             from_plains,
             small_margins,

@@ -72,7 +72,7 @@ def write_files(folder: Path, suite: SuiteRecord, history: Path | None) -> str:
 
     Args:
         folder: Folder of the session's reports.
-        suite: The session's results.
+        suite: The results of the session.
         history: A folder of earlier results, whose margins the page shows.
 
     Returns:

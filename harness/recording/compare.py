@@ -25,11 +25,11 @@ class Change:
     Attributes:
         what: `scenario` (a line of the resolved file), `verdict`, `step`, `trajectory`, `version`,
             `robot`, `seed`, `outcome` ...
-        name: Of the step, expectation or library.
-        before: In the first run, in words; `-` where it has none.
-        after: In the second run.
+        name: The name of the step, expectation or library.
+        before: The value in the first run, in words; `-` where it has none.
+        after: The value in the second run.
         amount: After less before, where both are one number; NaN elsewhere.
-        unit: Of the amount.
+        unit: The unit of the amount.
     """
 
     what: str
@@ -47,9 +47,9 @@ class FirstDifference:
     Attributes:
         step: Id of the step it happened in; empty when the runs part before the first.
         signal: Its name, with the column's where it is a joint's.
-        time: Of the sample [s].
-        before: In the first run.
-        after: In the second run.
+        time: The time of the sample [s].
+        before: The value in the first run.
+        after: The value in the second run.
     """
 
     step: str
@@ -65,7 +65,7 @@ class Comparison:
 
     Attributes:
         is_same: Whether the digests of what both folders hold are equal.
-        changes: Everything that differs.
+        changes: The changes: everything that differs.
         first_difference: Where the recordings part.
         warnings: What was changed in either folder after its run was written.
     """

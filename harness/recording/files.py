@@ -9,7 +9,7 @@ from harness.core.errors import Problem, SpecError
 
 
 class FolderFiles(Mapping[str, bytes]):
-    """Files of a saved run, read when they are asked for."""
+    """Files of a saved run, read on first use."""
 
     def __init__(self, folder: Path, names: Iterable[str]) -> None:
         self._folder = folder

@@ -25,9 +25,9 @@ def encoded_film(frames: Iterable[np.ndarray], rate: float, size: tuple[int, int
     """A WebM file of RGB or grey pictures; the same bytes for the same pictures.
 
     Args:
-        frames: Of any size; at least one.
-        rate: Frames a second.
-        size: Of the video, as `film_size` gives it.
+        frames: The frames, of any size; at least one.
+        rate: The number of frames per second.
+        size: The size of the video, as `film_size` gives it.
     """
     with tempfile.TemporaryDirectory() as place:
         file = Path(place) / "film.webm"

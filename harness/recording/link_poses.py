@@ -17,16 +17,16 @@ def link_poses(
     """T_world_link at every sample, shape (N, 7) each; (1, 7) of links that cannot move.
 
     Args:
-        robot: The robot.
+        robot: The record of the robot.
         joint_positions: Columns in the order of `robot.joints`, shape (N, n).
-        links: Which to return; all when None.
+        links: The links to return; all when None.
     """
-    wanted = None if links is None else _with_carriers(robot, links)
+    needed = None if links is None else _with_carriers(robot, links)
     columns = {joint.name: column for column, joint in enumerate(robot.joints)}
     poses: dict[str, FloatArray] = {}
     for placement in robot.placements:
         parent = poses.setdefault(placement.parent, IDENTITY[None])
-        if wanted is not None and placement.link not in wanted:
+        if needed is not None and placement.link not in needed:
             continue
         moved = joint_positions[:, columns[placement.joint]] if placement.joint else None
         poses[placement.link] = compose(parent, placement_poses(placement, moved))
@@ -35,11 +35,11 @@ def link_poses(
 
 def _with_carriers(robot: RobotRecord, links: Collection[str]) -> set[str]:
     """The links, and all that they hang on: the others cost memory for nothing."""
-    wanted = set(links)
+    needed = set(links)
     for placement in reversed(robot.placements):
-        if placement.link in wanted:
-            wanted.add(placement.parent)
-    return wanted
+        if placement.link in needed:
+            needed.add(placement.parent)
+    return needed
 
 
 def placement_poses(placement: LinkPlacement, positions: FloatArray | None) -> FloatArray:
@@ -47,7 +47,7 @@ def placement_poses(placement: LinkPlacement, positions: FloatArray | None) -> F
 
     Args:
         placement: How the link hangs.
-        positions: Of its joint [rad or m], shape (N,); None when it has none.
+        positions: The positions of its joint [rad or m], shape (N,); None when it has none.
     """
     pose = np.array([placement.pose])
     return pose if positions is None else compose(pose, _motion(placement, positions))

@@ -1,4 +1,4 @@
-"""Which pictures of a run are wanted: what `capture` steps took and what expectations look at."""
+"""Which pictures a run needs: those of `capture` steps and those that expectations read."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ class Look:
     """One camera at one recorded sample.
 
     Attributes:
-        camera: Its name.
+        camera: The name of the camera.
         sample: Index into the signals.
-        kinds: Which pictures.
-        step: Id of the `capture` step; empty when an expectation wants to look.
+        kinds: The kinds of pictures.
+        step: Id of the `capture` step; empty when an expectation needs the picture.
     """
 
     camera: str
@@ -38,7 +38,7 @@ def looks_of_steps(steps: Iterable[StepRecord]) -> tuple[Look, ...]:
 
 
 def merged(looks: Iterable[Look]) -> tuple[Look, ...]:
-    """One look for each camera and sample, of every kind that any of them wants, in time order."""
+    """One look for each camera and sample, of every kind that any of them needs, in time order."""
     together: dict[tuple[int, str], Look] = {}
     for look in looks:
         known = together.get((look.sample, look.camera), look)

@@ -24,7 +24,7 @@ class NpzError(ValueError):
 
     Attributes:
         key: Name of the array; empty when it is the file.
-        reason: What is wrong.
+        reason: The reason for which the file is refused.
     """
 
     def __init__(self, key: str, reason: str) -> None:
@@ -52,7 +52,7 @@ class NpzFile:
     whose arrays take more memory than `LARGEST`, whatever their compressed size.
 
     Attributes:
-        headers: Of every array, by name.
+        headers: The headers of every array, by name.
 
     Raises:
         NpzError: The file is damaged, too large or no .npz; carries the array's name.

@@ -77,8 +77,8 @@ def from_plain(plain: Any, kind: Any, key: str = "") -> Any:
     """A value of a type from its plain form; unknown keys are left out, defaults fill in.
 
     Args:
-        plain: Plain data.
-        kind: The type.
+        plain: The value as plain data.
+        kind: The type of the value.
         key: Where the data is in its document.
 
     Raises:

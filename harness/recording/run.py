@@ -78,9 +78,9 @@ class MeshRecord:
     """Triangles of one colour of a mesh file that links or objects look like.
 
     Attributes:
-        path: Of the file, as `Shape.geometry` names it; it need not be there any more.
-        scale: As `Shape.geometry` says it; the vertices are scaled already.
-        vertices: Shape (V, 3) [m].
+        path: The path of the file, as `Shape.geometry` names it; it need not be there any more.
+        scale: The scale of `Shape.geometry`; the vertices are scaled already.
+        vertices: The vertices, shape (V, 3) [m].
         faces: Indices of vertices, shape (F, 3).
         rgba: None where the file gives no colour: the shape's.
     """
@@ -102,8 +102,8 @@ class RobotRecord:
         named_states: Group -> state -> joint -> position.
         static_links: Links that cannot move; they are no clearance finding against static objects.
         link_visuals: Shapes for pictures, by link.
-        urdf: The composed URDF.
-        srdf: The composed SRDF.
+        urdf: The text of the composed URDF.
+        srdf: The text of the composed SRDF.
         static_link_poses: T_world_link of `static_links` (xyz, quat wxyz).
         placements: Every link but the root, parents first.
     """
@@ -142,7 +142,7 @@ class ObjectRecord:
         present: Intervals [(from, to)] of simulation time in which it was in the scene [s].
         pose: T_world_object when it was added or put somewhere last (xyz, quat wxyz); empty when
             unknown.
-        mass: [kg]; NaN when unknown.
+        mass: The mass [kg]; NaN when unknown.
     """
 
     name: str
@@ -180,15 +180,15 @@ class StepRecord:
     Attributes:
         id: The file's `id`, else its path (`steps[3]`, `steps[3].lift`).
         path: Place in the expanded file; the step's seed is made from it.
-        verb: `move_to`, `lin`, ...
+        verb: The verb: `move_to`, `lin`, ...
         summary: One line for a person: `move_to mogi_home`.
-        line: In the scenario file, from 1; 0 if unknown.
-        status: What became of it.
+        line: The line in the scenario file, from 1; 0 if unknown.
+        status: The outcome of the stage.
         error_code: MoveIt error name of its failure, expected or not; empty when it succeeded.
         expected_error: What the file expects; empty when success is expected.
         message: The failure in words.
-        start_time: Simulation time [s].
-        end_time: Simulation time [s].
+        start_time: The simulated time at its start [s].
+        end_time: The simulated time at its end [s].
         start_index: First sample of the step.
         end_index: One past its last sample.
         trajectory: Commanded trajectory (joint_names, times, positions) for motion steps.
@@ -227,12 +227,12 @@ class Measure:
 
     Attributes:
         name: What was measured: `TCP position error`.
-        value: In `unit`.
+        value: The value in `unit`.
         limit: What it is compared with, in `unit`; NaN where there is none.
         comparison: How value must stand to limit.
         unit: `m`, `rad`, `s`, `N`, `1`.
         time: Simulation time of the sample [s].
-        detail: Which joint, link or pair it was.
+        detail: The joint, link or pair that was measured.
         expected: Where in the world something was to be (xyz), where the value is a distance.
         actual: Where it was (xyz).
         ceiling: The largest value that can be measured, in `unit`, as 1 is of a share; inf where
@@ -265,19 +265,19 @@ class Measure:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What an expectation came to.
+    """The result of an expectation.
 
     Attributes:
         expectation: Its text, one line: `never: collision between robot and Table`.
-        status: Only `passed` passes.
+        status: The status; only `passed` passes.
         margin: How far from flipping, in `unit`; positive when passed, negative when failed.
-        unit: Of the margin.
+        unit: The unit of the margin.
         time: The sample that decided it [s]; NaN when none did.
-        line: In the scenario file; 0 if unknown.
+        line: The line in the scenario file; 0 if unknown.
         step: Id of the step it stands on; empty for the whole run.
         reason: One sentence with the numbers, for a failure why.
         measures: What was measured at the deciding sample.
-        points: Of a graded expectation.
+        points: The points of a graded expectation.
     """
 
     expectation: str
@@ -328,9 +328,9 @@ class CaptureRecord:
 
     Attributes:
         camera: Name of one of `Run.cameras`.
-        time: Simulation time [s].
+        time: The simulated time of the picture [s].
         sample: Index into the signals.
-        step: Id of the `capture` step; empty when an expectation wanted to look.
+        step: Id of the `capture` step; empty when an expectation needed the picture.
         backend: Who drew them: `rays`, the same on every machine.
         files: Path in `Run.files` by kind: `color` (PNG or JPEG, with the camera's noise), `depth`
             (.npz, array `depth` of float32 metres along the optical axis, shape (height, width),
@@ -363,8 +363,8 @@ class VideoRecord:
             video's own clock.
         times: Simulation time of every frame [s], rising evenly by 1 / `rate`.
         rate: Frames a second of simulated time.
-        width: In pixels: the camera's, made even.
-        height: In pixels: the camera's, made even.
+        width: The width in pixels: the camera's, made even.
+        height: The height in pixels: the camera's, made even.
         backend: Who drew it: `egl`, `osmesa` or `rays`.
     """
 
@@ -403,10 +403,10 @@ class Signals:
         clearances: Distance [m] between the robot (key `robot`), or a held object (its name), and
             an object, or `robot` and itself: (N,) each; NaN while either is absent. Capped at
             `clearance_cutoff`: a value there means "at least that far".
-        clearance_links: Which robot link was nearest, index into the robot's link_names, (N,) each,
-            for keys of `clearances` that start with `robot`; -1 where none.
-        planned_clearances: As `clearances`, had the arm been at its commands; recorded when an
-            expectation asks for them.
+        clearance_links: The robot link that was nearest, as an index into the robot's link_names,
+            (N,) each, for keys of `clearances` that start with `robot`; -1 where none.
+        planned_clearances: The clearances had the arm been at its commands; recorded when an
+            expectation needs them.
     """
 
     times: FloatArray
@@ -440,32 +440,32 @@ class Run:
     """A whole run of one case.
 
     Attributes:
-        scenario: Its title.
-        file: As the user named it.
+        scenario: The title of the scenario.
+        file: The path as the user named it.
         case: Empty when the file has one case.
-        seed: Of the run.
-        robot: The robot.
+        seed: The seed of the run.
+        robot: The record of the robot.
         objects: Everything that took part.
         attachments: What the planner believed to hold.
-        steps: In execution order, nested ones flat.
-        signals: What was recorded.
-        gravity: [m/s^2].
-        timestep: Of the physics [s].
+        steps: The steps in execution order, nested ones flat.
+        signals: The signals that were recorded.
+        gravity: The gravity vector in the world [m/s^2].
+        timestep: The timestep of the physics [s].
         allowed_contacts: Link or object pairs whose contact is no collision (the SRDF's).
-        findings: Notes and disagreements.
+        findings: The notes, and where plan and physics disagree.
         contacts: Every pair that touched, the first to touch first.
         source: Text of the scenario file.
         resolved: Text of the resolved scenario; runs again to the same digest.
-        versions: Of every library that could change a number.
+        versions: The version of every library that could change a number.
         ended_early: Why the run stopped before its last step; empty when it did not.
-        unrecorded: Names of `Signals`' fields that nobody recorded, as a bag has no contacts, and
+        unrecorded: Names of `Signals`' fields that were not recorded, as a bag has no contacts, and
             `attachments` and `steps`; an expectation that needs one is not observable.
         meshes: The triangles of mesh files, for pictures where the files are not.
         cameras: Every camera of robot, world and scenario.
         captures: Pictures taken, in order of time.
-        videos: Of the cameras that were recorded all along.
+        videos: The videos of the cameras that were recorded all along.
         files: Content of the pictures and videos by path in the run's folder; a saved run reads
-            each when it is asked for.
+            each on first use.
     """
 
     scenario: str
@@ -492,3 +492,8 @@ class Run:
     captures: tuple[CaptureRecord, ...] = ()
     videos: tuple[VideoRecord, ...] = ()
     files: Mapping[str, bytes] = field(default_factory=dict[str, bytes], repr=False)
+
+    @property
+    def duration(self) -> float:
+        """Length of the run in simulation time [s]."""
+        return float(self.signals.times[-1])

@@ -10,7 +10,7 @@ from harness.recording.run import Run
 NONE = "-"
 """Stands for what one of two runs does not have."""
 MOST = 20
-"""Changes that are told one by one."""
+"""Changes that are listed one by one."""
 
 
 def line_changes(one: Run, two: Run) -> list[tuple[str, str]]:

@@ -58,7 +58,7 @@ class StoredRun:
     """What a run's folder holds.
 
     Attributes:
-        digest: As run.json states it.
+        digest: The digest as run.json states it.
         wall_times: Seconds of each part; never judged.
         is_edited: Whether run.json or the resolved scenario was changed after it was written.
     """
@@ -77,37 +77,27 @@ class StoredRun:
 
     def changes(self) -> list[str]:
         """What was changed in the folder after the run was written; one sentence each."""
-        told: list[str] = []
+        changes: list[str] = []
         if self.content_digest != self.digest:
-            told.append(
+            changes.append(
                 "signals, trajectories or verdicts were changed after the run was written:"
                 f" their digest is {self.content_digest[:12]}, {RUN} states {self.digest[:12]}"
             )
         if self.is_edited:
-            told.append(
+            changes.append(
                 f"{RUN} or {RESOLVED} was changed after the run was written: the checksum differs"
             )
-        return told
+        return changes
 
 
 def write_run(
-    folder: Path,
-    run: Run,
-    verdicts: Sequence[Verdict],
-    outcome: Outcome,
-    digest: str,
-    wall_times: Mapping[str, float],
-    extra: Callable[[Path], tuple[str, ...]] | None = None,
+    folder: Path, stored: StoredRun, extra: Callable[[Path], tuple[str, ...]] | None = None
 ) -> tuple[str, ...]:
-    """Write a run's folder under a temporary name beside it, then put it in its place.
+    """Write a run's folder under a temporary name next to it, then put it in its place.
 
     Args:
         folder: Its final name; an older run there is replaced, anything else is not touched.
-        run: What happened.
-        verdicts: What that means.
-        outcome: Of the case.
-        digest: Of run and verdicts.
-        wall_times: Seconds of each part.
+        stored: The judged run that is written.
         extra: Adds more files to the folder it is given, before anyone sees it; returns notes.
 
     Returns:
@@ -117,12 +107,12 @@ def write_run(
         HarnessError: The disk is full, the place is not writable, or is no place for a run.
     """
     _refuse_foreign(folder)
-    temporary: Path | None = None
+    run, temporary = stored.run, None
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
         temporary = _fresh_sibling(folder, "writing")
         arrays = arrays_of(run.signals)
-        document = _document(run, verdicts, outcome, digest, wall_times, arrays)
+        document = _document(stored, arrays)
         document[CHECKSUM] = _checksum(document, run.resolved)
         text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
         (temporary / RUN).write_text(json_printable(text) + "\n", encoding="utf-8")
@@ -335,28 +325,22 @@ def _refuse(path: Path, flaws: Iterable[Flaw]) -> None:
         raise SpecError(problems[:MOST_FLAWS])
 
 
-def _document(
-    run: Run,
-    verdicts: Sequence[Verdict],
-    outcome: Outcome,
-    digest: str,
-    wall_times: Mapping[str, float],
-    arrays: dict[str, np.ndarray[Any, Any]],
-) -> dict[str, Any]:
+def _document(stored: StoredRun, arrays: dict[str, np.ndarray[Any, Any]]) -> dict[str, Any]:
     """The content of run.json; arrays of trajectories go into `arrays`."""
+    run = stored.run
     first = ("scenario", "file", "case")
     rest = [entry.name for entry in fields(run) if entry.name not in (*first, *APART)]
     return {
         "format": FORMAT,
         **{name: getattr(run, name) for name in first},
-        "outcome": outcome,
-        "digest": digest,
+        "outcome": stored.outcome,
+        "digest": stored.digest,
         "seed": run.seed,
         "steps": [_step(step, index, arrays) for index, step in enumerate(run.steps)],
-        "verdicts": to_plain(tuple(verdicts)),
+        "verdicts": to_plain(stored.verdicts),
         "findings": to_plain(run.findings),
         "versions": to_plain(run.versions),
-        "wall_times": to_plain(wall_times),
+        "wall_times": to_plain(stored.wall_times),
         "clearance_cutoff": run.signals.clearance_cutoff,
         **{name: to_plain(getattr(run, name)) for name in rest},
         "meshes": [
@@ -437,7 +421,7 @@ def _refuse_foreign(folder: Path) -> None:
 
 
 def _fresh_sibling(folder: Path, purpose: str) -> Path:
-    """A new, hidden folder beside the final one, on the same file system."""
+    """A new, hidden folder next to the final one, on the same file system."""
     number = 0
     while True:
         sibling = folder.parent / f".{folder.name}.{purpose}.{os.getpid()}.{number}"

@@ -31,8 +31,8 @@ def margin_share(verdict: Verdict) -> float:
 
 def worst(verdicts: Sequence[Verdict]) -> Verdict | None:
     """The verdict nearest to failing, or farthest beyond; None where none has a margin."""
-    told = [each for each in verdicts if not math.isnan(each.margin)]
-    return min(told, key=margin_share, default=None)
+    with_margin = [each for each in verdicts if not math.isnan(each.margin)]
+    return min(with_margin, key=margin_share, default=None)
 
 
 def _deciding(verdict: Verdict) -> list[Measure]:

@@ -1,4 +1,4 @@
-"""What a case came to, as plain data: what the terminal, pytest and later pages tell of it."""
+"""The result of a case as plain data, for the terminal, pytest and the pages."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from harness.core.errors import Problem
-from harness.recording.run import Outcome, StepStatus, Verdict
+from harness.recording.run import Outcome, StepRecord, StepStatus, Verdict
+from harness.reporting.explanation import explanation_lines
 
 
 @dataclass(frozen=True)
@@ -16,12 +17,12 @@ class ProgressEvent:
 
     Attributes:
         kind: `activity` is work on the report or the verdicts, which takes time after the steps.
-        index: Of the step, from 0; of an activity, how many of its parts are done.
+        index: The index of the step, from 0; of an activity, how many of its parts are done.
         total: How many steps, or parts of the activity, there are; 0 where that is not known.
         step: Its summary in one line; of an activity, what is being done.
         status: What became of it, for `step_finished` and `judged`.
         sim_time: Simulation time so far [s].
-        wall_time: On a clock that only goes forward [s]; shown, never judged.
+        wall_time: The time on a monotonic clock [s]; shown, never judged.
         speed: Simulated over wall seconds of the step that finished; None where it is not known.
     """
 
@@ -42,7 +43,7 @@ class StepLine:
 
     Attributes:
         sim_time: Its duration in simulation time [s].
-        line: In the scenario file, from 1; 0 if unknown.
+        line: The line in the scenario file, from 1; 0 if unknown.
         explanation: Why it failed, a line each: what became of every stage, what to do.
         path: Place in the expanded file: `steps[1].reach` is nested in `steps[1]`.
     """
@@ -58,18 +59,35 @@ class StepLine:
     explanation: tuple[str, ...] = ()
     path: str = ""
 
+    @classmethod
+    def of(cls, step: StepRecord) -> StepLine:
+        """A recorded step in one line."""
+        return cls(
+            id=step.id,
+            verb=step.verb,
+            summary=step.summary,
+            status=step.status,
+            error_code=step.error_code,
+            message=step.message,
+            sim_time=step.end_time - step.start_time,
+            line=step.line,
+            explanation=explanation_lines(step.explanation, step.message),
+            path=step.path,
+        )
+
 
 @dataclass(frozen=True)
 class CaseResult:
     """The outcome of one case of a scenario file, with what a person needs to act on it.
 
     Attributes:
-        file: As the user named it.
+        file: The path as the user named it.
         case: Empty when the file has one case.
         sim_time: Length of the run [s].
         report_dir: Folder of its report; empty when none was written.
         page: The page in it; empty when none was written.
-        problems: Of the file, when it is invalid; else what was predicted without physics.
+        problems: The problems of the file, when it is invalid; else what was predicted without
+            physics.
         message: Why, when the harness or a native library broke.
         notes: Worth a line: no renderer, no meshes, nothing expected, an angle like 90 rad.
         overlap: Depth of the deepest pair of bodies that overlap at the start [m]; 0: none do.

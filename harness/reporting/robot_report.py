@@ -1,4 +1,4 @@
-"""What a check of a robot found, and the page that tells it."""
+"""What a check of a robot found, and the page that shows it."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ class GroupLine:
     """A planning group.
 
     Attributes:
-        name: In the SRDF.
+        name: The name in the SRDF.
         joints: Its active joints, base to tip.
-        span: From which link to which; empty for groups of joints.
+        span: The first and the last link; empty for groups of joints.
         states: Names of its states.
     """
 
@@ -35,7 +35,7 @@ class Finding:
         about: `forward kinematics`, `masses`, ...
         text: What was found, with its numbers.
         is_good: Whether a person need do nothing.
-        details: Lines below it.
+        details: The lines below it.
         values: Its numbers, for machines.
     """
 
@@ -51,15 +51,15 @@ class RobotReport:
     """Everything a check of a robot found.
 
     Attributes:
-        name: Of the robot.
-        source: The file or name it was asked for by.
+        name: The name of the robot.
+        source: The file or name that was given.
         joints: Movable joints, mimic ones included.
         followers: What mimic joints follow, by joint: `finger_left times -1`.
         effort_sources: Where effort limits are from, each once.
-        groups: Planning groups.
+        groups: The planning groups of the robot.
         arm_group: The one that motions are of by default.
-        tcp_link: Whose pose is the TCP.
-        gripper: In one line; empty when there is none.
+        tcp_link: The link whose pose is the TCP.
+        gripper: The gripper in one line; empty when there is none.
         findings: What was looked at, in order.
         notes: What of the robot's files was left out or assumed.
         proposal: Pairs that need not be checked, by reason; where no file says which.

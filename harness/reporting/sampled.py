@@ -24,14 +24,14 @@ class Rate:
     """How many samples passed, and what that shows.
 
     Attributes:
-        passed: Of `total`.
+        passed: The number of `total` that passed.
         total: Samples that count: up to where the sequential test ended the sampling.
         low: Lower end of Wilson's interval.
-        high: Upper end.
-        confidence: Of the interval.
-        at_least: Asked rate; None when none was.
-        verdict: `shown` when the rate is at least what was asked, `refuted` when it is not, `open`
-            when these samples cannot tell.
+        high: The upper end of the interval.
+        confidence: The confidence of the interval.
+        at_least: Required rate; None when the file requires none.
+        verdict: `shown` when the rate is at least the required one, `refuted` when not, `open`
+            when these samples do not decide.
         stopped_early: Whether the sequential test ended the sampling.
         overlapping: Samples that were run although objects overlap at their start.
         redrawn: Samples that were drawn again because objects overlapped.
@@ -58,9 +58,9 @@ class SampledRate:
     """The rate of one parametrised case.
 
     Attributes:
-        file: As the user named it.
+        file: The path as the user named it.
         group: Name of the parametrised case; empty when there is one.
-        rate: Of its samples.
+        rate: The rate of its samples.
         outcome: `passed` when the rate is confirmed.
     """
 
@@ -108,11 +108,11 @@ def rate_text(name: str, rate: Rate) -> str:
         is_shown = rate.verdict == "shown"
         line += "" if is_shown else "; every one must pass, as the file has no `expect_rate`"
     else:
-        asked = f"at least {rate.at_least:.1%}"
+        required = f"at least {rate.at_least:.1%}"
         line += {
-            "shown": f": {asked} is confirmed",
-            "refuted": f": {asked} is refuted",
-            "open": f": {asked} is not confirmed: take more samples, or require less",
+            "shown": f": {required} is confirmed",
+            "refuted": f": {required} is refuted",
+            "open": f": {required} is not confirmed: take more samples, or require less",
         }[rate.verdict]
     if rate.stopped_early:
         line += "; the sequential test needed no more"
@@ -128,11 +128,11 @@ def rate_text(name: str, rate: Rate) -> str:
 def table_lines(
     cases: Sequence[tuple[Mapping[str, Any], bool]], style: Style = PLAIN
 ) -> Iterator[str]:
-    """Passed of all, by each quantity that varies; the worst rows tell where to look.
+    """Passed of all, by each quantity that varies; the worst rows show where to look.
 
     Args:
         cases: What varied in each case, and whether it passed.
-        style: Of the terminal.
+        style: The style of the terminal.
     """
     paths = dict.fromkeys(path for values, _ in cases for path in values)
     for path in paths:

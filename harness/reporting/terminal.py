@@ -133,8 +133,8 @@ def failure(
     """Why a case did not pass: every cause with its line and numbers, and where the report is.
 
     Args:
-        result: Of the case.
-        style: Of the terminal.
+        result: The result of the case.
+        style: The style of the terminal.
         again: The command that runs exactly this case; empty to leave it out.
         source: Lines of the scenario file, to show those that are spoken of.
     """
@@ -177,7 +177,7 @@ def causes(result: CaseResult, source: Sequence[str] = ()) -> list[str]:
     Each cause is printable: one line, or several of which each is.
 
     Args:
-        result: Of the case.
+        result: The result of the case.
         source: Lines of the scenario file, to show those that are spoken of.
     """
     found = [str(problem) for problem in result.problems]
@@ -188,7 +188,7 @@ def causes(result: CaseResult, source: Sequence[str] = ()) -> list[str]:
         if verdict.status != "passed"
     ]
     if result.outcome == "error" or not found:
-        found.append(printable_lines(result.message.rstrip()) or "no cause was told")
+        found.append(printable_lines(result.message.rstrip()) or "no cause was reported")
     return found
 
 
@@ -205,7 +205,7 @@ def root_failures(steps: Sequence[StepLine]) -> list[StepLine]:
 def step_failure(file: str, step: StepLine, source: Sequence[str] = ()) -> str:
     """Place, step, error code, message, source line, and the explanation where there is one."""
     place = f"{file}:{step.line}" if step.line else file
-    said = step.message.removeprefix(f"{step.error_code}: ")
+    said = step.message
     why = ": ".join(part for part in (step.error_code, said) if part)
     explained = [f"    {line}" for line in step.explanation]
     return _joined([f"{place}: {step.summary}: {why}", *_excerpt(source, step.line), *explained])
@@ -248,7 +248,7 @@ def measure_text(measure: Measure) -> str:
 
 
 def _unit(unit: str) -> str:
-    """A unit as it is written behind a number; of a plain number, nothing."""
+    """A unit as it is written after a number; of a plain number, nothing."""
     return "" if unit == "1" else unit
 
 
@@ -260,8 +260,8 @@ def summary(results: Sequence[CaseResult], seconds: float, style: Style = PLAIN)
         for outcome in OUTCOMES
         if counts[outcome]
     ]
-    told = ", ".join(parts) or "nothing was run"
-    return f"{told} of {_plural(len(results), 'case')} in {seconds:.1f} s"
+    counts = ", ".join(parts) or "nothing was run"
+    return f"{counts} of {_plural(len(results), 'case')} in {seconds:.1f} s"
 
 
 def repeats(results: Iterable[CaseResult], style: Style = PLAIN) -> str:
@@ -270,8 +270,8 @@ def repeats(results: Iterable[CaseResult], style: Style = PLAIN) -> str:
     if len(digests) == 1:
         [(digest, count)] = digests.items()
         return f"{style.mark(True)} {count} runs, one digest: {digest}"
-    told = "; ".join(f"{count} x {digest}" for digest, count in digests.items())
-    return f"{style.mark(False)} {digests.total()} runs, {len(digests)} digests: {told}"
+    repeated = "; ".join(f"{count} x {digest}" for digest, count in digests.items())
+    return f"{style.mark(False)} {digests.total()} runs, {len(digests)} digests: {repeated}"
 
 
 def _joined(lines: Iterable[str]) -> str:

@@ -49,18 +49,18 @@ def with_possible_accelerations(
         shares[joint.name] = min(1.0, max(LEAST, share))
         if left.min() <= 0:
             notes.append(
-                f"joint '{joint.name}' cannot hold the arm everywhere: gravity takes up to "
+                f"joint '{joint.name}' cannot hold the arm everywhere: gravity alone needs up to "
                 f"{gravity[:, index].max():.3g} of its {joint.effort:.3g}"
             )
     joints = tuple(
         replace(joint, acceleration=joint.acceleration * shares.get(joint.name, 1.0))
         for joint in description.joints
     )
-    notes += _told(description.joints, shares)
+    notes += _assumptions(description.joints, shares)
     return replace(description, joints=joints, notes=(*description.notes, *notes))
 
 
-def _told(joints: tuple[Joint, ...], shares: Mapping[str, float]) -> list[str]:
+def _assumptions(joints: tuple[Joint, ...], shares: Mapping[str, float]) -> list[str]:
     lowered = [
         f"{joint.name} {joint.acceleration * shares[joint.name]:.2g}"
         for joint in joints

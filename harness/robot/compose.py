@@ -38,9 +38,9 @@ class Part:
 
     Attributes:
         name: Its name in the scenario (the variant, if it has variants).
-        facts: Its robot.yaml.
+        facts: The content of its robot.yaml.
         urdf: Its links and joints, with the limits of robot.yaml.
-        srdf: Its groups.
+        srdf: The groups of the gripper.
         source: Its name in messages.
         notes: Notes on ignored elements and assumptions.
     """

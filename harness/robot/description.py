@@ -27,7 +27,7 @@ class Inertial:
     """Mass properties of a link.
 
     Attributes:
-        mass: Mass [kg].
+        mass: The mass in kilograms [kg].
         center_of_mass: Centre of mass in the link frame [m], shape (3,).
         inertia: Inertia about the centre of mass, in link axes [kg m^2], shape (3, 3).
     """
@@ -61,7 +61,7 @@ class Joint:
     """A joint and its limits; rad, rad/s, N m for turning joints, m, m/s, N for prismatic ones.
 
     Attributes:
-        pose: T_parent_joint at zero.
+        pose: The pose T_parent_joint at zero.
         axis: Unit vector in the joint frame, shape (3,).
         lower: Lower position limit; -inf when continuous.
         upper: Upper position limit; inf when continuous.
@@ -126,7 +126,7 @@ class Gripper:
     """Two finger sides closed by one joint.
 
     Attributes:
-        group: Its SRDF group.
+        group: The name of its SRDF group.
         joint: The actuated joint; others mimic it.
         sides: Links of each of the two finger sides, by side name.
         pads: The link of each side that touches a grasped object, by side name.
@@ -176,11 +176,11 @@ class RobotDescription:
     Attributes:
         name: Name for users (`ur3e`, or `ur3e + rh_p12_rn_a`).
         urdf: The composed URDF; its root link is `world`, so poses are in world coordinates.
-        srdf: The composed SRDF.
+        srdf: The text of the composed SRDF.
         links: `world` first, then parents before children.
-        joints: In the same order as their child links.
+        joints: The joints, in the order of their child links.
         groups: Groups by name; the arm's group is `arm_group`.
-        named_states: All group states.
+        named_states: The states of all groups.
         allowed_collisions: Link pairs (sorted tuples) that are not checked, with the reason.
         arm_group: Default group of motion steps; empty for a gripper without an arm.
         gripper: The gripper; None for a robot without one.

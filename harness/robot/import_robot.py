@@ -30,7 +30,7 @@ def read_robot(spec: RobotSpec, base_dir: Path) -> Part:
     """The robot of `urdf:`, `xacro:` or `mjcf:`, with its SRDF or a default one.
 
     Args:
-        spec: The scenario's `robot:`.
+        spec: The `robot:` of the scenario.
         base_dir: The scenario's folder, to which paths are relative.
 
     Raises:

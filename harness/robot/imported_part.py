@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from harness.core.errors import RobotError
+from harness.core.errors import RobotError, RobotOptionError
 from harness.language.scenario import RobotSpec, StartState
 from harness.robot.compose import Part
 from harness.robot.description import Joint, Link, PlanningGroup
@@ -46,10 +46,10 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
     """The robot in the form of a folder with a robot.yaml.
 
     Args:
-        spec: The scenario's `robot:`.
-        urdf: The robot.
-        srdf: Checked against it.
-        path: The robot's file.
+        spec: The `robot:` of the scenario.
+        urdf: The tree of the robot.
+        srdf: The SRDF to be checked against it.
+        path: The path of the robot's file.
         source: Name of the SRDF in messages.
 
     Raises:
@@ -121,8 +121,8 @@ def _own_gripper(
         try:
             return None if hand is None else recognise(urdf, srdf, hand)
         except NoGripperError as error:
-            raise RobotError(
-                f"robot.gripper: '{spec.gripper}' is not a gripper: {error}"
+            raise RobotOptionError(
+                "gripper", f"'{spec.gripper}' is not a gripper: {error}"
             ) from error
     reasons: list[str] = []
     for hand, with_hand in hand_candidates(urdf, srdf, groups, arm):
@@ -171,9 +171,10 @@ def _arm_group(
         if spec.group not in movable:
             near = difflib.get_close_matches(spec.group, list(movable), 1)
             hint = f"did you mean '{near[0]}'? " if near else ""
-            raise RobotError(
-                f"robot.group: there is no group '{spec.group}' with joints that move; {hint}"
-                f"known are {', '.join(movable) or 'none'}"
+            raise RobotOptionError(
+                "group",
+                f"there is no group '{spec.group}' with joints that move; {hint}"
+                f"known are {', '.join(movable) or 'none'}",
             )
         return movable[spec.group]
     parents = [tool.parent_group for tool in srdf.end_effectors if tool.parent_group in movable]
@@ -193,8 +194,8 @@ def _refuse_unknown_link(name: str | None, key: str, links: Sequence[Link]) -> N
     if name is not None and name not in names:
         near = difflib.get_close_matches(name, names, 1)
         hint = f"did you mean '{near[0]}'? " if near else ""
-        raise RobotError(
-            f"robot.{key}: the robot has no link '{name}'; {hint}links: {', '.join(names)}"
+        raise RobotOptionError(
+            key, f"the robot has no link '{name}'; {hint}links: {', '.join(names)}"
         )
 
 

@@ -10,7 +10,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from harness.core.errors import RobotError
+from harness.core.errors import RobotOptionError
 from harness.core.resources import data_folder
 from harness.language.files.xml_file import LARGEST_FILE, read_xml
 from harness.language.files.yaml_file import read_text
@@ -70,23 +70,25 @@ def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
     """The robot of a scenario, composed and with its options applied.
 
     Args:
-        spec: The scenario's `robot:`.
+        spec: The `robot:` of the scenario.
         base_dir: The scenario's folder, to which paths in `model` and `gripper` are relative.
 
     Raises:
         RobotError: The robot is unknown, its files cannot be used, or an option does not fit it.
     """
     if spec.base.frame != "world":
-        raise RobotError(f"robot.base is a pose in the frame 'world', not in '{spec.base.frame}'")
+        raise RobotOptionError(
+            "base", f"it is a pose in the frame 'world', not in '{spec.base.frame}'"
+        )
     main = _main(spec, base_dir)
     tool = None
     if spec.gripper is not None and not (main and _is_own(main, spec.gripper)):
         tool = _part(spec.gripper, "gripper", {}, base_dir)
     if tool is not None and tool.facts.kind != "gripper":
-        raise RobotError(f"robot.gripper: '{spec.gripper}' is an arm; {_known(gripper_names())}")
+        raise RobotOptionError("gripper", f"'{spec.gripper}' is an arm; {_known(gripper_names())}")
     if main is not None and main.facts.kind == "gripper":
         if tool is not None:
-            raise RobotError(f"robot.model: '{spec.model}' is a gripper and carries no other one")
+            raise RobotOptionError("model", f"'{spec.model}' is a gripper and carries no other one")
         main, tool = None, main
     if main is not None and tool is not None:
         main = without_gripper(main)
@@ -104,7 +106,7 @@ def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
 
 def _calibrated(main: Part | None, path: Path) -> Part:
     if main is None:
-        raise RobotError("robot.kinematics: a gripper alone has no calibration")
+        raise RobotOptionError("kinematics", "a gripper alone has no calibration")
     return replace(main, urdf=replace(main.urdf, joints=calibrated(main.urdf.joints, path)))
 
 
@@ -114,7 +116,7 @@ def _main(spec: RobotSpec, base_dir: Path) -> Part | None:
         return read_robot(spec, base_dir)
     for key in OF_FILES:
         if getattr(spec, key):
-            raise RobotError(f"robot.{key} requires a robot's file: `urdf`, `xacro` or `mjcf`")
+            raise RobotOptionError(key, "it requires a robot's file: `urdf`, `xacro` or `mjcf`")
     return None if spec.model is None else _part(spec.model, "model", spec.args, base_dir)
 
 
@@ -136,7 +138,7 @@ def _part(name: str, key: str, args: Mapping[str, Any], base_dir: Path) -> Part:
         hint = f"{folder} has no robot.yaml; "
     elif near := difflib.get_close_matches(name.lower(), names, 1):
         hint = f"did you mean '{near[0]}'? "
-    raise RobotError(f"robot.{key}: '{name}' is not known; {hint}{_known(names)}")
+    raise RobotOptionError(key, f"'{name}' is not known; {hint}{_known(names)}")
 
 
 def _known(names: tuple[str, ...]) -> str:
@@ -166,7 +168,7 @@ def _read(
         path = folder / (facts.urdf or "")
         text = _text(path)
         if args:
-            raise RobotError(f"robot.args: '{name}' is not a xacro file and takes no arguments")
+            raise RobotOptionError("args", f"'{name}' is not a xacro file and takes no arguments")
     packages = PackagePath.of_file(path, [find_folder(each, folder) for each in facts.packages])
     urdf = parse_urdf(text, folder, str(path), packages)
     urdf = replace(urdf, joints=tuple(_with_facts(joint, facts) for joint in urdf.joints))
@@ -192,8 +194,8 @@ def _rendered(
     for key in args:
         if key not in declared or key == xacro_file.variant_arg:
             known = ", ".join(sorted(filter(None, declared - {xacro_file.variant_arg})))
-            raise RobotError(
-                f"robot.args: {path.name} takes no argument '{key}'; known are {known}"
+            raise RobotOptionError(
+                "args", f"{path.name} takes no argument '{key}'; known are {known}"
             )
     mappings = {key: str(value) for key, value in args.items()}
     if xacro_file.variant_arg and variant:

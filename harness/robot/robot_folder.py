@@ -10,7 +10,7 @@ from typing import Any
 
 import yaml
 
-from harness.core.errors import RobotError
+from harness.core.errors import RobotOptionError
 from harness.core.geometry import Mesh
 from harness.language.scenario import RobotSpec
 from harness.robot.compose import Part
@@ -57,9 +57,10 @@ def robot_folder(spec: RobotSpec, base_dir: Path, folder: Path) -> RobotFolder:
     """
     part = read_robot(spec, base_dir)
     if spec.gripper is not None and not names_own_gripper(spec.gripper, part.srdf):
-        raise RobotError(
-            f"robot.gripper: the SRDF has no group '{spec.gripper}'; a bundled gripper is named"
-            " by the scenario, next to `model`"
+        raise RobotOptionError(
+            "gripper",
+            f"the SRDF has no group '{spec.gripper}'; a bundled gripper is named"
+            " by the scenario, next to `model`",
         )
     description = load_robot(spec, base_dir)
     name = part.urdf.name or part.name

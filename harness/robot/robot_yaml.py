@@ -23,7 +23,7 @@ FILE = "robot.yaml"
 class JointFacts(JointLimits):
     """Limits of a joint that its URDF lacks or has wrong, with the source of the effort limit."""
 
-    effort_source: str = Field("", description="Source of `max_effort`, for reports.")
+    effort_source: str = Field(default="", description="Source of `max_effort`, for reports.")
 
 
 class XacroFile(SpecModel):
@@ -35,13 +35,16 @@ class XacroFile(SpecModel):
 
     file: str = Field(description="Path from the folder.")
     variant_arg: Name | None = Field(
-        None, description="Argument that gets the name of the variant."
+        default=None, description="Argument that gets the name of the variant."
     )
     mesh_arg: Name | None = Field(
-        None, description="Argument that gets `true` where the meshes of a variant are installed."
+        default=None,
+        description="Argument that gets `true` where the meshes of a variant are installed.",
     )
-    mesh_package: Name | None = Field(None, description="Python package with the meshes.")
-    mesh_variants: tuple[Name, ...] = Field((), description="Variants that it has meshes of.")
+    mesh_package: Name | None = Field(default=None, description="Python package with the meshes.")
+    mesh_variants: tuple[Name, ...] = Field(
+        default=(), description="Variants that it has meshes of."
+    )
 
 
 class FingerSide(SpecModel):
@@ -73,7 +76,7 @@ class GripperFacts(SpecModel):
         description="Largest effort of the joint [N m or N]."
     )
     friction: Annotated[float, Field(ge=0)] = Field(
-        1.0, description="Sliding friction coefficient of the pads."
+        default=1.0, description="Sliding friction coefficient of the pads."
     )
     widths: Annotated[tuple[tuple[float, Length], ...], Field(min_length=2)] = Field(
         description="Rows of joint position and gap between the pads [m], with rising position."
@@ -83,8 +86,8 @@ class GripperFacts(SpecModel):
 class Placement(SpecModel):
     """A pose as position and roll, pitch, yaw."""
 
-    xyz: Xyz = Field((0.0, 0.0, 0.0), description="Position [m].")
-    rpy: Rpy = Field((0.0, 0.0, 0.0), description="Fixed-axis roll, pitch, yaw [rad].")
+    xyz: Xyz = Field(default=(0.0, 0.0, 0.0), description="Position [m].")
+    rpy: Rpy = Field(default=(0.0, 0.0, 0.0), description="Fixed-axis roll, pitch, yaw [rad].")
 
 
 class ToolCenterPoint(Placement):
@@ -111,20 +114,20 @@ class CameraFacts(CameraFields):
     """A camera on a link, with the parameters of SDF's sensor; it looks along its +x axis."""
 
     link: Name = Field(description="The link that carries the camera.")
-    pose: Placement = Field(Placement(), description="Its pose on the link.")
+    pose: Placement = Field(default=Placement(), description="Its pose on the link.")
 
 
 class Tracking(SpecModel):
     """Tolerances of the trajectory controller [rad or m], and its settling time [s]."""
 
     trajectory: Annotated[float, Field(gt=0)] = Field(
-        0.2, description="Largest deviation of a joint on the way [rad or m]."
+        default=0.2, description="Largest deviation of a joint on the way [rad or m]."
     )
     goal: Annotated[float, Field(gt=0)] = Field(
-        0.01, description="Largest deviation of a joint at the goal [rad or m]."
+        default=0.01, description="Largest deviation of a joint at the goal [rad or m]."
     )
     goal_time: Annotated[float, Field(ge=0)] = Field(
-        1.0, description="Time after the end of a motion until the goal is kept [s]."
+        default=1.0, description="Time after the end of a motion until the goal is kept [s]."
     )
 
 
@@ -138,45 +141,59 @@ class RobotYaml(SpecModel):
 
     robot: Name = Field(description="Its name, in lists and messages.")
     kind: Literal["arm", "gripper"] = Field(description="What the folder holds.")
-    description: str = Field("", description="For people.")
-    urdf: str | None = Field(None, description="URDF file, by its path from the folder.")
-    xacro: XacroFile | None = Field(None, description="A xacro file instead of `urdf`.")
+    description: str = Field(default="", description="For people.")
+    urdf: str | None = Field(default=None, description="URDF file, by its path from the folder.")
+    xacro: XacroFile | None = Field(default=None, description="A xacro file instead of `urdf`.")
     srdf: str = Field(description="SRDF file, by its path from the folder; xacro is rendered.")
     packages: tuple[str, ...] = Field(
         default=(),
         description="Folders that are searched for package:// and from which meshes may be read.",
     )
     variants: tuple[Name, ...] = Field(
-        (), description="Names of the models of a family; each is a name for `model`."
+        default=(), description="Names of the models of a family; each is a name for `model`."
     )
-    arm_group: Name | None = Field(None, description="The arm's SRDF group; required of an arm.")
+    arm_group: Name | None = Field(
+        default=None, description="The arm's SRDF group; required of an arm."
+    )
     tcp_link: Name | None = Field(
-        None, description="The link at the tool's centre; required of an arm."
+        default=None, description="The link at the tool's centre; required of an arm."
     )
-    flange_link: Name | None = Field(None, description="The link on which grippers are mounted.")
+    flange_link: Name | None = Field(
+        default=None, description="The link on which grippers are mounted."
+    )
     flange: Flange | None = Field(
-        None, description="Where a gripper goes that replaces the arm's own one."
+        default=None, description="Where a gripper goes that replaces the arm's own one."
     )
     ik_solver: IkSolver = Field(
-        "numeric", description="Inverse kinematics; `auto`: the first of the others that fits."
+        default="numeric",
+        description="Inverse kinematics; `auto`: the first of the others that fits.",
     )
     start_state: StartState = Field(
-        StartState(), description="Where the robot stands at the start of a run."
+        default=StartState(), description="Where the robot stands at the start of a run."
     )
     max_acceleration: Annotated[float, Field(gt=0)] = Field(
-        5.0, description="Acceleration limit of joints without one in `joints` [rad/s^2 or m/s^2]."
+        default=5.0,
+        description="Acceleration limit of joints without one in `joints` [rad/s^2 or m/s^2].",
     )
-    effort_source: str = Field("", description="Source of effort limits without one in `joints`.")
+    effort_source: str = Field(
+        default="", description="Source of effort limits without one in `joints`."
+    )
     joints: dict[Name, JointFacts] = Field(
         default_factory=dict[str, JointFacts],
         description="Limits that the URDF lacks or has wrong, by joint.",
     )
-    gripper: GripperFacts | None = Field(None, description="The fingers, of an arm or a gripper.")
-    mount: Mount | None = Field(None, description="How a gripper is mounted; required of one.")
+    gripper: GripperFacts | None = Field(
+        default=None, description="The fingers, of an arm or a gripper."
+    )
+    mount: Mount | None = Field(
+        default=None, description="How a gripper is mounted; required of one."
+    )
     cameras: dict[Name, CameraFacts] = Field(
         default_factory=dict[str, CameraFacts], description="Cameras on links, by name."
     )
-    tracking: Tracking = Field(Tracking(), description="Tolerances of the trajectory controller.")
+    tracking: Tracking = Field(
+        default=Tracking(), description="Tolerances of the trajectory controller."
+    )
 
     @model_validator(mode="after")
     def _whole(self) -> RobotYaml:

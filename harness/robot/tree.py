@@ -18,8 +18,8 @@ def in_tree_order(
     """Links from the root outwards, joints in the order of their child links.
 
     Args:
-        links: All links.
-        joints: All joints.
+        links: The links, all of them.
+        joints: The joints, all of them.
         source: Name of the robot in messages.
         elements: Elements of links and joints.
 
@@ -82,7 +82,7 @@ def carriers(joints: Iterable[Joint], root: str) -> dict[str, str]:
     """For each link, the first link of its rigid group.
 
     Args:
-        joints: Parents before children.
+        joints: The joints, parents before children.
         root: The link without a parent joint.
     """
     carrier = {root: root}

@@ -17,7 +17,7 @@ def read_data(path: Path, keys: Sequence[str], kind: str) -> Located:
     """The mapping at the top of a file.
 
     Args:
-        path: The file.
+        path: The path of the file.
         keys: Keys of which it has at least one.
         kind: Kind of the file, for messages.
 

@@ -17,11 +17,11 @@ Solutions = Sequence[FloatArray]
 
 
 def own_solver(robot: RobotSource, link: str = "") -> Callable[..., Any]:
-    """A solver of what an arm can be asked for: a pose, a position and pitch, or a position.
+    """A solver of what an arm can reach: a pose, a position and pitch, or a position.
 
     Args:
-        robot: The arm.
-        link: That is placed; by default the TCP.
+        robot: The arm to be solved.
+        link: The link that is placed; by default the TCP.
     """
     chain = Chain.of(load(robot), link=link)
     name = chain.description.arm_group

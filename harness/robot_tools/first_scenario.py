@@ -15,6 +15,7 @@ from harness.robot_tools.robot_source import RobotSource, load
 from harness.robot_tools.scenario_candidates import Candidates
 from harness.session.check import check_file
 from harness.session.run_case import run_case
+from harness.session.run_request import RunRequest
 
 TEMPLATES = Path(__file__).parent / "templates"
 MOST_RUNS = 3
@@ -42,7 +43,7 @@ def first_scenario(
     """A scenario that passes, if one can be found.
 
     Args:
-        source: The robot.
+        source: The source of the robot.
         file: Where it will be: robots' files are named from its folder, and candidates are
             written next to it and removed again.
         progress: Called with a text whenever another candidate is tried.
@@ -84,7 +85,7 @@ def _trouble(text: str, candidate: Path) -> tuple[str, bool]:
         found = check_file(candidate)
         if found.problems or found.predicted:
             return (found.problems or found.predicted)[0].message, False
-        result = run_case(candidate, stills=False)
+        result = run_case(RunRequest(candidate, stills=False))
     finally:
         candidate.unlink(missing_ok=True)
     if result.outcome == "passed":

@@ -1,4 +1,4 @@
-"""Pictures of what inverse kinematics was asked for and what it answered."""
+"""Pictures of the targets of inverse kinematics and its answers."""
 
 from __future__ import annotations
 
@@ -15,15 +15,17 @@ def draw_ik_example(
     """Draw an arm where an answer puts it, translucent where the target is reached.
 
     Args:
-        chain: Of the arm.
-        target: That was asked for; its frame is drawn.
+        chain: The chain of the arm.
+        target: The requested pose; its frame is drawn.
         answer: The group's positions; None draws what reaches the target alone.
-        file: JPEG to write.
-        caption: Below the picture.
+        file: The JPEG file to write.
+        caption: The caption below the picture.
     """
     from harness.cameras.ik_comparison_picture import draw_ik_comparison
 
     way = target.joint_positions
-    asked = None if way is None else chain.whole(way)
+    requested = None if way is None else chain.whole(way)
     reached = None if answer is None else chain.whole(answer)
-    draw_ik_comparison(chain.description, chain.link, target.pose, asked, reached, file, caption)
+    draw_ik_comparison(
+        chain.description, chain.link, target.pose, requested, reached, file, caption
+    )

@@ -31,8 +31,8 @@ class Checked:
     """A robot that was looked over.
 
     Attributes:
-        report: For people and machines.
-        touches: Which links touched at random configurations.
+        report: The report for people and machines.
+        touches: The links that touched at random configurations.
     """
 
     report: RobotReport
@@ -50,17 +50,17 @@ def check_robot(
     """Look a robot over.
 
     Args:
-        description: The robot.
+        description: The description of the robot.
         source: What the report calls where it is from.
         samples: Random configurations for self-collisions and reach.
-        seed: Of the configurations, and of numeric inverse kinematics.
+        seed: The seed of the configurations, and of numeric inverse kinematics.
         propose: Whether the report proposes pairs that need not be checked.
     """
     positions = random_positions(description, samples, np.random.default_rng(seed))
     kinematics = PinocchioKinematics(description)
     touches = self_touches(description, positions)
     findings = tuple(_findings(description, kinematics, touches, positions, seed))
-    told = {detail for finding in findings for detail in finding.details}
+    reported = {detail for finding in findings for detail in finding.details}
     driven = [joint for joint in description.movable_joints if joint.mimic is None]
     report = RobotReport(
         name=description.name,
@@ -73,7 +73,7 @@ def check_robot(
         tcp_link=description.tcp_link,
         gripper=_gripper(description),
         findings=findings,
-        notes=tuple(note for note in description.notes if note not in told),
+        notes=tuple(note for note in description.notes if note not in reported),
         proposal=_proposal(touches) if propose else {},
     )
     return Checked(report, touches)

@@ -28,7 +28,7 @@ def forward_kinematics(
     description: RobotDescription, kinematics: PinocchioKinematics, positions: FloatArray
 ) -> Finding:
     """Link poses and the mass in Pinocchio's model and in MuJoCo's, positions (N, n)."""
-    links = description.link_names[1:]  # `world` is nobody's
+    links = description.link_names[1:]  # `world` is in no description
     ours = kinematics.link_poses(positions, links)
     theirs, mass = link_poses_in_physics(description, positions)
     shift = np.linalg.norm(ours[..., :3] - theirs[..., :3], axis=-1)

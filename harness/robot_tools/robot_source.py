@@ -40,10 +40,10 @@ class RobotSource:
 
     Attributes:
         word: A name, a file, a robot's folder or the robot.yaml in it, or `package://name/path`.
-        srdf: With a robot's file; empty for none.
+        srdf: The SRDF next to a robot's file; empty for none.
         packages: Folders where package:// is looked up.
         gripper: A bundled gripper to be mounted; empty for none.
-        args: Of a xacro file.
+        args: The args of a xacro file.
         tcp_link: Instead of the arm group's tip; empty for that.
         group: The arm's; empty for the one of most joints.
     """
@@ -78,7 +78,7 @@ class RobotSource:
 
     @property
     def has_no_srdf(self) -> bool:
-        """Whether it is a robot's file with no SRDF beside it."""
+        """Whether it is a robot's file with no SRDF next to it."""
         return self.kind in KINDS.values() and not self.srdf
 
     @property
@@ -116,7 +116,7 @@ def load(source: RobotSource) -> RobotDescription:
     """The robot, composed.
 
     Raises:
-        SpecError: A file says what cannot be meant.
+        SpecError: A file is invalid.
         RobotError: The robot is not known, or its files cannot be used.
     """
     if source.kind == "scenario":

@@ -15,8 +15,8 @@ def proposed_srdf(touches: SelfTouches, name: str) -> str:
     """The SRDF as text: what the robot has, with the proposed pairs in place of its own.
 
     Args:
-        touches: Which links touched at random configurations.
-        name: Of the robot, as its URDF has it.
+        touches: The links that touched at random configurations.
+        name: The name of the robot, as its URDF has it.
     """
     description = touches.description
     srdf = parse_srdf(description.srdf, description.name)

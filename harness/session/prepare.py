@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
+from harness.assertions.observations import Observations, merged
+from harness.assertions.placed import PlacedExpectation
 from harness.cell.program import Program
 from harness.cell.scope import Part
-from harness.core.errors import Problem, RobotError, SpecError
+from harness.core.errors import Problem, RobotError, RobotOptionError, SpecError
 from harness.core.geometry import Mesh
 from harness.engine.compile import Sources, compile_scenario
-from harness.language.files.source import Loc
 from harness.language.reading.load import (
     SDF_SUFFIXES,
     LoadedScenario,
@@ -43,6 +44,7 @@ class Prepared:
     """A scenario ready to be executed, checked or explained.
 
     Attributes:
+        expectations: What will be judged, in file order.
         notes: What of the robot's and the world's files was left out or assumed.
         about_file: What the scenario file allows and probably does not intend.
     """
@@ -52,8 +54,20 @@ class Prepared:
     scene: PlanningScene
     kinematics: Kinematics
     planner: MotionPlanner
+    expectations: tuple[PlacedExpectation, ...] = ()
     notes: tuple[str, ...] = ()
     about_file: tuple[Finding, ...] = ()
+
+    @cached_property
+    def observations(self) -> Observations:
+        """Everything that the expectations read of a run."""
+        return merged(each.spec.observations() for each in self.expectations)
+
+    @property
+    def observed_links(self) -> list[str]:
+        """Links whose poses the expectations read."""
+        links = set(self.program.description.link_names)
+        return [name for name in self.observations.frames if name in links]
 
 
 def prepare(
@@ -141,21 +155,21 @@ def _prepared(loaded: LoadedScenario, missing: frozenset[Part]) -> Prepared:
         raise SpecError([*problems, *error.problems]) from error
     if problems:
         raise SpecError(problems)
+    placed = tuple(
+        PlacedExpectation.of(item.spec, item.step, item.line) for item in program.expectations
+    )
     about = about_file(program, loaded.notes)
-    return Prepared(loaded, program, scene, kinematics, planner, notes, about)
+    return Prepared(loaded, program, scene, kinematics, planner, placed, notes, about)
 
 
 def _robot(loaded: LoadedScenario) -> RobotDescription:
     try:
         return load_robot(loaded.scenario.robot, loaded.path.parent)
+    except RobotOptionError as error:
+        loc = ("robot", error.key.split(".")[0])
+        raise SpecError([loaded.lines.problem(loc, str(error))]) from error
     except RobotError as error:
-        raise SpecError([loaded.lines.problem(_place(str(error)), str(error))]) from error
-
-
-def _place(message: str) -> Loc:
-    """Where the scenario says what a robot's error is about: `robot.gripper: ...`, or its robot."""
-    key = re.match(r"robot\.(\w+)\b", message)
-    return ("robot", key[1]) if key else ("robot",)
+        raise SpecError([loaded.lines.problem(("robot",), str(error))]) from error
 
 
 def _world(loaded: LoadedScenario) -> ImportedWorld:

@@ -18,7 +18,7 @@ def link_poses_in_physics(
     """Compute T_world_link of all links except `world` at joint positions, and the robot's mass.
 
     Args:
-        description: The robot.
+        description: The description of the robot.
         positions: Description order, shape (N, n).
 
     Returns:

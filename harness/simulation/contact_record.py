@@ -80,9 +80,9 @@ class ContactRecord:
             count: Number of samples, counted from the first.
 
         Returns:
-            By link and other body, shape (count, 6): the mean of the contact points, weighted by
-            their normal forces, in the world; then the sum of these forces on the other body, in
-            world axes [N]. NaN where there is no force.
+            The presses by link and other body, shape (count, 6): the mean of the contact points,
+            weighted by their normal forces, in the world; then the sum of these forces on the other
+            body, in world axes [N]. NaN where there is no force.
         """
         robot = self._physics.robot_bodies
         found: dict[BodyPair, FloatArray] = {}

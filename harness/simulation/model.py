@@ -43,8 +43,8 @@ class ObjectPlace:
     """The indices of an object in the model.
 
     Attributes:
-        obj: The object.
-        body: Its body id.
+        obj: The object to be added.
+        body: The id of its body.
         geoms: The slice of its geoms.
         qpos: The first of its seven position numbers; -1 when static.
         dof: The first of its six velocity numbers; -1 when static.
@@ -65,7 +65,7 @@ class PhysicsModel:
 
     Attributes:
         model: The compiled model; presence of objects and force limits are changed in place.
-        description: The robot.
+        description: The description of the robot.
         servos: One servo for each actuated joint, in the order of the actuator ids.
         qpos: The position index of each movable joint, in description order.
         dof: The velocity index of each movable joint, in description order.
@@ -102,7 +102,7 @@ def build_model(
     """Compile the physics of a scenario.
 
     Args:
-        description: The robot.
+        description: The description of the robot.
         objects: All objects that are ever in the world; planning-only objects are left out.
         present: The names of the objects that are present at the start.
         gravity: The gravitational acceleration [m/s^2].

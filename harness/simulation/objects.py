@@ -113,7 +113,7 @@ def overlaps(physics: PhysicsModel, data: mujoco.MjData) -> tuple[Touch, ...]:
     """Find pairs of an object and another body that overlap, deepest first.
 
     Args:
-        physics: The model.
+        physics: The model of the physics.
         data: The current state, with updated contacts.
     """
     names, robot = physics.body_names, physics.robot_bodies

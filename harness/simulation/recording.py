@@ -12,6 +12,7 @@ import numpy as np
 from harness.core.errors import SimulationDiverged, StepFailed
 from harness.core.types import FloatArray
 from harness.ports import LONGEST_RUN
+from harness.recording.execution_failures import LengthFailure
 from harness.recording.run import Signals
 from harness.simulation.contact_record import BYTES, ROWS, BodyPair, ContactRecord
 from harness.simulation.model import PhysicsModel
@@ -108,7 +109,7 @@ class Recording:
                 "TIMED_OUT",
                 f"the run would go on to t={end:.0f} s; it may take {LONGEST_RUN:g} s of simulated"
                 " time: shorten it, or make it several scenarios",
-                {"end": end, "limit": LONGEST_RUN},
+                LengthFailure(LONGEST_RUN, end=end),
             )
         rows = (self._qpos, self._qvel, self._sensors, self._commands, self._command_velocities)
         per_row = 8 * (1 + sum(array.shape[1] for array in rows))
@@ -119,7 +120,7 @@ class Recording:
                 f"the record of the run would grow to {size / 2**20:.0f} MiB by t={end:.1f} s, and"
                 f" {MOST_BYTES / 2**20:.0f} MiB are the limit: use fewer objects that move, a"
                 " longer time step, or several scenarios",
-                {"bytes": size, "limit": MOST_BYTES},
+                LengthFailure(MOST_BYTES, bytes=size),
             )
 
     def _record_forces_of_last_row(self) -> None:

@@ -46,7 +46,7 @@ def add_robot(spec: mujoco.MjSpec, description: RobotDescription, surfaces: Surf
 
     Args:
         spec: A specification in radians; `world` is its world body.
-        description: The composed robot.
+        description: The description of the composed robot.
         surfaces: Ranking that holds every link's friction.
     """
     bodies = {"world": spec.worldbody}

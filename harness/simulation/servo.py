@@ -43,8 +43,8 @@ class Servos:
     A servo's force is `stiffness * (control - position) - damping * velocity`, within its limit.
 
     Attributes:
-        stiffness: [N m/rad or N/m], shape (m,).
-        damping: [N m s/rad or N s/m], shape (m,).
+        stiffness: The stiffness [N m/rad or N/m], shape (m,).
+        damping: The damping [N m s/rad or N s/m], shape (m,).
         rotor_inertia: MuJoCo's armature, shape (m,).
         effort: Effort limits, inf where there is none, shape (m,).
     """

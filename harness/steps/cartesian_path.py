@@ -17,8 +17,7 @@ from harness.language.poses import Pose, Position
 from harness.language.step import Step
 from harness.ports import CartesianPathOptions, JointGoal, PoseGoal, PositionGoal
 from harness.ports import JumpThreshold as PlannedJumpThreshold
-
-REPORTED = ("fraction", "largest_joint_step", "deviation")
+from harness.recording.explanation import CartesianPathResult
 
 
 class JumpThreshold(SpecModel):
@@ -96,7 +95,9 @@ class CartesianPath(Step):
                 group, cell.planning_start(), goals, path, options
             )
         except PlanningFailed as failure:
-            cell.notes.result.update({k: failure.facts[k] for k in REPORTED if k in failure.facts})
+            followed = failure.details.find(CartesianPathResult)
+            if followed is not None:
+                cell.notes.result.update(replace(followed, min_fraction=None).plain())
             raise
         cell.carry_out(plan)
 

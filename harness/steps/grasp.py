@@ -11,6 +11,7 @@ from harness.cell.scope import At
 from harness.core.errors import StepFailed
 from harness.language.base import JointEffort, JointValue, Name
 from harness.language.step import Step
+from harness.recording.execution_failures import GraspFailure
 from harness.steps.gripper import DEFAULT_TIMEOUT, check_gripper_position, note_result
 
 GripperAction = Literal["friction", "weld"]
@@ -58,11 +59,12 @@ class Grasp(Step):
         result = cell.simulator.command_gripper(
             target, self.max_effort or hand.grip_effort, timeout=self.timeout or DEFAULT_TIMEOUT
         )
-        note_result(cell, target, result)
+        outcome = note_result(cell, target, result)
         cell.notes.result["mode"] = self.mode
         empty = [side for side, names in result.contacts.items() if self.object not in names]
         if empty:
-            raise StepFailed("CONTROL_FAILED", _missed(self.object, empty, cell), cell.notes.result)
+            message = _missed(self.object, empty, cell)
+            raise StepFailed("CONTROL_FAILED", message, outcome, GraspFailure(self.mode))
         cell.sync_scene()
         cell.attach(self.object, cell.description.tcp_link, hand.links)
         if self.mode == "weld":

@@ -23,12 +23,17 @@ from harness.language.base import Name
 from harness.language.poses import Direction, Pose, Position
 from harness.language.step import Step
 from harness.ports import PositionGoal, Touch
+from harness.recording.execution_failures import NotHeldFailure
+from harness.recording.explanation import Explanation
+from harness.recording.goal_failures import CollisionFailure, TouchRecord
 from harness.steps.lin import Lin
 from harness.steps.move_to import MoveTo
 from harness.steps.pick import (
     Travel,
     check_travel,
+    fails_at_start_of_approach,
     millimetres,
+    nearest_state,
     relative_step,
     travel_lengths,
     with_advice,
@@ -97,10 +102,8 @@ class Place(Step):
             raise StepFailed(
                 "INVALID_OBJECT_NAME",
                 f"{what}, so nothing can be placed",
-                {
-                    "not_held": name,
-                    "advice": f"put a step that takes it before: `- pick: {name or '...'}`",
-                },
+                NotHeldFailure(name),
+                Explanation(advice=f"put a step that takes it before: `- pick: {name or '...'}`"),
             )
         backwards = _retreat_direction(cell)
         children = [
@@ -178,13 +181,11 @@ def _no_room(name: str, touch: Touch) -> StepFailed:
         "GOAL_IN_COLLISION",
         f"the gripper has no room to open where '{name}' is put down: open, {touch.first} and"
         f" {touch.second} would be {depth} inside each other",
-        {
-            "touches": [{"pair": [touch.first, touch.second], "distance": touch.distance}],
-            "advice": (
-                f"put it down farther from '{touch.second}', or where there is {depth} more room"
-                " on that side of the gripper"
-            ),
-        },
+        CollisionFailure((TouchRecord((touch.first, touch.second), touch.distance),)),
+        Explanation(
+            advice=f"put it down farther from '{touch.second}', or where there is {depth} more room"
+            " on that side of the gripper"
+        ),
     )
 
 
@@ -192,24 +193,23 @@ def place_advice(name: str, step: Place, failure: PlanningFailed, cell: Cell) ->
     """What to do in the keys of a place."""
     if failure.code.startswith("START_STATE"):
         return ""  # the planner's advice is about the start
-    if failure.facts.get("is_start_of_approach"):
+    if fails_at_start_of_approach(failure):
         return (
             "the place can be reached, the start of the approach cannot: give `approach` a shorter"
             " `distance`, or another `direction`"
         )
-    stated = cell.world_pose(step.pose)
+    stated, nearest = cell.world_pose(step.pose), nearest_state(failure)
     if failure.code == "GOAL_IN_COLLISION":
-        shift = failure.facts.get("nearest", {}).get("nearest_free", {}).get("shift")
-        if shift is None:
+        if nearest is None or nearest.nearest_free is None:
             return ""
+        shift = np.array(nearest.nearest_free.shift)
         return (
             f"move '{name}' to where it is free: `pose: {{{_xyz(stated.translation + shift)}}}`, or"
             " move what is in the way"
         )
-    nearest = failure.facts.get("nearest", {}).get("joint_positions")
     if nearest is None:
         return ""
-    state = np.array([nearest[joint] for joint in cell.description.joint_names])
+    state = np.array([nearest.joint_positions[joint] for joint in cell.description.joint_names])
     pose = cell.scene.object_pose(name, state)
     point = pose.translation - PUT_DOWN_GAP * UP
     away = float(np.linalg.norm(point - stated.translation))

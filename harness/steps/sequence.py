@@ -138,7 +138,7 @@ def _check_blends(step: Sequence, group: str, at: At) -> None:
 
 
 def _place(goal: GoalFields, group: str, scope: Scope) -> Place | None:
-    """Where a goal is, if the file tells; frames are resolved all at once, before the motion."""
+    """Where a goal is, if the file says; frames are resolved all at once, before the motion."""
     description = scope.description
     link = goal.link or description.tcp_link
     at = goal.pose or goal.position

@@ -31,7 +31,7 @@ class StraightLine:
     """A straight line of the link, with joint positions that follow it without a jump.
 
     Attributes:
-        joint_positions: Shape (N, dof), N >= 1.
+        joint_positions: The joint positions, shape (N, dof), N >= 1.
         direction: Unit vector in the world, shape (3,).
     """
 
@@ -45,7 +45,7 @@ def joint_paths(
     """Paths through joint positions anywhere between the limits.
 
     Args:
-        chain: The arm's chain.
+        chain: The kinematic chain of the arm.
         min_size: Smallest number of waypoints.
         max_size: Largest number of waypoints.
     """
@@ -66,7 +66,7 @@ def straight_lines(
     continuous joint path along it always exists. A line may be a single point.
 
     Args:
-        chain: The arm's chain.
+        chain: The kinematic chain of the arm.
         task: The arm's task; by default `natural_task`.
         positions: Start positions; by default anywhere between the limits.
         max_length: Largest length of a line [m].

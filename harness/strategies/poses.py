@@ -24,7 +24,7 @@ class Target:
     """A target pose.
 
     Attributes:
-        pose: T_world_link.
+        pose: The pose T_world_link of the link.
         joint_positions: Joint positions that reach the pose, shape (dof,); None when unknown.
     """
 
@@ -42,7 +42,7 @@ def reachable_poses(chain: Chain, positions: Positions | None = None) -> Targets
     """Poses that the arm can take: forward kinematics of joint positions within the limits.
 
     Args:
-        chain: The arm's chain.
+        chain: The kinematic chain of the arm.
         positions: Joint positions to draw from; by default anywhere between the limits.
     """
     drawn = joint_positions(chain) if positions is None else positions
@@ -63,7 +63,7 @@ def unreachable_poses(chain: Chain, *, any_orientation: bool = False) -> Targets
     """Poses that no joint positions reach, whatever the limits: the arm is too short.
 
     Args:
-        chain: The arm's chain.
+        chain: The kinematic chain of the arm.
         any_orientation: Whether the position is unreachable in every orientation; else the pose
             puts the last joint out of reach.
     """

@@ -49,7 +49,7 @@ def joint_positions(chain: Chain, *, margin: float = 0.0) -> Positions:
     """Positions anywhere between the limits, shape (dof,) [rad or m]; the simplest is home.
 
     Args:
-        chain: The arm's chain.
+        chain: The kinematic chain of the arm.
         margin: Share of each range that is kept free on both sides, [0, 0.5).
     """
     return st.tuples(*_each_joint(chain, margin)).map(np.array)
@@ -85,7 +85,7 @@ def near_singular_positions(chain: Chain, task: Task | None = None) -> Positions
     the Jacobian's smallest singular value.
 
     Args:
-        chain: The arm's chain.
+        chain: The kinematic chain of the arm.
         task: The arm's task; by default `natural_task`.
     """
     fixed = task or natural_task(chain)

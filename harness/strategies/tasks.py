@@ -42,12 +42,12 @@ def task_jacobians(chain: Chain, task: Task, samples: FloatArray) -> FloatArray:
     """Jacobians of a task's coordinates, with positions in shares of the arm's reach.
 
     Args:
-        chain: The arm's chain.
-        task: The task.
+        chain: The kinematic chain of the arm.
+        task: The parts of the pose that count.
         samples: Joint positions, shape (N, dof).
 
     Returns:
-        Shape (N, rows, dof).
+        The Jacobians, shape (N, rows, dof).
     """
     jacobians, rotations = chain.jacobians(samples)
     jacobians[:, :3] /= max(chain.farthest()[1], 1e-6)

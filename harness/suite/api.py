@@ -14,7 +14,8 @@ from harness.recording.run import Run, StepRecord, Verdict
 from harness.recording.store import RUN, read_run
 from harness.reporting.result import CaseResult
 from harness.reporting.terminal import causes
-from harness.suite.cases import CaseJob, ignore_progress, run_here
+from harness.session.run_request import RunRequest
+from harness.suite.cases import ignore_progress, run_here
 from harness.suite.discovery import UsageError
 from harness.suite.header import source_lines
 from harness.suite.variation import Case, Variation
@@ -26,7 +27,7 @@ MODEL = "<Scenario model>"
 """What messages call a scenario that is a model in Python, and no file."""
 
 T = TypeVar("T")
-Runner = Callable[[CaseJob], CaseResult]
+Runner = Callable[[RunRequest], CaseResult]
 
 
 @dataclass(frozen=True, repr=False)
@@ -36,8 +37,8 @@ class ScenarioResult:
     Attributes:
         case: Outcome, verdicts, problems, digest and times, as the terminal and reports show them.
         run: Everything recorded; None where nothing ran.
-        text: Of the scenario file; of a model, the file that says the same, whose lines messages
-            count.
+        text: The text of the scenario file; of a model, the file that says the same, whose lines
+            messages count.
     """
 
     case: CaseResult
@@ -104,7 +105,7 @@ def run_scenario(
             working directory.
         overrides: Dotted path -> value, as `--set` has them: `{"robot.model": "ur5e"}`.
         seed: Instead of the scenario's.
-        case: Which one, where it is parametrised.
+        case: The name of the case, where the file is parametrised.
         report_dir: Where its report is written; None: nowhere.
         runner: Runs the job; by default in this process.
 
@@ -137,7 +138,7 @@ def _without_folder(result: CaseResult) -> CaseResult:
     return replace(result, file=MODEL, problems=problems)
 
 
-def run_in_process(job: CaseJob) -> CaseResult:
+def run_in_process(job: RunRequest) -> CaseResult:
     """Run a job here."""
     [(_index, result)] = run_here([job], watch=ignore_progress)
     return result
@@ -145,7 +146,7 @@ def run_in_process(job: CaseJob) -> CaseResult:
 
 def _job(
     scenario: str | Path | Scenario, overrides: dict[str, str], seed: int | None, case: str
-) -> CaseJob:
+) -> RunRequest:
     if isinstance(scenario, str | Path):
         from harness.suite.header import read_header
 
@@ -156,15 +157,14 @@ def _job(
         text = scenario_text(scenario)
         file, variation = Path.cwd() / MODEL, Variation.of(written(scenario))
     name = str(scenario) if isinstance(scenario, str | Path) else scenario.scenario
-    chosen = _case(variation, seed, case, name)
-    return CaseJob(
+    chosen = _case(variation, seed, case, name).with_overrides(overrides)
+    return RunRequest(
         file,
-        {**chosen.overrides, **overrides},
+        chosen.overrides,
         seed if chosen.sample is None else None,
         case=chosen.name,
         text=text,
         redraw=chosen.redraw,
-        fixed=overrides,
     )
 
 

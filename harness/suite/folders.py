@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 
 from harness.core.resources import data_folder
@@ -17,16 +18,18 @@ def report_folders(files: Sequence[Path], root: Path) -> list[Path]:
     """
     folders: list[Path] = []
     for file in files:
-        folder = root / _place(file)
+        folder = root / place_of(file)
         number = 2
         while folder in folders:
-            folder = root / f"{_place(file)}-{number}"
+            folder = root / f"{place_of(file)}-{number}"
             number += 1
         folders.append(folder)
     return folders
 
 
-def _place(file: Path) -> Path:
+@cache
+def place_of(file: Path) -> Path:
+    """A file's path below the working directory, or below the bundled scenarios, without suffix."""
     absolute = file.resolve()
     stem = absolute.name.removesuffix(SUFFIX).removesuffix(".yaml")
     if (absolute.parent / stem).is_dir():

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from harness.core.errors import SpecError
 from harness.suite.discovery import SUFFIX
@@ -22,10 +23,11 @@ class Header:
 
     Attributes:
         title: Its `scenario`; the file's name where there is none.
-        tags: Its `tags`.
-        line: Of the title, from 1.
-        variation: Its cases.
+        tags: The `tags` of the file.
+        line: The line of the title, from 1.
+        variation: The variation of the file.
         verifies: Requirements that it names.
+        varied: The values in the file that its cases follow from.
     """
 
     title: str
@@ -33,6 +35,7 @@ class Header:
     line: int = 1
     variation: Variation = ONE_CASE
     verifies: tuple[str, ...] = ()
+    varied: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
 
 def source_lines(file: Path) -> list[str]:
@@ -61,11 +64,11 @@ def read_header(file: Path) -> Header:
     varied = {key: entries[key].value.plain() for key in VARIED if key in entries}
     variation = Variation.of(varied)
     if "scenario" not in entries:
-        return Header(nameless.title, tags, 1, variation, verifies)
+        return Header(nameless.title, tags, 1, variation, verifies, varied)
     key, title = entries["scenario"]
     if not isinstance(title.value, str) or not title.value.strip():
-        return Header(nameless.title, tags, key.line, variation, verifies)
-    return Header(" ".join(title.value.split()), tags, key.line, variation, verifies)
+        return Header(nameless.title, tags, key.line, variation, verifies, varied)
+    return Header(" ".join(title.value.split()), tags, key.line, variation, verifies, varied)
 
 
 def _texts(item: Located) -> tuple[str, ...]:

@@ -8,16 +8,18 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any, NoReturn
 
-from harness.suite.cases import CaseJob
+from harness.session.run_request import RunRequest
 from harness.suite.discovery import UsageError
-from harness.suite.folders import report_folders
+from harness.suite.folders import place_of, report_folders
 from harness.suite.header import Header, read_header
 from harness.suite.selection import selects
+from harness.suite.shards import PlannedFile, Shard, ShardRecord
+from harness.suite.stream import file_hash
 from harness.suite.variation import Case, Variation
 
 
 @dataclass(frozen=True)
-class RunRequest:
+class SuiteRequest:
     """Which cases a command runs, and what it writes.
 
     Attributes:
@@ -31,6 +33,7 @@ class RunRequest:
             samples, the failed ones.
         page: Whether to write the page of a report.
         bag: Whether to write a rosbag2.
+        shard: The part of the suite to run; None runs the whole suite.
     """
 
     expression: str = ""
@@ -42,6 +45,7 @@ class RunRequest:
     keep: str = ""
     page: bool = True
     bag: bool = False
+    shard: Shard | None = None
 
 
 @dataclass(frozen=True)
@@ -50,11 +54,11 @@ class PlannedCase:
 
     Attributes:
         job: How to run it.
-        header: Of its file.
-        case: Which one it is.
+        header: The header of its file.
+        case: The name of the case.
     """
 
-    job: CaseJob
+    job: RunRequest
     header: Header
     case: Case
 
@@ -69,26 +73,24 @@ class PlannedCase:
         return None if self.case.sample is None else (str(self.job.file), self.case.group)
 
     @property
+    def identity(self) -> str:
+        """Names the case on every machine: the file's path in the project and the case's name."""
+        return f"{place_of(self.job.file).as_posix()}\0{self.case.name}"
+
+    @property
     def values(self) -> Mapping[str, Any]:
         """What varies from case to case."""
         return self.case.values
 
 
-def planned_cases(files: Sequence[Path], request: RunRequest) -> list[PlannedCase]:
+def planned_cases(files: Sequence[Path], request: SuiteRequest) -> list[PlannedCase]:
     """Every case of the files that the request selects, in file order.
 
     Raises:
         UsageError: Nothing is selected, `-k` cannot be read, or there is nothing to sample.
         SpecError: There is nothing to sample in a file with mistakes.
     """
-    root = request.report_root
-    folders = [None] * len(files) if root is None else report_folders(files, root)
-    found: list[PlannedCase] = []
-    for file, folder in zip(files, folders, strict=True):
-        header = read_header(file)
-        for case in header.variation.cases(request.seed, request.samples):
-            if _is_selected(file, header, case, request):
-                found.append(PlannedCase(_job(file, case, folder, request), header, case))
+    found = cases_of([(file, read_header(file)) for file in files], request)
     if not found:
         option = f"-k '{request.expression}'" if request.expression else "--case"
         if request.cases:
@@ -96,10 +98,29 @@ def planned_cases(files: Sequence[Path], request: RunRequest) -> list[PlannedCas
         raise UsageError(f"{option} selects none of {len(files)} scenarios{_names(files, request)}")
     if request.samples is not None and all(each.case.sample is None for each in found):
         _refuse_samples(files, request)
-    return found
+    if request.shard is None:
+        return found
+    return [each for each in found if request.shard.holds(each.identity)]
 
 
-def _refuse_samples(files: Sequence[Path], request: RunRequest) -> NoReturn:
+def cases_of(headers: Sequence[tuple[Path, Header]], request: SuiteRequest) -> list[PlannedCase]:
+    """Every case that the request selects, of files whose headers are known, in file order.
+
+    Raises:
+        UsageError: `-k` cannot be read.
+    """
+    root = request.report_root
+    files = [file for file, _ in headers]
+    folders = [None] * len(files) if root is None else report_folders(files, root)
+    return [
+        PlannedCase(_job(file, case, folder, request), header, case)
+        for (file, header), folder in zip(headers, folders, strict=True)
+        for case in header.variation.cases(request.seed, request.samples)
+        if _is_selected(file, header, case, request)
+    ]
+
+
+def _refuse_samples(files: Sequence[Path], request: SuiteRequest) -> NoReturn:
     """Say that nothing is sampled; mistakes in a file, which may hide its samples, come first."""
     from harness.language.reading.load import load_scenario
 
@@ -111,13 +132,13 @@ def _refuse_samples(files: Sequence[Path], request: RunRequest) -> NoReturn:
     )
 
 
-def _is_selected(file: Path, header: Header, case: Case, request: RunRequest) -> bool:
+def _is_selected(file: Path, header: Header, case: Case, request: SuiteRequest) -> bool:
     if request.cases and not any(fnmatchcase(case.name, pattern) for pattern in request.cases):
         return False
     return not request.expression or selects(request.expression, file, header, case.name)
 
 
-def _names(files: Sequence[Path], request: RunRequest) -> str:
+def _names(files: Sequence[Path], request: SuiteRequest) -> str:
     """The existing case names, if `--case` selected none of them."""
     if not request.cases:
         return ""
@@ -131,17 +152,53 @@ def _names(files: Sequence[Path], request: RunRequest) -> str:
     return f"; cases: {shown}" if names else "; the file has one case, without a name"
 
 
-def _job(file: Path, case: Case, folder: Path | None, request: RunRequest) -> CaseJob:
+def _job(file: Path, case: Case, folder: Path | None, request: SuiteRequest) -> RunRequest:
     keep = request.keep or ("all" if case.sample is None else "failed")
-    return CaseJob(
+    fixed = case.with_overrides(request.overrides)
+    return RunRequest(
         file,
-        {**case.overrides, **request.overrides},
+        fixed.overrides,
         request.seed if case.sample is None else None,
         folder / case.name if folder is not None and case.name else folder,
         page=request.page,
         bag=request.bag,
         case=case.name,
         only_failed=keep == "failed",
-        redraw=case.redraw,
-        fixed=request.overrides,
+        redraw=fixed.redraw,
+    )
+
+
+def record_of(
+    files: Sequence[Path], request: SuiteRequest, shard: Shard, root: Path
+) -> ShardRecord:
+    """What a part of a suite has to know of the whole suite.
+
+    Args:
+        files: Every scenario file of the suite.
+        request: The selection of the cases of the whole suite.
+        shard: The part of the suite that this machine runs.
+        root: The part's report folder.
+    """
+    planned: list[PlannedFile] = []
+    for file in files:
+        header = read_header(file)
+        planned.append(
+            PlannedFile(
+                str(file),
+                header.title,
+                header.tags,
+                header.verifies,
+                header.varied,
+                file_hash(file),
+            )
+        )
+    return ShardRecord(
+        shard,
+        str(root),
+        tuple(planned),
+        request.expression,
+        tuple(request.cases),
+        request.overrides,
+        request.seed,
+        request.samples,
     )

@@ -58,7 +58,7 @@ class Tally:
     """Samples counted one after the other, in the order of their numbers.
 
     Attributes:
-        passed: Of `total`.
+        passed: The number of `total` that passed.
         total: Samples that count; samples after an early stop do not.
         is_decided: Whether the sequential test has ended the sampling.
     """
@@ -68,7 +68,7 @@ class Tally:
 
         Args:
             at_least: Rate to be shown; None: every one must pass.
-            confidence: Of the interval and of the sequential test.
+            confidence: The confidence of the interval and of the sequential test.
             stop_early: Whether the sequential test may end the sampling.
         """
         self.passed, self.total = 0, 0

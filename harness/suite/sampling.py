@@ -18,13 +18,20 @@ class Sampling:
     the end is the same however many work.
     """
 
-    def __init__(self, plan: Sequence[PlannedCase]) -> None:
-        self._plan = plan
+    def __init__(self, plan: Sequence[PlannedCase], *, is_part: bool = False) -> None:
+        """Count nothing yet.
+
+        Args:
+            plan: The cases, samples among them.
+            is_part: Whether other parts of the suite hold samples of the same groups; then no rate
+                is decided here, and every sample is run.
+        """
+        self._is_part = is_part
         self._groups: dict[tuple[str, str], _Group] = {}
         self._places: dict[int, tuple[_Group, int]] = {}
         for index, each in enumerate(plan):
             if each.rate_key is not None:
-                group = self._groups.setdefault(each.rate_key, _Group(each))
+                group = self._groups.setdefault(each.rate_key, _Group(each, is_part=is_part))
                 self._places[index] = group, group.planned
                 group.planned += 1
 
@@ -42,7 +49,12 @@ class Sampling:
         return group.is_needless(place)
 
     def groups(self) -> list[SampledRate]:
-        """Every group with its rate, from the first samples without a missing number."""
+        """Every group with its rate, from the first samples without a missing number.
+
+        A part of a suite decides no rates.
+        """
+        if self._is_part:
+            return []
         found: list[SampledRate] = []
         for key, group in self._groups.items():
             rate = group.tally.rate(group.planned, group.invalid)
@@ -58,7 +70,9 @@ class Sampling:
         """Outcomes of the cases, with groups of samples in place of failed samples."""
         outcomes: list[Outcome] = [group.outcome for group in self.groups()]
         for index, result in self.counted(results).items():
-            if index not in self._places or result.outcome in ("invalid", "error"):
+            is_sample = index in self._places
+            is_alone = self._is_part and is_sample and not self._places[index][0].has_required_rate
+            if not is_sample or is_alone or result.outcome in ("invalid", "error"):
                 outcomes.append(result.outcome)
         return outcomes
 
@@ -70,12 +84,15 @@ class _Group:
         planned: Number of samples in the plan.
         tally: Count of the first samples without a missing number, invalid ones left out.
         invalid: Samples that could not be run; they are no evidence about the rate.
+        has_required_rate: Whether the file has an `expect_rate`; else every sample must pass.
     """
 
-    def __init__(self, sample: PlannedCase) -> None:
-        said = sample.variation
+    def __init__(self, sample: PlannedCase, *, is_part: bool) -> None:
+        variation = sample.variation
         self.planned = 0
-        self.tally = Tally(said.at_least, said.confidence, stop_early=said.stop_early)
+        self.has_required_rate = variation.at_least is not None
+        stop_early = variation.stop_early and not is_part
+        self.tally = Tally(variation.at_least, variation.confidence, stop_early=stop_early)
         self._outcomes: dict[int, Outcome] = {}
         self._next = 0
         self.invalid = 0

@@ -8,14 +8,17 @@ import re
 from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from harness import __version__
 from harness.core.errors import HarnessError
 from harness.core.printable import json_printable
-from harness.recording.plain import from_plain, to_plain
+from harness.recording.plain import to_plain
 from harness.reporting.result import CaseResult
-from harness.suite.cases import CaseJob
+from harness.session.run_request import RunRequest
+
+if TYPE_CHECKING:
+    from pydantic import TypeAdapter
 
 FORMAT = "armharness-stream/1"
 FILE = "results.jsonl"
@@ -50,14 +53,14 @@ class Stream:
             HarnessError: The file cannot be written.
         """
         self.path = folder / FILE
-        self._known: dict[str, CaseResult] = dict(_read(self.path)) if resume else {}
+        self._known: dict[str, CaseResult] = dict(read_results(self.path)) if resume else {}
         try:
             folder.mkdir(parents=True, exist_ok=True)
             self._file = self.path.open("a" if resume else "w", encoding="utf-8")
         except OSError as error:
             raise HarnessError(f"'{self.path}' cannot be written: {error.strerror}") from error
 
-    def known(self, job: CaseJob) -> CaseResult | None:
+    def known(self, job: RunRequest) -> CaseResult | None:
         """The result of an earlier run of the same file, values and version; None if there is none.
 
         An error is no result: it is tried again.
@@ -65,7 +68,7 @@ class Stream:
         result = self._known.get(fingerprint(job)) if self._known else None
         return None if result is None or result.outcome == "error" else result
 
-    def write(self, job: CaseJob, result: CaseResult) -> None:
+    def write(self, job: RunRequest, result: CaseResult) -> None:
         """Keep a result.
 
         Raises:
@@ -84,24 +87,32 @@ class Stream:
         self._file.close()
 
 
-def _read(path: Path) -> Iterator[tuple[str, CaseResult]]:
-    """Whole lines of a stream; one that was cut off, or is of another format, is left out."""
+def read_results(path: Path) -> Iterator[tuple[str, CaseResult]]:
+    """Keys and results of a stream; a line that was cut off or has another format is left out."""
+    validator = _validator()
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
+        with path.open(encoding="utf-8") as file:
+            for line in file:
+                try:
+                    entry = cast("dict[str, Any]", json.loads(line))
+                    if entry["format"] == FORMAT:
+                        yield str(entry["key"]), validator.validate_python(entry["result"])
+                except (ValueError, KeyError, TypeError):
+                    continue
     except (OSError, UnicodeDecodeError):
         return
-    for line in lines:
-        try:
-            entry = cast("dict[str, Any]", json.loads(line))
-            if entry["format"] == FORMAT:
-                yield str(entry["key"]), from_plain(entry["result"], CaseResult)
-        except (ValueError, KeyError, TypeError):
-            continue
 
 
-def fingerprint(job: CaseJob) -> str:
+@cache
+def _validator() -> TypeAdapter[CaseResult]:
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(CaseResult)
+
+
+def fingerprint(job: RunRequest) -> str:
     """What a case's result follows from: file, files it names, values, seed, version."""
-    said = [__version__, _file_hash(job.file), job.case, str(job.seed), *_sorted(job.overrides)]
+    said = [__version__, file_hash(job.file), job.case, str(job.seed), *_sorted(job.overrides)]
     return hashlib.sha256("\0".join(said).encode()).hexdigest()
 
 
@@ -110,7 +121,7 @@ def _sorted(overrides: Mapping[str, str]) -> list[str]:
 
 
 @cache
-def _file_hash(file: Path) -> str:
+def file_hash(file: Path) -> str:
     """Hash of a scenario file and of the files that it names, and those that they name.
 
     A name is any word or quoted text with the ending of an input, from the folder of the file that

@@ -34,6 +34,7 @@ class How:
         hard_cap: Wall seconds a case may take; None: the program's own.
         stream: Folder that results are written to as they come; None: nowhere.
         resume: Whether results that are there are taken instead of computed.
+        is_part: Whether the plan is one part of a suite, whose rates are decided after a merge.
     """
 
     workers: int = 1
@@ -42,6 +43,7 @@ class How:
     hard_cap: float | None = None
     stream: Path | None = None
     resume: bool = False
+    is_part: bool = False
 
 
 class SuiteRun:
@@ -50,9 +52,10 @@ class SuiteRun:
     Attributes:
         plan: Cases, in file order.
         jobs: Their runs: with repetitions, `repeat` of each case side by side.
-        results: By index into `jobs`; of samples, those that count.
+        results: The results by index into `jobs`; of samples, those that count.
         resumed: How many results are from an earlier run.
         is_interrupted: Whether Ctrl-C or SIGTERM ended it early.
+        missing_parts: Why a suite that was merged from parts is incomplete, one sentence each.
         unfinished: The last event of each run that has begun and not ended, by index into `jobs`.
     """
 
@@ -65,9 +68,10 @@ class SuiteRun:
         self.results: dict[int, CaseResult] = {}
         self.resumed = 0
         self.is_interrupted = False
+        self.missing_parts: tuple[str, ...] = ()
         self.unfinished: dict[int, ProgressEvent] = {}
         self._how = how
-        self._sampling = Sampling(plan)
+        self._sampling = Sampling(plan, is_part=how.is_part)
 
     def collect(
         self,
@@ -103,8 +107,23 @@ class SuiteRun:
                     on_result(index, kept)
         except KeyboardInterrupt:
             self.is_interrupted = True
+        self._count()
+
+    def take_all(self, results: Mapping[int, CaseResult]) -> None:
+        """Take results that were computed elsewhere, by index into `jobs`, instead of running."""
+        for index in sorted(results):
+            self._take(index, results[index])
+        self._count()
+
+    def _count(self) -> None:
+        """Leave out the results of samples after an early stop."""
         counted = self._sampling.counted(self.results) if self._is_sampled else self.results
         self.results = dict(sorted(counted.items()))
+
+    @property
+    def is_part(self) -> bool:
+        """Whether the plan is one part of a suite."""
+        return self._how.is_part
 
     @property
     def _is_sampled(self) -> bool:
@@ -187,7 +206,7 @@ class SuiteRun:
             cases.append(
                 SuiteCase(result, self.values(index), case.header.tags, case.header.verifies)
             )
-        return SuiteRecord(self.outcome, cases, self.rates, self.is_interrupted)
+        return SuiteRecord(self.outcome, cases, self.rates, self.is_interrupted, self.missing_parts)
 
     def repetitions(self) -> list[list[CaseResult]]:
         """Results of the same case together, in file order."""
@@ -216,4 +235,6 @@ class SuiteRun:
     @property
     def exit_code(self) -> int:
         """Of the command."""
-        return INTERRUPTED_EXIT_CODE if self.is_interrupted else exit_code([self.outcome])
+        if self.is_interrupted:
+            return INTERRUPTED_EXIT_CODE
+        return exit_code(["error"] if self.missing_parts else [self.outcome])

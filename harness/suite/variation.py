@@ -12,7 +12,7 @@ import json
 import random
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from statistics import NormalDist
 from typing import Any, cast
 
@@ -45,6 +45,11 @@ class Case:
     sample: int | None = None
     redraw: Redraw | None = None
 
+    def with_overrides(self, overrides: Mapping[str, str]) -> Case:
+        """The case with values that take precedence over its own, in every draw."""
+        redraw = None if self.redraw is None else replace(self.redraw, fixed=overrides)
+        return replace(self, overrides={**self.overrides, **overrides}, redraw=redraw)
+
 
 @dataclass(frozen=True)
 class Variation:
@@ -55,9 +60,9 @@ class Variation:
         randomize: Path -> distribution; empty where nothing is random.
         samples: How many of each parametrised case; 0: no samples.
         at_least: Success rate to be shown; None: every sample must pass.
-        confidence: With which.
+        confidence: The confidence of the rate.
         stop_early: Whether a sequential test may end the sampling.
-        seed: Of the file.
+        seed: The seed of the file.
         redraw_overlaps: Whether a sample is drawn again while objects overlap at the start.
     """
 
@@ -164,20 +169,23 @@ class Redraw:
     """Draws a sample again.
 
     Attributes:
-        variation: Of its file.
+        variation: The variation of its file.
         case: The parametrised case it is a sample of.
-        index: Its number.
+        index: The number of the sample.
         base: The seed of all samples.
+        fixed: Overrides that no draw changes.
     """
 
     variation: Variation
     case: Case
     index: int
     base: int
+    fixed: Mapping[str, str] = field(default_factory=dict[str, str])
 
     def again(self, draw: int) -> Case:
         """The sample as it is drawn next, by the number of the draw from 1."""
-        return self.variation._sample(self.case, self.index, self.base, draw)  # noqa: SLF001
+        drawn = self.variation._sample(self.case, self.index, self.base, draw)  # noqa: SLF001
+        return drawn.with_overrides(self.fixed)
 
 
 ONE_CASE = Variation()

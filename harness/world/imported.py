@@ -15,7 +15,7 @@ class ImportedWorld:
 
     Attributes:
         world: The world as a world file describes it; mesh files have absolute paths.
-        path: The imported file.
+        path: The path of the imported file.
         notes: Notes on elements that are left out or changed.
     """
 

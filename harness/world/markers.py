@@ -37,8 +37,8 @@ def printed(marker: MarkerSpec, pose: SE3, name: str = "") -> tuple[Shape, ...]:
 
     Args:
         marker: Which, and how big.
-        pose: T_object_marker.
-        name: Of the plate.
+        pose: The pose T_object_marker of the marker.
+        name: The name of the plate.
     """
     cells = _cells(marker)
     side = marker.size / len(cells)

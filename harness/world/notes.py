@@ -15,7 +15,7 @@ class Note:
         path: The file, as the user named it.
         line: Line of its first occurrence, from 1.
         message: The part, and how it is treated.
-        count: Number of occurrences.
+        count: The number of its occurrences.
     """
 
     path: str

@@ -42,7 +42,7 @@ def resolve_object(spec: ObjectSpec, pose: SE3, base_dir: Path) -> WorldObject:
 
     Args:
         spec: What the file says; its own pose is not read.
-        pose: T_world_object.
+        pose: The pose T_world_object of the object.
         base_dir: Folder that mesh files are relative to.
 
     Raises:
@@ -114,7 +114,7 @@ def _geometry(spec: ObjectSpec | ShapeSpec, base_dir: Path) -> Geometry:
     if spec.mesh is not None:
         path = base_dir / spec.mesh.file
         if not path.is_file():
-            raise ObjectUnusableError(f"there is no mesh file '{spec.mesh.file}' beside the file")
+            raise ObjectUnusableError(f"there is no mesh file '{spec.mesh.file}' next to the file")
         scale = spec.mesh.scale
         return Mesh(path, scale if isinstance(scale, tuple) else (scale, scale, scale))
     return Plane()

@@ -16,7 +16,7 @@ def world_text(world: WorldSpec, folder: Path, comment: str = "") -> str:
     """YAML that loads to an equal world.
 
     Args:
-        world: The world.
+        world: The world to be written.
         folder: Folder of the file; paths of mesh files are relative to it.
         comment: Comment at the top.
     """

@@ -1,4 +1,4 @@
-"""Scenes whose naive verdict is wrong: real physics, a check as people write it, and ours.
+"""Scenes whose naive verdict is wrong: real physics, a naive check and the harness' verdict.
 
 A naive check is a line such as success functions are full of: a height against a number, a
 distance between two origins, any contact with the gripper. It passes in every scene here.
@@ -294,7 +294,7 @@ SCENES = (
     ),
     Scene(
         "finger that opens against a wall",
-        "the gripper opens beside a wall that the planner was not told of",
+        "the gripper opens next to a wall that is not in the planning scene",
         "objects:\n  - {name: wall, in: simulation, static: true, box: {size: [0.1, 0.02, 0.3]}, "
         "pose: {xyz: [0.29, 0.066, 0.15]}}\nsteps:\n  - gripper: close\n  - gripper: open\n",
         "the arm stood still, and the fingers may touch things while they move",

@@ -6,25 +6,25 @@ import tempfile
 from pathlib import Path
 
 from harness.recording.store import read_run
-from harness.session.run_case import run_case
 from tests.adversarial.scenes import SCENES, WEIGHTLESS
+from tests.running import run_case
 
-PAGE = Path(__file__).parents[2] / "scenarios" / "VERDICTS.md"
+PAGE = Path(__file__).parents[2] / "docs/reference/verdicts.md"
 RENEW = "python -m tests.adversarial.table"
 HEAD = """# Verdicts that cannot lie
 
-Each of these scenes is run in the physics by the test suite (`tests/adversarial`). The naive check
-is one that success functions are full of, and it passes in every one of them; our expectations,
-judged from the same recording, do not. What holds is told too, so that nothing is refused
-wholesale. This page is written from the runs: `python -m tests.adversarial.table`.
+The test suite runs each of these scenes in the physics (`tests/adversarial`). The naive check is
+common in success functions, and it passes in every scene; the expectation, judged from the same
+recording, does not. The last column lists expectations that hold in the same run, so that no scene
+is simply rejected as a whole. `python -m tests.adversarial.table` writes this page from the runs.
 
-| scene | the naive check: passes | ours: does not pass | holds |
+| scene | naive check: passes | expectation: does not pass | holds |
 | --- | --- | --- | --- |
 """
-SPOILT = """
-Recordings lie as well. `tests/assertions/test_mutations.py` traces which signals each predicate
-reads, shifts, freezes and drops each of them and fills it with NaN, and no mutant may go on
-passing (`pytest -m mutation`).
+CORRUPTED = """
+Recordings can be wrong as well. `tests/assertions/test_mutations.py` traces the signals that each
+predicate reads; it shifts, freezes and drops each of them and fills it with NaN. No corrupted
+recording may pass (`pytest -m mutation`).
 """
 
 
@@ -53,7 +53,7 @@ def without_numbers(text):
 
 def page(rows):
     """The whole page."""
-    return HEAD + "\n".join(rows) + "\n" + SPOILT
+    return HEAD + "\n".join(rows) + "\n" + CORRUPTED
 
 
 def main():

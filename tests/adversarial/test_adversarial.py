@@ -1,4 +1,4 @@
-"""In every scene the naive check passes and ours does not; the page tells the same."""
+"""In every scene the naive check passes and the harness' check fails; the page says the same."""
 
 import pytest
 
@@ -20,7 +20,7 @@ def run_of(tmp_path_factory):
 
 
 @pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.title)
-def test_the_naive_check_is_fooled_and_ours_is_not(scene, run_of):
+def test_the_naive_check_is_fooled_and_the_harness_is_not(scene, run_of):
     result, run = run_of(scene)
     assert scene.says(run), f"the naive check would not be fooled: {scene.naive}"
     refuted, kept = result.verdicts[: len(scene.expect)], result.verdicts[len(scene.expect) :]

@@ -1,33 +1,14 @@
 """Shifts that no predicate may notice, by its definition; every other one must be noticed."""
 
-from dataclasses import dataclass
+from tests.assertions.evidence import AT_ONCE, DRIFT, Free, collected
 
-AT_ONCE, DRIFT = COURSES = ("at once", "as a drift")
 TURNS = "+-roll +-pitch +-yaw"
 PLACES = "+-x +-y +-z"
 
 
-@dataclass(frozen=True)
-class Free:
-    """Shifts of one kind.
-
-    Attributes:
-        reason: Why they change nothing that is spoken of.
-        cases: Names of cases; a predicate's second case is `formula 2`.
-        signals: Names of fields; of one key only: `presses right_finger`.
-        directions: `+x`, or `+-x` for either way.
-        courses: In which they are free.
-    """
-
-    reason: str
-    cases: str
-    signals: str
-    directions: str
-    courses: tuple[str, ...] = COURSES
-
-
 HELD = "lifted, grasped, slip, until"
 FREE = (
+    *(free for evidence in collected().values() for free in evidence.free_shifts),
     Free("higher is lifted too; where, and how it is turned, is not spoken of",
          "lifted, until", "object_poses box", f"+-x +-y +z {TURNS}"),
     Free("less of a support's force is no support", "lifted", "contact_forces Table", "-"),
@@ -35,7 +16,7 @@ FREE = (
          "+"),
     Free("the arm's joints do not grip, and fingers further apart have room for the object",
          HELD, "joint_positions", "+-shoulder +finger"),
-    Free("where a finger presses is not asked, only that they press against each other",
+    Free("where a finger presses is free, only that they press against each other matters",
          HELD, "presses left_finger", f"{PLACES} +-force_x +-force_z +force_y"),
     Free("the same from the other side",
          HELD, "presses right_finger", f"{PLACES} +-force_x +-force_z -force_y"),
@@ -45,14 +26,13 @@ FREE = (
          "released, placed", "contact_forces left_finger, contact_forces right_finger", "-"),
     Free("to stand more heavily is to stand", "placed, on", "contact_forces Table", "+"),
     Free("to stand more heavily is to stand", "placed, on", "support_forces", "+"),
-    Free("`placed` asks how upright it stands, and that it rests; about the vertical it may be"
+    Free("`placed` requires how upright it stands, and that it rests; about the vertical it may be"
          " turned", "placed", "object_poses box", "+-yaw", (AT_ONCE,)),
     Free("a container that turns about its opening's axis stays upright",
          "in", "object_poses bin", "+-yaw"),
     Free("its origin is what is in something", "in", "object_poses box", TURNS),
     Free("further away, and aside, is displaced too",
          "displaced", "object_poses", f"-x +-y +-z {TURNS}"),
-    Free("a tilt has no place and no heading", "upright", "object_poses", f"{PLACES} +-yaw"),
     Free("what stood elsewhere all the time has not moved",
          "static, static 2", "object_poses", f"{PLACES} {TURNS}", (AT_ONCE,)),
     Free("a harder contact is one", "in_contact", "contact_forces", "+"),
@@ -66,19 +46,19 @@ FREE = (
     Free("the same path elsewhere is as long", "path_length", "tcp_pose", PLACES, (AT_ONCE,)),
     Free("the other group's joints", "named_target", "joint_positions", "+-finger"),
     Free("the other group's joints", "gripper, gripper 2", "joint_positions", "+-shoulder"),
-    Free("fingers stay behind their command to press",
+    Free("fingers lag their command to press",
          "tracking_error", "joint_positions, joint_commands", "+-finger"),
-    Free("acceleration is asked of the arm", "within_limits", "joint_command_velocities",
+    Free("acceleration is required of the arm", "within_limits", "joint_command_velocities",
          "+-finger"),
-    Free("the formula asks for `force > 0.5`", "formula", "contact_forces", "+"),
-    Free("the formula asks for `z(box) < 0.1` and a tilt",
+    Free("the formula requires `force > 0.5`", "formula", "contact_forces", "+"),
+    Free("the formula requires `z(box) < 0.1` and a tilt",
          "formula", "object_poses", "+-x +-y -z +-yaw"),
-    Free("the formula asks for `z(tcp) > 0.49`", "formula", "tcp_pose", f"+-x +-y +z {TURNS}"),
+    Free("the formula requires `z(tcp) > 0.49`", "formula", "tcp_pose", f"+-x +-y +z {TURNS}"),
     Free("turning is no speed of the origin", "formula 2", "object_poses", TURNS),
     Free("the same motion elsewhere is as fast", "formula 2", "object_poses", PLACES, (AT_ONCE,)),
     Free("the formula does not name the finger", "formula 3",
          "joint_positions, joint_commands, joint_velocities, joint_efforts", "+-finger"),
-    Free("the formula asks for less than a limit", "formula 3", "joint_velocities, joint_efforts",
+    Free("the formula requires less than a limit", "formula 3", "joint_velocities, joint_efforts",
          "-shoulder"),
     Free("the support may be lower, elsewhere and turned: `lifted` ends the wait all the same",
          "until", "object_poses Table", f"+-x +-y -z {TURNS}"),

@@ -30,9 +30,9 @@ from harness.expectations.tcp_path import TcpPath
 from harness.expectations.tcp_pose import TcpPose
 from harness.expectations.tracking_error import TrackingError
 from harness.expectations.until import Until
-from harness.expectations.upright import Upright
 from harness.expectations.within_limits import WithinLimits
 from harness.language.poses import Pose
+from tests.assertions.evidence import collected
 from tests.assertions.synthetic_run import (
     BOX,
     ROBOT,
@@ -109,6 +109,7 @@ REPORTS = (
 )
 
 CASES = [
+    *(case for evidence in collected().values() for case in evidence.mutation_cases),
     (Lifted(object="box", above=0.05), lift_run(), "lift"),
     (Grasped(object="box"), lift_run(), ""),
     (Released(object="box"), standing(), "late"),
@@ -120,7 +121,6 @@ CASES = [
         late(object_poses={"box": halves((0.3, 0, 0.02, 0), (0, 0, 0.02, 0))}),
         "late",
     ),
-    (Upright(object="box"), standing(), "late"),
     (Static(object="box"), late(object_poses={"box": SWING}), "late"),
     (Static(), late(object_poses={"box": SWING}, joint_velocities=columns((1, 0), (1, 0))), "late"),
     (InContact(between=("left_finger", "box"), min_force=0.5), lift_run(), "lift"),

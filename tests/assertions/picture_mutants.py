@@ -1,4 +1,4 @@
-"""Pictures spoilt in every way, for the mutation check of `sees`."""
+"""Pictures corrupted in every way, for the mutation check of `sees`."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -34,7 +34,7 @@ def seen_run(kind):
     return Sees(camera="eye", **words), pictures(run, objects, *looks), "late"
 
 
-def spoilt(run, spec):
+def corrupted(run, spec):
     """Kind and run of each mutant of what `sees` reads."""
     kind = "segmentation" if spec.object else "color"
     before, shot = run.captures

@@ -36,7 +36,7 @@ def touching(a, b, *spans, run=None, value=1.0, **changes):
     return changed(base, contact_forces=forces)
 
 
-def test_a_link_that_hits_a_wall_is_told_with_pair_force_first_time_and_duration():
+def test_a_link_that_hits_a_wall_is_reported_with_pair_force_first_time_and_duration():
     run = touching("arm_link", "wall", (30, 41), (60, 62), value=12.0)
     answer = verdict(run, NEVER)
     assert answer.status == "failed"
@@ -200,7 +200,7 @@ def test_leaving_the_support_and_bumping_into_it_again_is_a_collision():
     assert not collides(within_a_tenth_of_a_second)
 
 
-def test_objects_that_nobody_holds_may_touch():
+def test_objects_that_are_not_held_may_touch():
     assert not collides(touching("Table", "box", (0, 200)))
     assert not collides(touching("box", "wall", (0, 200)))
 

@@ -193,7 +193,7 @@ def test_during_is_the_formula_on_the_step_s_samples():
         assert verdict(run, Formula(formula="eventually z(box) > 10 cm"), step).status == status
 
 
-def test_a_formula_tells_margin_unit_sample_and_numbers():
+def test_a_formula_reports_margin_unit_sample_and_numbers():
     answer = verdict(lift_run(), Formula(formula="eventually z(box) > 7 cm"))
     assert (answer.status, answer.unit) == ("passed", "m")
     assert answer.margin == pytest.approx(0.05)
@@ -258,7 +258,7 @@ def test_what_the_run_does_not_know_is_not_observable():
 @pytest.mark.parametrize(
     ("text", "start", "message"),
     [
-        ("always z(box > 1", 13, "`)` is missing behind the names of `z`"),
+        ("always z(box > 1", 13, "`)` is missing after the names of `z`"),
         ("alwys z(box) > 1", 0, "no signal is called `alwys`"),
         ("z(box)", 0, "here is a number; a formula is needed"),
         ("z(box) > 1 and 2", 15, "here is a number; a formula is needed"),

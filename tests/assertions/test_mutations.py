@@ -1,4 +1,4 @@
-"""Every signal that a predicate reads, spoilt in every way: no verdict may go on passing.
+"""Every signal that a predicate reads, corrupted in every way: no verdict may go on passing.
 
 Nothing here is picked by hand but one passing run for each predicate, with a time before its window
 in which the predicate did not hold. What a predicate reads is traced while it is judged; each of
@@ -7,7 +7,7 @@ those signals is then shifted, frozen, dropped and made NaN:
 - shift: from the window's start on, at once or as a drift of so much a second, either way in each
   column of its own (poses along and about each axis), by sizes from small to large: every one
   larger than the first that is noticed must be noticed too, and there must be one. `FREE` lists,
-  with their reasons, the directions that a predicate does not speak of; none of them may be
+  with their reasons, the directions that a predicate does not cover; none of them may be
   noticed, so that the list says no more than is so. `MEASURED` are directions in which a signal
   is what is measured: there the margin is exactly how far it may go;
 - freeze: it keeps its value from some moment on; at least one moment must be noticed, which is one
@@ -16,7 +16,7 @@ those signals is then shifted, frozen, dropped and made NaN:
 - NaN: none of its samples is known.
 
 A mutant that equals the original is none, and `SAME_THING` lists those that are what the predicate
-speaks of: nobody can tell a stuck signal from a thing that stands still. `SHOWN_ONLY` lists what
+covers: a stuck signal looks like a thing that stands still. `SHOWN_ONLY` lists what
 moves a margin and decides nothing, with the reason; there a mutant is noticed when the margin is
 another one.
 """
@@ -34,9 +34,10 @@ from harness.expectations.lifted import Lifted
 from harness.expectations.until import Until
 from harness.language.language import PREDICATES
 from harness.recording.run import Signals
-from tests.assertions.free_shifts import AT_ONCE, COURSES, FREE, free_shifts
+from tests.assertions.evidence import AT_ONCE, COURSES
+from tests.assertions.free_shifts import FREE, free_shifts
 from tests.assertions.mutation_cases import CASES, N
-from tests.assertions.picture_mutants import SUBJECTS, seen_run, spoilt
+from tests.assertions.picture_mutants import SUBJECTS, corrupted, seen_run
 from tests.assertions.signal_shifts import array_of, directions, shifted, with_array
 from tests.assertions.synthetic_run import lift_run
 
@@ -256,19 +257,19 @@ def survivors(case):
 
 
 @pytest.mark.parametrize("kind", SUBJECTS)
-def test_no_spoilt_picture_goes_on_passing(kind):
+def test_no_corrupted_picture_goes_on_passing(kind):
     spec, run, step_id = seen_run(kind)
     assert answer(run, spec, step_id).status == "passed"
     survived = [
         number
-        for number, (_, mutant) in enumerate(spoilt(run, spec))
+        for number, (_, mutant) in enumerate(corrupted(run, spec))
         if answer(mutant, spec, step_id).status == "passed"
     ]
     assert survived == []
 
 
 @pytest.mark.parametrize("case", NAMED)
-def test_no_spoilt_signal_goes_on_passing(case):
+def test_no_corrupted_signal_goes_on_passing(case):
     found, tried = survivors(case)
     assert tried >= 2
     assert found == []

@@ -21,18 +21,18 @@ measures = st.lists(
 @given(measures)
 def test_no_measure_of_a_verdict_contradicts_it(found):
     holds_as_predicate = all(map(holds, found))
-    told = against(found, is_passed=not holds_as_predicate)
-    limited = [each for each in told if math.isfinite(each.limit)]
+    reported = against(found, is_passed=not holds_as_predicate)
+    limited = [each for each in reported if math.isfinite(each.limit)]
     assert limited
     touching = [each for each in limited if each.value == each.limit]
     if holds_as_predicate:
         assert all(not holds(each) for each in limited if each not in touching)
     else:
         assert all(map(holds, limited))
-    assert [each.value for each in told] == [each.value for each in found]
+    assert [each.value for each in reported] == [each.value for each in found]
 
 
-def test_measures_that_speak_against_the_predicate_stay():
+def test_measures_of_a_violation_stay():
     force = Measure("contact force", 0.0, 0.0, "<=", "N", 1.0)
     assert against([force], is_passed=True) == (force,)
     hit = Measure("contact force", 4.0, 0.0, "<=", "N", 1.0)

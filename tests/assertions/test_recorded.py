@@ -33,7 +33,7 @@ READINGS = {
 
 
 @pytest.mark.parametrize("reading", READINGS.values(), ids=READINGS)
-def test_attachments_that_nobody_recorded_cannot_be_read_as_none(reading):
+def test_attachments_that_were_not_recorded_cannot_be_read_as_none(reading):
     run = guarded(replace(lift_run(), unrecorded=("attachments",)))
     with pytest.raises(NotObservable, match="what the planning scene attached was not recorded"):
         reading(run.attachments)
@@ -45,7 +45,7 @@ def test_attachments_that_were_recorded_are_read_as_they_are():
 
 
 @pytest.mark.parametrize("name", ["contact_forces", "clearances", "joint_velocities"])
-def test_a_signal_that_nobody_recorded_cannot_be_read(name):
+def test_a_signal_that_was_not_recorded_cannot_be_read(name):
     with pytest.raises(NotObservable, match="were not recorded"):
         getattr(guarded(replace(lift_run(), unrecorded=(name,))).signals, name)
 

@@ -184,6 +184,6 @@ def test_a_picture_of_earlier_says_nothing_of_the_end():
         ({"color": "red", "min_visible": 0.3}, "`min_visible` is of an object"),
     ],
 )
-def test_what_cannot_be_meant_is_refused(words, message):
+def test_impossible_words_are_refused(words, message):
     with pytest.raises(ValidationError, match=message):
         Sees(camera="eye", **words)

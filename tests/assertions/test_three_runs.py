@@ -5,7 +5,7 @@ past the limit by less than a tenth of it, and the margin says by how much, in t
 reference names.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -35,11 +35,10 @@ from harness.expectations.static import Static
 from harness.expectations.tcp_path import TcpPath
 from harness.expectations.tcp_pose import TcpPose
 from harness.expectations.tracking_error import TrackingError
-from harness.expectations.upright import Upright
 from harness.expectations.within_limits import WithinLimits
 from harness.language.language import PREDICATES
 from harness.language.poses import Pose
-from harness.recording.run import Run
+from tests.assertions.evidence import Three, collected
 from tests.assertions.picture_mutants import SUBJECTS, seen_run
 from tests.assertions.synthetic_run import (
     BOX,
@@ -58,25 +57,6 @@ from tests.assertions.synthetic_run import (
 )
 
 N = 200
-
-
-@dataclass(frozen=True, eq=False)
-class Three:
-    """An expectation on three runs.
-
-    Attributes:
-        never: A run that it says nothing of; default one in which its step was not reached.
-        by: Margin of the run that barely fails, in `unit`.
-        during: The step it is judged over, in the first two runs.
-    """
-
-    spec: object
-    satisfied: Run
-    barely: Run
-    by: float
-    unit: str
-    never: Run | None = None
-    during: str = ""
 
 
 def quantity_of(word, measure):
@@ -155,6 +135,7 @@ LINE = {"start": {"xyz": [0, 0, 0.3]}, "end": {"xyz": [0, 0, 0.5]}}
 HELD = {"attachments": [attachment("box", 45, N)]}
 
 THREE = [
+    *(three for evidence in collected().values() for three in evidence.three_runs),
     Three(
         Lifted(object="box", above=0.05), lift_run(), lift_run(height=0.049), -0.001, "m", NO_BOX
     ),
@@ -176,14 +157,6 @@ THREE = [
         make_run(object_poses={"box": heights(np.linspace(0.02, 0.069, N))}),
         -0.001,
         "m",
-        NO_BOX,
-    ),
-    Three(
-        Upright(object="box", tolerance=0.1),
-        make_run(),
-        make_run(object_poses={"box": at(N, (0, 0, 0.02), tilted(0.101))}),
-        -0.001,
-        "rad",
         NO_BOX,
     ),
     Three(

@@ -11,7 +11,7 @@ from harness.bench.results import document
 from harness.bench.trial import even, length, smoothness
 from harness.cli.main import main
 from harness.recording.store import read_run
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 PLANNERS = ["RRTConnect", "BKPIECE"]
 SCENARIO = """\
@@ -113,14 +113,14 @@ def test_one_command_prints_plots_and_keeps_the_numbers(file, tmp_path, capsys):
         (["--planners", "SBL"], "planner 'SBL' is refused"),
     ],
 )
-def test_a_planner_that_is_not_there_is_told_before_anything_is_planned(
+def test_a_planner_that_is_not_there_is_reported_before_anything_is_planned(
     file, arguments, said, capsys
 ):
     assert main(["bench", str(file), *arguments]) == 2
     assert said in capsys.readouterr().err
 
 
-def test_a_file_with_mistakes_is_told_with_its_line(tmp_path, capsys):
+def test_a_file_with_mistakes_is_reported_with_its_line(tmp_path, capsys):
     path = tmp_path / "wrong.scenario.yaml"
     path.write_text(SCENARIO.replace("move_to: mogi_down", "move_to: mogi_don"), encoding="utf-8")
     assert main(["bench", str(path), "--planners", "RRTConnect"]) == 2

@@ -10,8 +10,8 @@ def pytest_configure(config):
 
 
 @pytest.fixture
-def tell(request):
-    """Puts a row under a table's heading: `tell("heading", "name", "1.0 s", ...)`."""
+def print_row(request):
+    """Puts a row under a table's heading: `print_row("heading", "name", "1.0 s", ...)`."""
 
     def row(heading, *cells):
         request.config.stash[TABLES].setdefault(heading, []).append(cells)

@@ -8,7 +8,7 @@ import pytest
 
 from harness.recording.store import read_run
 from harness.reporting.rosbag.write import BagOptions, write_bag
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 GOAL = 20
 REPETITIONS = 3
@@ -34,14 +34,16 @@ steps:
 
 
 @pytest.mark.benchmark
-def test_a_minute_is_written_in_less_than_three_seconds(tell, tmp_path):
+def test_a_minute_is_written_in_less_than_three_seconds(print_row, tmp_path):
     file = tmp_path / "minute.scenario.yaml"
     file.write_text(MINUTE)
     result = run_case(file, report_dir=tmp_path / "run", stills=False, page=False)
     assert result.outcome == "passed", result.message
     stored = read_run(tmp_path / "run")
     heading = f"bag of {result.sim_time:.0f} simulated s, medians of {REPETITIONS}"
-    tell(heading, "storage", "processor time", "x real time", "goal", "on disk", "peak of Python")
+    print_row(
+        heading, "storage", "processor time", "x real time", "goal", "on disk", "peak of Python"
+    )
     for storage in ("mcap", "sqlite3"):
         seconds = []
         for number in range(REPETITIONS + 1):
@@ -55,7 +57,7 @@ def test_a_minute_is_written_in_less_than_three_seconds(tell, tmp_path):
         tracemalloc.stop()
         took = statistics.median(seconds[1:])
         size = sum(each.stat().st_size for each in place.iterdir())
-        tell(
+        print_row(
             heading,
             storage,
             f"{took:.2f} s",

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from harness.core.resources import data_folder
-from harness.session.run_case import run_case
 from harness.simulation import mujoco_simulator
 from harness.simulation.recording import Recording
+from tests.running import run_case
 
 FLAGSHIP = data_folder("scenarios") / "lessons/03_ur_sixteen_steps.scenario.yaml"
 PARTS = ("compile", "plan", "simulate", "judge", "write")
@@ -19,7 +19,7 @@ REPETITIONS = 3
 
 
 class Raced(Recording):
-    """Records as ever, and steps a twin of the physics with nothing but the controls beside it."""
+    """Records as ever, and steps a twin of the physics with nothing but the controls."""
 
     recorded = bare = 0.0
     steps = 0
@@ -52,7 +52,7 @@ class Raced(Recording):
 
 
 @pytest.mark.benchmark
-def test_flagship_lesson_by_parts_against_bare_physics(tell, tmp_path, monkeypatch):
+def test_flagship_lesson_by_parts_against_bare_physics(print_row, tmp_path, monkeypatch):
     run_case(FLAGSHIP, report_dir=tmp_path / "warm_up")
     runs, races = [], []
     for number in range(REPETITIONS):
@@ -68,17 +68,17 @@ def test_flagship_lesson_by_parts_against_bare_physics(tell, tmp_path, monkeypat
     bare, recorded, steps = (statistics.median(column) for column in zip(*races, strict=True))
 
     heading = f"flagship lesson, {simulated:.1f} s simulated, medians of {REPETITIONS}"
-    tell(heading, "part", "wall", "simulated s per wall s", "x bare physics")
+    print_row(heading, "part", "wall", "simulated s per wall s", "x bare physics")
 
     def row(name, wall):
-        tell(heading, name, f"{wall:.2f} s", f"{simulated / wall:.1f}", f"{wall / bare:.2f}x")
+        print_row(heading, name, f"{wall:.2f} s", f"{simulated / wall:.1f}", f"{wall / bare:.2f}x")
 
     for part in PARTS:
         row(part, statistics.median(run.wall_times[part] for run in runs))
     row("all", statistics.median(sum(run.wall_times.values()) for run in runs))
 
     heading = f"physics alone, {steps:.0f} steps in turns, medians of {REPETITIONS}"
-    tell(heading, "loop", "wall", "us a step", "x bare", "goal")
+    print_row(heading, "loop", "wall", "us a step", "x bare", "goal")
     for name, wall, goal in (("bare mj_step", bare, ""), ("recorded", recorded, f"{GOAL}x")):
         cells = (f"{wall:.2f} s", f"{1e6 * wall / steps:.1f}", f"{wall / bare:.3f}x", goal)
-        tell(heading, name, *cells)
+        print_row(heading, name, *cells)

@@ -9,8 +9,8 @@ import pytest
 from harness.core.resources import data_folder
 from harness.recording.store import StoredRun, read_run
 from harness.reporting.html.write import write_page
-from harness.session.run_case import run_case
 from tests.assertions.synthetic_run import lift_run
+from tests.running import run_case
 
 FLAGSHIP = data_folder("scenarios") / "lessons/03_ur_sixteen_steps.scenario.yaml"
 REPETITIONS = 5
@@ -41,10 +41,10 @@ def ten_minutes():
 
 
 @pytest.mark.benchmark
-def test_pages_by_size_time_to_write_and_time_until_ready(tell, visit, tmp_path):
+def test_pages_by_size_time_to_write_and_time_until_ready(print_row, visit, tmp_path):
     heading = f"report pages, medians of {REPETITIONS}"
     goals = f"{LARGEST:g} MB, {LONGEST_WRITING:g} s, {LONGEST_OPENING:g} s"
-    tell(heading, "page", "size", "written in", "of it processor", "ready in", "goals")
+    print_row(heading, "page", "size", "written in", "of it processor", "ready in", "goals")
     runs = {"flagship": flagship(tmp_path), "600 001 samples by hand": ten_minutes()}
     for name, stored in runs.items():
         page = tmp_path / "report.html"
@@ -54,4 +54,4 @@ def test_pages_by_size_time_to_write_and_time_until_ready(tell, visit, tmp_path)
             for _ in range(REPETITIONS)
         )
         times = (f"{wall:.2f} s", f"{processor:.2f} s", f"{ready:.2f} s")
-        tell(heading, name, f"{page.stat().st_size / 1e6:.2f} MB", *times, goals)
+        print_row(heading, name, f"{page.stat().st_size / 1e6:.2f} MB", *times, goals)

@@ -18,7 +18,7 @@ def command(*arguments):
 
 
 @pytest.mark.benchmark
-def test_start_up_of_help_and_check_against_a_bare_interpreter(tell):
+def test_start_up_of_help_and_check_against_a_bare_interpreter(print_row):
     seconds = median_seconds(
         {
             "python -c pass": command("-c", "pass"),
@@ -29,7 +29,7 @@ def test_start_up_of_help_and_check_against_a_bare_interpreter(tell):
     )
     bare = seconds["python -c pass"]
     heading = f"start-up, medians of {REPETITIONS}"
-    tell(heading, "command", "wall", "x bare", "goal")
+    print_row(heading, "command", "wall", "x bare", "goal")
     for name, wall in seconds.items():
         goal = f"{GOALS[name]}x" if name in GOALS else ""
-        tell(heading, name, f"{1000 * wall:.0f} ms", f"{wall / bare:.1f}x", goal)
+        print_row(heading, name, f"{1000 * wall:.0f} ms", f"{wall / bare:.1f}x", goal)

@@ -1,7 +1,7 @@
 """Suites: cases per minute, what two cores give, what isolation costs, collection, memory.
 
 Each figure is a test of its own, for a machine with two cores that does nothing else; processor
-times beside the wall times tell how busy it was. `-k` and these words choose one: `two_hundred`,
+times next to the wall times show how busy it was. `-k` and these words choose one: `two_hundred`,
 `second_core`, `isolation`, `thousand_files`, `memory_of_a_suite`, `memory_of_a_process`.
 """
 
@@ -19,7 +19,7 @@ import pytest
 
 from harness.core.resources import data_folder
 from harness.suite.cases import run_here
-from harness.suite.plan import RunRequest, planned_cases
+from harness.suite.plan import SuiteRequest, planned_cases
 from harness.suite.suite_run import How, SuiteRun
 from harness.suite.warm import Ended, WarmServer
 
@@ -40,7 +40,7 @@ randomize:
 
 
 def suite_of(file, **words):
-    return SuiteRun(planned_cases([file], RunRequest()), How(**words))
+    return SuiteRun(planned_cases([file], SuiteRequest()), How(**words))
 
 
 def picks(folder, count):
@@ -89,16 +89,16 @@ def timed(server, file, **words):
     return wall / len(suite.jobs), processor / len(suite.jobs)
 
 
-def test_two_hundred_cases_of_a_pick(tmp_path, tell):
+def test_two_hundred_cases_of_a_pick(tmp_path, print_row):
     workers = 2
     with open_server() as server:
         wall, processor = timed(server, picks(tmp_path, 200), workers=workers)
     heading = f"200 cases of a pick, {workers} workers"
-    tell(heading, "wall", "cases a minute a core", "processor time a case")
-    tell(heading, f"{200 * wall:.0f} s", f"{60 / wall / workers:.1f}", f"{processor:.2f} s")
+    print_row(heading, "wall", "cases a minute a core", "processor time a case")
+    print_row(heading, f"{200 * wall:.0f} s", f"{60 / wall / workers:.1f}", f"{processor:.2f} s")
 
 
-def test_what_a_second_core_gives(tmp_path, tell):
+def test_what_a_second_core_gives(tmp_path, print_row):
     seconds = {1: [], 2: []}
     with open_server() as server:
         for _ in range(3):  # in turns, so that a busy machine slows both alike
@@ -106,15 +106,17 @@ def test_what_a_second_core_gives(tmp_path, tell):
                 rows.append(timed(server, picks(tmp_path, 10 * workers), workers=workers))
     one, two = (tuple(map(statistics.median, zip(*rows, strict=True))) for rows in seconds.values())
     heading = "a pick on one core and on two, medians of 3"
-    tell(heading, "workers", "wall a case", "processor time a case", "efficiency", "goal")
-    tell(heading, "1", f"{one[0]:.2f} s", f"{one[1]:.2f} s", "", "")
-    tell(heading, "2", f"{two[0]:.2f} s", f"{two[1]:.2f} s", f"{one[0] / 2 / two[0]:.2f}", "0.9")
+    print_row(heading, "workers", "wall a case", "processor time a case", "efficiency", "goal")
+    print_row(heading, "1", f"{one[0]:.2f} s", f"{one[1]:.2f} s", "", "")
+    print_row(
+        heading, "2", f"{two[0]:.2f} s", f"{two[1]:.2f} s", f"{one[0] / 2 / two[0]:.2f}", "0.9"
+    )
 
 
-def test_what_isolation_costs_a_scenario(tmp_path, tell):
+def test_what_isolation_costs_a_scenario(tmp_path, print_row):
     count = 60
     file = blinks(tmp_path, count)
-    jobs = [each.job for each in planned_cases([file], RunRequest())]
+    jobs = [each.job for each in planned_cases([file], SuiteRequest())]
     next(run_here(jobs[:1]))  # imports
     wall, processor = ({"nothing": [], "here": [], "apart": []} for _ in range(2))
     with open_server() as server:
@@ -126,23 +128,23 @@ def test_what_isolation_costs_a_scenario(tmp_path, tell):
             processor[name].append(used(server) - used_before)
 
         for job in jobs:
-            suite = SuiteRun(planned_cases([file], RunRequest(cases=[job.case])), How())
+            suite = SuiteRun(planned_cases([file], SuiteRequest(cases=[job.case])), How())
             measure("nothing", lambda: in_own_process(server))
             measure("here", lambda job=job: list(run_here([job])))
             measure("apart", lambda suite=suite: suite.collect(server))
             assert suite.outcome == "passed"
     heading = f"isolation, {count} times: wall the median, processor time the mean"
-    tell(heading, "", "wall", "processor time", "goal")
+    print_row(heading, "", "wall", "processor time", "goal")
     for name, words in (("nothing", "a process that does nothing"),
                         ("here", "a scenario in this process"),
                         ("apart", "a scenario in its own")):  # fmt: skip
-        tell(heading, words, f"{1000 * statistics.median(wall[name]):.0f} ms",
+        print_row(heading, words, f"{1000 * statistics.median(wall[name]):.0f} ms",
              f"{1000 * statistics.mean(processor[name]):.0f} ms", "")  # fmt: skip
     costs = [
         1000 * (average(values["apart"]) - average(values["here"]))
         for average, values in ((statistics.median, wall), (statistics.mean, processor))
     ]
-    tell(heading, "isolation costs", *(f"{cost:.0f} ms" for cost in costs), "40 ms")
+    print_row(heading, "isolation costs", *(f"{cost:.0f} ms" for cost in costs), "40 ms")
 
 
 def collecting(folder, *options):
@@ -157,7 +159,7 @@ def collecting(folder, *options):
     return wall, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, done
 
 
-def test_collection_of_a_thousand_files(tmp_path, tell):
+def test_collection_of_a_thousand_files(tmp_path, print_row):
     plain, thousand = tmp_path / "plain", tmp_path / "thousand"
     plain.mkdir()
     thousand.mkdir()
@@ -174,11 +176,11 @@ def test_collection_of_a_thousand_files(tmp_path, tell):
     _wall, _processor, done = collecting(thousand, "-X", "importtime")
     native = re.findall(rf"\| *({'|'.join(NATIVE)})$", done.stderr.decode(), re.MULTILINE)
     heading = "pytest --collect-only, medians of 5"
-    tell(heading, "files", "wall", "processor time", "native imports", "goal")
+    print_row(heading, "files", "wall", "processor time", "native imports", "goal")
     for name, rows in seconds.items():
         wall, processor = map(statistics.median, zip(*rows, strict=True))
         ours = ("", "") if name == "one test" else (", ".join(native) or "none", "2 s")
-        tell(heading, name, f"{wall:.2f} s", f"{processor:.2f} s", *ours)
+        print_row(heading, name, f"{wall:.2f} s", f"{processor:.2f} s", *ours)
 
 
 def resident(pid):
@@ -191,12 +193,12 @@ def resident(pid):
     return int(found[1]) / 1024 if found else 0.0
 
 
-def test_memory_of_a_suite_of_two_thousand_samples(tmp_path, tell):
+def test_memory_of_a_suite_of_two_thousand_samples(tmp_path, print_row):
     suite = suite_of(blinks(tmp_path, MARKS[-1]), workers=2)
     marks, largest = {}, 0.0
     with open_server() as server:
 
-        def told(_index, _result):
+        def reported(_index, _result):
             nonlocal largest
             running = Path(f"/proc/{server.pid}/task/{server.pid}/children").read_text().split()
             largest = max(largest, *map(resident, running), 0.0)
@@ -204,25 +206,25 @@ def test_memory_of_a_suite_of_two_thousand_samples(tmp_path, tell):
                 marks[len(suite.results)] = (resident(os.getpid()), resident(server.pid), largest)
                 largest = 0.0
 
-        suite.collect(server, on_result=told)
+        suite.collect(server, on_result=reported)
     assert suite.outcome == "passed"
     heading = "memory over 2,000 samples, 2 workers"
-    tell(heading, "samples", "suite", "fork server", "largest case since the line above")
+    print_row(heading, "samples", "suite", "fork server", "largest case since the line above")
     for count, values in marks.items():
-        tell(heading, str(count), *(f"{value:.1f} MB" for value in values))
+        print_row(heading, str(count), *(f"{value:.1f} MB" for value in values))
 
 
-def test_memory_of_a_process_that_runs_two_thousand_samples(tmp_path, tell):
+def test_memory_of_a_process_that_runs_two_thousand_samples(tmp_path, print_row):
     suite = suite_of(blinks(tmp_path, MARKS[-1]), in_process=True)
     marks = {}
 
-    def told(_index, _result):
+    def reported(_index, _result):
         if len(suite.results) in MARKS:
             marks[len(suite.results)] = resident(os.getpid())
 
-    suite.collect(WarmServer(), on_result=told)
+    suite.collect(WarmServer(), on_result=reported)
     assert suite.outcome == "passed"
     heading = "memory over 2,000 samples in one process"
-    tell(heading, "samples", "resident")
+    print_row(heading, "samples", "resident")
     for count, value in marks.items():
-        tell(heading, str(count), f"{value:.1f} MB")
+        print_row(heading, str(count), f"{value:.1f} MB")

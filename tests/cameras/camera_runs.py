@@ -79,7 +79,7 @@ def every(camera="eye", sample=0, step="shot"):
 
 
 def verdict(run, objects, spec, step=""):
-    """An expectation's verdict, from the pictures that it asks for itself."""
+    """An expectation's verdict, from the pictures that it requests itself."""
     placed = [PlacedExpectation(spec, step)]
     looks = looks_of_expectations(run, placed)
     (answer,) = judge(pictures(run, objects, *looks), placed)

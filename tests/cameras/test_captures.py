@@ -116,10 +116,10 @@ def test_an_outline_goes_on_beyond_the_edge_of_the_picture():
 
 
 def test_what_stands_behind_the_camera_has_no_outline():
-    run, objects = run_with([eye()], [ball("front", (1, 0, 1)), ball("behind", (-1, 0, 1))])
+    run, objects = run_with([eye()], [ball("front", (1, 0, 1)), ball("back", (-1, 0, 1))])
     shot = pictures(run, objects, every()).captures[0]
     assert "front" in shot.outlines
-    assert "behind" not in shot.outlines
+    assert "back" not in shot.outlines
 
 
 def test_what_only_the_planner_believes_is_not_seen():

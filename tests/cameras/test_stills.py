@@ -13,10 +13,10 @@ import pytest
 from harness.cameras.picture_model import build_picture_model
 from harness.cameras.recorded_scene import poses_at
 from harness.cameras.renderer import make_renderer
-from harness.cameras.robot_poses import link_poses
 from harness.cameras.stills import overview, save_stills
 from harness.cameras.viewpoint import fit_viewpoint
 from harness.core.geometry import Mesh, Shape
+from harness.robot.forward_kinematics import robot_poses
 from tests.cameras.recorded_runs import IMAGINED, OBJECTS, RED_BOX, a_run
 
 SIZE = 640, 480
@@ -94,7 +94,7 @@ def test_one_picture_is_saved_for_each_executed_step(ur3e, tmp_path):
 
 
 def test_without_a_graphics_library_the_rays_draw_and_the_note_says_so(tmp_path):
-    """PyOpenGL told to use a library that is none of ours stands for a machine without one."""
+    """PyOpenGL with the name of a missing library stands for a machine without one."""
     program = """
 import sys
 from pathlib import Path
@@ -138,7 +138,7 @@ def test_link_poses_are_those_of_pinocchio(ur3e):
         else:
             q[joint.idx_q] = position
     pin.framesForwardKinematics(model, data, q)
-    poses = link_poses(ur3e, positions)
+    poses = robot_poses(ur3e, positions)
     for link in ur3e.link_names:
         expected = data.oMf[model.getFrameId(link)]
         np.testing.assert_allclose(poses[link].translation, expected.translation, atol=1e-9)

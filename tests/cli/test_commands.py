@@ -12,7 +12,7 @@ from harness.cli.main import main
 from harness.core.spatial import xyzw_from_wxyz
 from harness.language.step import STEPS
 from harness.recording.store import read_run
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 HEAVY = (
     "pydantic",
@@ -199,7 +199,7 @@ def test_new_writes_a_file_and_never_over_another(folder, capsys):
     assert "\nsteps:\n" in written
 
 
-def test_new_wants_the_name_that_folders_and_pytest_look_for(folder, capsys):
+def test_new_requires_the_name_that_folders_and_pytest_look_for(folder, capsys):
     assert main(["new", "first.yaml"]) == 2
     assert "try 'first.scenario.yaml'" in capsys.readouterr().err
     assert list(folder.iterdir()) == []

@@ -12,8 +12,8 @@ from harness.recording.run import Verdict
 from harness.recording.scenario_lines import MOST, line_changes
 from harness.recording.store import StoredRun
 from harness.reporting.comparison import comparison_lines
-from harness.session.run_case import run_case
 from tests.assertions.synthetic_run import make_run
+from tests.running import run_case
 
 PICK = Path(__file__).parents[2] / "scenarios/lessons/04_ur_pick_by_friction.scenario.yaml"
 
@@ -44,18 +44,18 @@ def test_equal_runs_are_the_same(runs, capsys):
     assert len(text.splitlines()) == 1
 
 
-def test_another_verdict_on_the_same_motion_is_told_with_both_margins(runs, capsys):
+def test_another_verdict_on_the_same_motion_is_reported_with_both_margins(runs, capsys):
     code, text = compared(runs, "lower", capsys)
     assert code == 1
     assert "different  the recorded signals are the same; commands or verdicts differ" in text
     assert "outcome\n  passed -> failed" in text
     assert "lifted green_cylinder, for 1.0 s, above 2.0 m: - -> failed by" in text
     assert "trajectories" not in text
-    asked = "lifted: {object: green_cylinder, above: %s, for: 1 s}"
-    assert f"scenario\n  {asked % '9 cm'} -> {asked % '2 m'}\nverdicts" in text
+    expected = "lifted: {object: green_cylinder, above: %s, for: 1 s}"
+    assert f"scenario\n  {expected % '9 cm'} -> {expected % '2 m'}\nverdicts" in text
 
 
-def test_another_speed_tells_step_signal_durations_and_margins(runs, capsys):
+def test_another_speed_reports_step_signal_durations_and_margins(runs, capsys):
     code, text = compared(runs, "faster", capsys, "--json")
     assert code == 1
     comparison = json.loads(text)["comparison"]
@@ -72,7 +72,7 @@ def test_a_folder_without_a_run_is_wrong_usage(runs, tmp_path, capsys):
     assert "is no run's folder" in capsys.readouterr().err
 
 
-def test_another_version_of_the_file_is_told_by_its_lines_and_its_steps(tmp_path, capsys):
+def test_another_version_of_the_file_is_reported_by_its_lines_and_its_steps(tmp_path, capsys):
     text = """\
 scenario: wait
 robot: {model: ur3e, base: {xyz: [0, 0, 1.02]}}

@@ -77,7 +77,7 @@ def test_an_imported_scene_means_what_the_scene_does(tmp_path, text):
     assert prepare(a_scenario(tmp_path, "a.yaml")).program.world.objects
 
 
-def test_a_scenes_meshes_are_written_beside_its_world(tmp_path):
+def test_a_scenes_meshes_are_written_next_to_its_world(tmp_path):
     source = tmp_path / "a.scene"
     source.write_text(MESHED)
     assert main(["import", "scene", str(source)]) == 0
@@ -89,7 +89,7 @@ def test_a_scenes_meshes_are_written_beside_its_world(tmp_path):
     )
 
 
-def test_nothing_is_overwritten_unless_asked_to(tmp_path, capsys):
+def test_nothing_is_overwritten_unless_requested(tmp_path, capsys):
     source = tmp_path / "a.scene"
     source.write_text(MESHED)
     (tmp_path / "part_0.stl").write_text("mine")
@@ -101,7 +101,7 @@ def test_nothing_is_overwritten_unless_asked_to(tmp_path, capsys):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.scene", "a.yaml", "part_0.stl"]
 
 
-def test_a_mistake_of_the_file_is_told_at_its_line_and_nothing_written(tmp_path, capsys):
+def test_a_mistake_of_the_file_is_reported_at_its_line_and_nothing_written(tmp_path, capsys):
     source = tmp_path / "a.scene"
     source.write_text(NEW.replace("cylinder", "cone"))
     assert main(["import", "scene", str(source)]) == 2
@@ -122,7 +122,7 @@ def test_models_are_looked_up_on_the_given_path(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("name", ["a.sdf", "none.sdf"])
-def test_a_world_file_is_called_yaml_and_a_missing_file_told(tmp_path, capsys, name):
+def test_a_world_file_is_called_yaml_and_a_missing_file_reported(tmp_path, capsys, name):
     output = ["-o", str(tmp_path / "b.sdf")] if name == "a.sdf" else []
     write(tmp_path, text_with(), "a.sdf")
     assert main(["import", "sdf", str(tmp_path / name), *output]) == 2

@@ -140,7 +140,7 @@ def test_wrong_words_are_exit_code_2_and_write_nothing(arguments, said, folder, 
     assert sorted(folder.rglob("*")) == before
 
 
-def test_nothing_is_overwritten_unless_asked(folder, capsys):
+def test_nothing_is_overwritten_unless_requested(folder, capsys):
     words = ["import", "srdf", "arm.srdf", "--robot", "arm.urdf", "-o", "three"]
     assert main(words) == 0
     (folder / "three/robot.yaml").write_text("mine")

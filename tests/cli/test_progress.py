@@ -33,7 +33,7 @@ def event(kind, sim_time, wall_time, index=0):
     return ProgressEvent(kind, index, 2, "pick", "passed", sim_time, "", wall_time)
 
 
-def told(stream, *events):
+def reported(stream, *events):
     """Lines of progress of one case."""
     lines = ProgressLines(Output(stream), ["a"], is_side_by_side=False, style=Style())
     for each in events:
@@ -43,7 +43,7 @@ def told(stream, *events):
 
 
 def test_a_step_has_its_own_speed_also_around_steps_nested_in_it():
-    lines = told(
+    lines = reported(
         Terminal(),
         event("step_started", 10.0, 0.0),
         event("step_started", 10.0, 1.0, -1),
@@ -55,7 +55,9 @@ def test_a_step_has_its_own_speed_also_around_steps_nested_in_it():
 
 
 def test_piped_a_case_is_one_line():
-    lines = told(io.StringIO(), event("step_started", 0.0, 0.0), event("step_finished", 1.0, 0.1))
+    lines = reported(
+        io.StringIO(), event("step_started", 0.0, 0.0), event("step_finished", 1.0, 0.1)
+    )
     assert len(lines) == 1
     assert lines[0].startswith("a  passed  Pick")
 

@@ -28,13 +28,13 @@ def folder(tmp_path, monkeypatch):
 
 
 def check(capsys, *arguments):
-    """Exit code and page of `robot check`, with few samples unless told."""
+    """Exit code and page of `robot check`, with few samples by default."""
     code = main(["robot", "check", "--samples", "100", *arguments])
     out, err = capsys.readouterr()
     return code, out + err
 
 
-def test_a_bundled_robot_is_told_on_one_page(capsys):
+def test_a_bundled_robot_is_reported_on_one_page(capsys):
     code, page = check(capsys, "ur3e", "--gripper", "rh_p12_rn_a", "--samples", "300")
     assert code == 0
     assert len(page.splitlines()) < 50
@@ -77,9 +77,9 @@ def test_rates_are_those_that_another_checker_finds():
 
 def test_one_json_document_has_the_numbers(capsys):
     assert main(["robot", "check", "arm.urdf", "--srdf", "arm.srdf", "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert (told["format"], told["exit_code"]) == ("armharness-robot/1", 0)
-    values = {each["about"]: each["values"] for each in told["robot"]["findings"]}
+    reported = json.loads(capsys.readouterr().out)
+    assert (reported["format"], reported["exit_code"]) == ("armharness-robot/1", 0)
+    values = {each["about"]: each["values"] for each in reported["robot"]["findings"]}
     assert values["masses"] == {"mass": 4.0, "moving_mass": 3.0, "problems": 0}
     assert values["forward kinematics"]["position_error"] < 1e-9
     assert values["forward kinematics"]["mass_in_physics"] == pytest.approx(4.0, abs=1e-9)
@@ -104,7 +104,7 @@ UNIT = INERTIAL.replace('ixx="0.01" iyy="0.01" izz="0.002"', 'ixx="1" iyy="1" iz
     ],
     ids=["triangle", "states"],
 )  # fmt: skip
-def test_what_is_wrong_is_exit_code_1_and_told(old, new, said, folder, monkeypatch, capsys):
+def test_what_is_wrong_is_exit_code_1_and_reported(old, new, said, folder, monkeypatch, capsys):
     assert old in URDF
     write_arm(folder, URDF.replace(old, new), SRDF.replace('link2="wrist"', 'link2="tool"'))
     monkeypatch.setattr(robot_check, "IK_SAMPLES", 5)
@@ -124,7 +124,7 @@ def test_what_is_wrong_is_exit_code_1_and_told(old, new, said, folder, monkeypat
         (URDF.replace('"tool"/>', f'"tool">{SHAPE}</link>', 1), "no <inertial>: tool"),
     ],
 )  # fmt: skip
-def test_what_looks_doubtful_is_told_and_is_no_failure(urdf, said, folder, monkeypatch, capsys):
+def test_what_looks_doubtful_is_reported_and_is_no_failure(urdf, said, folder, monkeypatch, capsys):
     write_arm(folder, urdf)
     monkeypatch.setattr(robot_check, "IK_SAMPLES", 5)
     code, page = check(capsys, "arm.urdf", "--srdf", "arm.srdf")
@@ -217,7 +217,7 @@ def test_without_srdf_pairs_are_proposed_and_written(folder, capsys):
     assert "no SRDF" not in with_it
 
 
-def test_links_that_touch_always_or_at_the_start_are_told_apart(folder, capsys):
+def test_links_that_touch_always_or_at_the_start_are_distinguished(folder, capsys):
     box = '<collision><origin xyz="{}"/><geometry><box size="{}"/></geometry></collision>'
     base = f'"base_link">{INERTIAL}'
     above = base + box.format("0 0 0.42", "0.05 0.05 0.05")
@@ -259,7 +259,7 @@ def test_a_picture_is_drawn_on_request(folder, capsys):
         (["check", "ur3f"], "robot.model: 'ur3f' is not known; did you mean 'ur3'? known are"),
         (["check", "harm.urdf"], "there is no file harm.urdf; did you mean 'arm.urdf'?"),
         (["check", "arm.urdf", "--srdf", "a.srdf"], "robot.srdf: there is no file a.srdf"),
-        (["check", "ur3e", "--srdf", "arm.srdf"], "robot.srdf requires a robot's file"),
+        (["check", "ur3e", "--srdf", "arm.srdf"], "robot.srdf: it requires a robot's file"),
         (["check", "arm.urdf", "--write-srdf", "arm.srdf"], "'arm.srdf' is there already; --force"),
         (["check", "arm.urdf", "--image", "arm.gif"], "in .png or .jpg or .jpeg, not 'arm.gif'"),
         (["show", "arm.urdf", "--state", "hom"], "there is no state 'hom'; there are no states"),
@@ -277,13 +277,13 @@ def test_wrong_words_are_exit_code_2_and_write_nothing(arguments, said, folder, 
     assert sorted(folder.iterdir()) == before
 
 
-def test_a_folder_that_is_no_robot_is_told_what_it_lacks(folder, capsys):
+def test_a_folder_that_is_no_robot_is_reported_what_it_lacks(folder, capsys):
     (folder / "cell").mkdir()
     assert main(["robot", "check", "cell"]) == 2
     assert "'cell' is not known; cell has no robot.yaml; known are" in capsys.readouterr().err
 
 
-def test_a_robot_that_is_never_free_is_told_so(capsys):
+def test_a_robot_that_is_never_free_is_reported(capsys):
     code, page = check(capsys, "ur3", "--samples", "1")
     assert code == 1
     assert "✗ reach: no configuration is free of self-collision" in page

@@ -37,7 +37,7 @@ def finished(status, message="", index=2, total=16):
     return ProgressEvent(kind, index, total, "move_to mogi_home", status, 4.25, message)
 
 
-def test_colours_are_for_terminals_that_want_them(monkeypatch):
+def test_colours_are_for_terminals_that_show_them(monkeypatch):
     monkeypatch.delenv("NO_COLOR", raising=False)
     monkeypatch.setenv("TERM", "xterm")
     assert Style.of(Terminal()) == COLORED
@@ -62,16 +62,16 @@ def test_a_step_is_one_line_with_number_time_and_cause():
     assert step_running(finished("")) == "     3/16  move_to mogi_home ...  t=4.25 s"
 
 
-def test_speed_is_told_of_steps_and_cases_that_moved():
+def test_speed_is_reported_of_steps_and_cases_that_moved():
     fast = step_done(replace(finished("passed"), speed=12.4))
     assert fast.endswith("  t=4.25 s  12x real time")
     assert step_done(replace(finished("passed"), speed=0.84)).endswith("  0.8x real time")
     assert step_done(replace(finished("passed"), speed=0.0)).endswith("  t=4.25 s")
-    told = case_line(result(sim_time=9.0, wall_times={"plan": 0.5, "simulate": 1.0}))
-    assert "9.0 s simulated at 6.0x real time" in told
+    reported = case_line(result(sim_time=9.0, wall_times={"plan": 0.5, "simulate": 1.0}))
+    assert "9.0 s simulated at 6.0x real time" in reported
 
 
-def test_a_failed_step_is_told_with_place_code_report_and_command():
+def test_a_failed_step_is_reported_with_place_code_report_and_command():
     step = StepLine(
         "s", "lin", "lin to above", "failed", "NO_IK_SOLUTION", "0.4 m out of reach", line=14
     )
@@ -87,7 +87,7 @@ def test_a_failed_step_is_told_with_place_code_report_and_command():
     ]
 
 
-def test_a_failed_expectation_is_told_with_every_number():
+def test_a_failed_expectation_is_reported_with_every_number():
     measure = Measure("height above start", 0.012, 0.05, ">=", "m", 7.2, "red_box")
     verdict = Verdict(
         "lifted red_box above 5 cm",
@@ -123,7 +123,7 @@ def test_an_invalid_file_shows_the_lines_and_not_their_summary_again():
     ]
 
 
-def test_an_error_tells_its_message():
+def test_an_error_reports_its_message():
     text = failure(result("error", message="its process was ended by SIGSEGV"))
     assert "ERROR a.scenario.yaml: Pick\n  its process was ended by SIGSEGV" in text
 
@@ -156,7 +156,7 @@ def test_the_summary_counts_the_gravest_first():
     assert summary([], 0.0).startswith("nothing was run")
 
 
-def test_repeats_tell_whether_the_digests_are_the_same():
+def test_repeats_report_whether_the_digests_are_the_same():
     assert repeats([result(digest="ab"), result(digest="ab")]) == "ok 2 runs, one digest: ab"
     differ = repeats([result(digest="ab"), result(digest="cd"), result("error")])
     assert differ == "no 3 runs, 3 digests: 1 x ab; 1 x cd; 1 x no digest (error)"

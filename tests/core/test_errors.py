@@ -22,7 +22,7 @@ def test_the_caret_stands_under_the_place():
     ]
 
 
-def test_the_caret_stands_under_the_place_behind_tabs_and_wide_characters():
+def test_the_caret_stands_under_the_place_after_tabs_and_wide_characters():
     lines = str(Problem("a.yaml", 1, 4, "x", "", "\t日本x", 1)).splitlines()
     assert lines[1] == "    1 |     日本x"
     assert lines[2] == "      |         ^"

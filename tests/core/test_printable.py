@@ -87,7 +87,7 @@ def test_a_line_is_broken_at_spaces_to_fit_and_loses_no_word(line, columns):
         assert columns_of(part) <= columns or " " not in part.strip()
 
 
-def test_colours_take_no_room_and_a_command_goes_on_behind_a_backslash():
+def test_colours_take_no_room_and_a_command_goes_on_after_a_backslash():
     assert columns_of(f"{ESC}[31mab{ESC}[0m") == 2
     assert columns_of(f"{ESC}]8;;file:///x{ESC}\\ab{ESC}]8;;{ESC}\\") == 2
     assert fitted("  again:  run a b", 16, " \\") == ["  again:  run \\", "      a b"]

@@ -34,7 +34,7 @@ def install(folder, package, entry, source):
     (info / "entry_points.txt").write_text(f"[harness.plugins]\n{module} = {entry}\n")
 
 
-def ask(folder, code, **environment):
+def output_of(folder, code, **environment):
     """What Python code prints in a process of its own, whose path has a folder more."""
     head = (
         f"import sys, os; sys.path.insert(0, {str(folder)!r}); os.environ.update({environment})\n"
@@ -54,7 +54,7 @@ def test_names_of_installed_packages_come_with_their_package(tmp_path):
     install(tmp_path, "remarks-for-arms", "remarks", PLUGIN.format(name="remark"))
     install(tmp_path, "one-class", "single:Remark", PLUGIN.format(name="other"))
     code = "r = registry('reporter'); print([(n, r.package_of(n), r[n].__name__) for n in r])"
-    assert ask(tmp_path, code) == [
+    assert output_of(tmp_path, code) == [
         "[('other', 'one-class', 'Remark'), ('remark', 'remarks-for-arms', 'Remark')]"
     ]
 
@@ -69,7 +69,7 @@ def test_a_name_of_two_packages_is_refused_with_both(tmp_path):
         except PluginError as error:
             print(error)
     """
-    said = ask(tmp_path, code)
+    said = output_of(tmp_path, code)
     message = "plug-in second: two packages provide the reporter `remark`: `first` and `second`"
     assert [line for line in said if line.startswith("plug-in")] == [message, message]
 
@@ -83,7 +83,7 @@ def test_a_package_that_cannot_be_imported_is_named_where_a_name_is_missing(tmp_
     except LookupError as error:
         print(error.args[0])
     """
-    assert ask(tmp_path, code) == [
+    assert output_of(tmp_path, code) == [
         "there is no reporter 'remarkk'; did you mean 'remark'? known: remark; the plug-ins of the"
         " package `broken-for-arms` cannot be loaded: ModuleNotFoundError: No module named"
         " 'no_such_module'"
@@ -95,10 +95,10 @@ def test_a_named_module_is_loaded_here_and_in_later_processes(tmp_path, by_path)
     (tmp_path / "remarks.py").write_text(PLUGIN.format(name="remark"), encoding="utf-8")
     module = str(tmp_path / "remarks.py") if by_path else "remarks"
     code = f"load_plugin({module!r}); print(dict(registry('reporter')), os.environ[VARIABLE])"
-    (said,) = ask(tmp_path, code)
+    (said,) = output_of(tmp_path, code)
     assert said.startswith("{'remark': <class 'remarks.Remark'>}")
     code = "print(registry('reporter').package_of('remark'))"
-    assert ask(tmp_path, code, HARNESS_PLUGINS=module) == ["remarks"]
+    assert output_of(tmp_path, code, HARNESS_PLUGINS=module) == ["remarks"]
 
 
 def test_anything_registers_under_a_given_kind_and_name(tmp_path):
@@ -112,7 +112,7 @@ def test_anything_registers_under_a_given_kind_and_name(tmp_path):
         except PluginError as error:
             print(error.reason)
     """
-    assert ask(tmp_path, code) == [
+    assert output_of(tmp_path, code) == [
         "True",
         "<built-in function len> has no known `plugin_kind`",
         "<built-in function len> has no known `plugin_kind`",
@@ -132,7 +132,7 @@ def test_built_ins_are_found_by_their_modules_and_imported_on_demand(tmp_path):
     print("lift" in r, "words.lift" in sys.modules)
     print(list(r), "words.in_" in sys.modules)
     """
-    assert ask(tmp_path, code) == ["True False", "['in', 'lift'] False"]
+    assert output_of(tmp_path, code) == ["True False", "['in', 'lift'] False"]
 
 
 def test_a_built_in_name_cannot_be_taken():

@@ -46,7 +46,7 @@ def test_a_yaw_turns_x_to_y():
     assert turned == pytest.approx([1, 3, 3])
 
 
-def test_the_orders_of_quaternions_are_told_apart():
+def test_the_orders_of_quaternions_are_distinguished():
     assert list(wxyz_from_xyzw((1, 2, 3, 4))) == [4, 1, 2, 3]
     assert list(xyzw_from_wxyz((4, 1, 2, 3))) == [1, 2, 3, 4]
 

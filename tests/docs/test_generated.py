@@ -6,27 +6,30 @@ import re
 import jsonschema
 import pytest
 
+from docs import ROOT
+from docs.generate import GENERATED, RENEW
 from harness.cli.main import main
 from harness.core.resources import data_folder
 from harness.language.files.source import Source
 from harness.language.files.yaml_file import parse_yaml
-from tests.docs.generated import RENEW, ROOT, generated
 
 FILES = [
     *sorted(data_folder("scenarios").rglob("*.scenario.yaml")),
     *sorted(data_folder("worlds").glob("*.yaml")),
 ]
-REFERENCES = [
-    name for name in generated() if name.startswith("scenarios/") and name.endswith(".md")
-]
+REFERENCES = [f"docs/reference/{name}.md" for name in ("scenario", "steps", "expectations")]
 MODELINE = re.compile(r"# yaml-language-server: \$schema=(\S+)\n")
 
 
-@pytest.mark.parametrize("name", generated())
+DECIMALS = re.compile(r"\d+\.\d+")
+
+
+@pytest.mark.parametrize("name", GENERATED)
 def test_a_generated_file_is_current(name):
-    said = generated()[name]
-    written = (ROOT / name).read_text(encoding="utf-8")
-    assert written == said, f"{name} is not what the models say; renew it: {RENEW}"
+    written, made = (ROOT / name).read_text(encoding="utf-8"), GENERATED[name]()
+    if name == "README.md":  # it shows a run, whose numbers depend on the processor family
+        written, made = DECIMALS.sub("#", written), DECIMALS.sub("#", made)
+    assert written == made, f"{name} is out of date; write it again: {RENEW}"
 
 
 def test_the_schema_command_writes_the_committed_schema(tmp_path):
@@ -36,7 +39,7 @@ def test_the_schema_command_writes_the_committed_schema(tmp_path):
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
-def test_a_bundled_file_names_a_schema_beside_it_and_validates(path):
+def test_a_bundled_file_names_a_schema_next_to_it_and_validates(path):
     text = path.read_text(encoding="utf-8")
     named = MODELINE.match(text)
     assert named, f"{path.name} does not begin with the line that editors read"
@@ -48,16 +51,7 @@ def test_a_bundled_file_names_a_schema_beside_it_and_validates(path):
 
 
 @pytest.mark.parametrize("name", REFERENCES)
-def test_a_reference_pages_links_lead_to_its_headings(name):
-    text = generated()[name]
-    headings = {line.lstrip("# `").rstrip("`").lower() for line in re.findall("(?m)^#+ .*", text)}
-    links = set(re.findall(r"\]\(#([^)]+)\)", text))
-    assert links
-    assert links <= headings
-
-
-@pytest.mark.parametrize("name", REFERENCES)
 def test_a_reference_page_says_what_every_required_key_means(name):
-    rows = re.findall(r"(?m)^\| (`\w+`) \|.*\| required \| (.*?) ?\|$", generated()[name])
+    rows = re.findall(r"(?m)^\| (`\w+`) \|.*\| required \| (.*?) ?\|$", GENERATED[name]())
     assert rows
     assert not [key for key, meaning in rows if not meaning and not re.fullmatch("`i..`", key)]

@@ -7,8 +7,8 @@ import pytest
 from harness.recording.store import read_run
 from harness.session.check import check_file
 from harness.session.rejudge import judge_run
-from harness.session.run_case import run_case
 from tests.engine.front_door import file_of, problems, run
+from tests.running import run_case
 
 BLOCKS = Path(__file__).parents[2] / "scenarios/blocks/repeat_parallel_include.scenario.yaml"
 UP = "move_relative: {direction: {xyz: [0, 0, 1]}, distance: 0.02}"
@@ -29,8 +29,8 @@ def test_every_time_through_has_records_ids_and_seeds_of_its_own(blocks):
         "large.up#1", "large.down#1", "large.up#2", "large.down#2",
     ]  # fmt: skip
     assert len({step.path for step in saved.steps}) == len(saved.steps)
-    asked = {verdict.step for verdict in result.verdicts}
-    assert {"up#1", "up#2"} <= asked
+    judged = {verdict.step for verdict in result.verdicts}
+    assert {"up#1", "up#2"} <= judged
 
 
 def test_arm_and_gripper_move_at_once(blocks):
@@ -54,7 +54,7 @@ def test_the_resolved_file_holds_the_included_steps_and_runs_to_the_same_digest(
     ]
 
 
-def test_what_is_wrong_in_an_included_file_is_told_there(tmp_path):
+def test_what_is_wrong_in_an_included_file_is_reported_there(tmp_path):
     (tmp_path / "part.steps.yaml").write_text(
         "params: {a: 1}\nsteps:\n  - move_two: home\n  - wait: ${b}\n", encoding="utf-8"
     )

@@ -65,7 +65,7 @@ def test_two_cameras_have_two_names(tmp_path):
     ]
 
 
-def test_a_camera_of_the_world_on_a_link_that_this_robot_has_not_is_told_at_the_world(tmp_path):
+def test_a_camera_of_the_world_on_a_link_that_this_robot_has_not_is_reported_at_the_world(tmp_path):
     (tmp_path / "cell.yaml").write_text("world: cell\ncameras: [{name: a, pose: {frame: tool0}}]\n")
     ((line, message),) = problems(tmp_path, "- wait: 1 s", robot=OM, world="cell.yaml")
     assert line == 3
@@ -97,7 +97,7 @@ def test_numbers_that_make_no_camera_are_refused_at_their_line(tmp_path, camera,
     assert message in said
 
 
-def test_a_camera_of_a_robots_folder_on_an_unknown_link_is_told_with_the_nearest(tmp_path):
+def test_a_camera_of_a_robots_folder_on_an_unknown_link_is_reported_with_the_nearest(tmp_path):
     folder = data_folder("robots") / OM
     for file in folder.iterdir():
         text = file.read_text()

@@ -28,7 +28,7 @@ TEN = """
 """
 
 
-def test_every_name_that_robot_and_world_do_not_have_is_told_with_its_line(tmp_path):
+def test_every_name_that_robot_and_world_do_not_have_is_reported_with_its_line(tmp_path):
     found = problems(tmp_path, TEN, world="lesson_ur", rest="expect: [{lifted: nothing}]")
     expected = {
         5: "'elbow'",
@@ -42,7 +42,7 @@ def test_every_name_that_robot_and_world_do_not_have_is_told_with_its_line(tmp_p
         15: "'later'",
         20: "'same'",
         21: "'opn'",
-        22: "the steps up to here ask for 702 s",
+        22: "the steps up to here request 702 s",
         23: "'nothing'",
     }
     assert [line for line, _ in found] == list(expected)
@@ -79,7 +79,7 @@ def test_every_name_that_robot_and_world_do_not_have_is_told_with_its_line(tmp_p
         ),
     ],
 )
-def test_what_is_said_at_the_wrong_place_is_told(tmp_path, steps, message):
+def test_what_is_said_at_the_wrong_place_is_reported(tmp_path, steps, message):
     ((_, found),) = problems(tmp_path, steps, world="lesson_ur")
     assert found.startswith(message)
 
@@ -91,7 +91,7 @@ def test_a_robot_without_a_gripper_can_grasp_nothing(tmp_path):
     assert all("needs a gripper, and ur3e has none" in message for _, message in found)
 
 
-def test_objects_with_one_name_are_told_in_scenario_and_world(tmp_path):
+def test_objects_with_one_name_are_reported_in_scenario_and_world(tmp_path):
     (tmp_path / "own.yaml").write_text(
         "world: own\nobjects:\n- {name: cup, sphere: {radius: 0.1}}\n"
         "- {name: cup, plane: {}}\n- {name: pot, mesh: {file: pot.stl}, static: true}\n"
@@ -103,13 +103,13 @@ def test_objects_with_one_name_are_told_in_scenario_and_world(tmp_path):
         (
             3,
             "world 'own': two objects are called 'cup'; object 'cup': a plane has no mass: say"
-            " `static: true`; object 'pot': there is no mesh file 'pot.stl' beside the file",
+            " `static: true`; object 'pot': there is no mesh file 'pot.stl' next to the file",
         ),
         (8, "another object is called 'ball'"),
     ]
 
 
-def test_a_robots_mistake_is_told_at_its_own_key(tmp_path):
+def test_a_robots_mistake_is_reported_at_its_own_key(tmp_path):
     robot = "\n  model: ur3e\n  named_states: {arm: {mine: {elbow_joint: 0}}}"
     ((line, message),) = problems(tmp_path, "- wait: 1", robot=robot)
     assert line == 4
@@ -154,7 +154,7 @@ def test_a_step_overrides_the_scenarios_planning_key_by_key(tmp_path):
         ("mug.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "mug.obj is flat"),
     ],
 )
-def test_a_mesh_that_cannot_be_used_is_told_at_its_object(tmp_path, file, content, reason):
+def test_a_mesh_that_cannot_be_used_is_reported_at_its_object(tmp_path, file, content, reason):
     (tmp_path / file).write_text(content)
     rest = f"objects:\n- {{name: mug, mesh: {{file: {file}}}, static: true}}\n"
     ((line, message),) = problems(tmp_path, "- wait: 1", rest=rest)
@@ -162,7 +162,7 @@ def test_a_mesh_that_cannot_be_used_is_told_at_its_object(tmp_path, file, conten
     assert message.startswith(f"object 'mug': {reason}")
 
 
-def test_a_planner_is_asked_for_what_it_takes_before_anything_is_planned(tmp_path):
+def test_a_planners_parameters_are_checked_before_anything_is_planned(tmp_path):
     """A step's planner gets the scenario's parameters, where it has none of its own."""
     found = problems(
         tmp_path,

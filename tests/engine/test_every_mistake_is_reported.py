@@ -39,12 +39,12 @@ samples: 3
 expect_rate: {at_least: 0.5}
 """
 MISTAKES = {
-    "a robot that nobody has": ("model: ur3e", "model: ur3§x", "ur3x"),
+    "a robot that does not exist": ("model: ur3e", "model: ur3§x", "ur3x"),
     "a gripper's key": (", gripper:", ", §griper:", "unknown key `griper`"),
     "a unit in the robot's base": ("1.02]", "§1 kg]", "`1 kg` is a mass"),
-    "a world that nobody has": ("world: lesson_ur", "world: §lesson_or", "lesson_or"),
+    "a world that does not exist": ("world: lesson_ur", "world: §lesson_or", "lesson_or"),
     "a seed below 0": ("seed: 3", "seed: §-3", "`seed` must be at least 0"),
-    "a parameter that nobody set": ("${lift}", "${lft}", "no parameter is called `lft`"),
+    "a parameter without a value": ("${lift}", "${lft}", "no parameter is called `lft`"),
     "an unknown planner": ("RRTConnect", "§RRTConect", "RRTConect"),
     "a scaling factor above 1": ("factor: 0.2", "factor: §1.2", "must be at most 1"),
     "a planner of a step": ("RRTstar", "§RRTstr", "RRTstr"),
@@ -70,8 +70,8 @@ MISTAKES = {
     "a colour": ("mass: 0.2", "mass: 0.2, color: §rd", "no colour is called `rd`"),
 }
 DEPENDENT = {
-    "a robot that nobody has": {"a joint that is not there", "a gripper's key"},
-    "a world that nobody has": {"an object that is not there"},
+    "a robot that does not exist": {"a joint that is not there", "a gripper's key"},
+    "a world that does not exist": {"an object that is not there"},
 }
 """What cannot be known once the first is wrong: whose names there are."""
 
@@ -95,14 +95,14 @@ def reported(folder, names):
     with pytest.raises(SpecError) as caught:
         prepare(path)
     hidden = set().union(*(DEPENDENT.get(name, set()) for name in names))
-    if {"a robot that nobody has", "a world that nobody has"} & set(names):
+    if {"a robot that does not exist", "a world that does not exist"} & set(names):
         hidden |= DEPENDS_ON_BOTH
     return [MISTAKES[name][2] for name in names if name not in hidden], caught.value.problems
 
 
 def missed(folder, names):
-    wanted, problems = reported(folder, names)
-    return [word for word in wanted if not any(word in each.message for each in problems)]
+    expected, problems = reported(folder, names)
+    return [word for word in expected if not any(word in each.message for each in problems)]
 
 
 def test_without_a_mistake_the_file_is_right(tmp_path):

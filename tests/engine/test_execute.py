@@ -51,7 +51,7 @@ def test_a_step_made_of_others_may_be_expected_to_fail_inside(tmp_path):
     assert check(tmp_path, steps).predicted == ()
 
 
-def test_check_tells_each_failure_once_and_goes_on_to_the_next_step(tmp_path):
+def test_check_reports_each_failure_once_and_goes_on_to_the_next_step(tmp_path):
     steps = f"""
     - pick: far
     - allow_collisions:

@@ -49,7 +49,7 @@ def test_a_mesh_of_a_box_weighs_what_the_box_weighs(tmp_path, low, high, scale, 
     assert mesh.inertia == pytest.approx(box.inertia, rel=1e-6, abs=1e-12)
 
 
-def test_a_mesh_beside_a_box_moves_the_centre_of_mass(tmp_path):
+def test_a_mesh_next_to_a_box_moves_the_centre_of_mass(tmp_path):
     file = box_file(tmp_path, (0, 0, 0), (0.1, 0.1, 0.1))
     part = resolved(
         tmp_path,

@@ -64,7 +64,7 @@ def test_an_arc_needs_one_of_interim_and_center(tmp_path):
     assert message == "an arc has exactly one of `interim` and `center`"
 
 
-def test_check_tells_what_stops_a_path_without_physics(tmp_path):
+def test_check_reports_what_stops_a_path_without_physics(tmp_path):
     steps = f"""
     - move_to: {START}
     - circ: {{position: [0.25, -0.1, 0.22], interim: [0.25, -0.135, 0.22]}}

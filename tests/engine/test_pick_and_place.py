@@ -136,7 +136,7 @@ def test_what_stays_attached_to_the_end_is_not_released(tmp_path):
 
 
 def test_a_welded_grasp_says_so_in_its_verdicts(tmp_path):
-    """Without friction nothing could be lifted: the report must tell what held it."""
+    """Without friction nothing could be lifted: the report must show what held it."""
     result, _ = run(
         tmp_path,
         """

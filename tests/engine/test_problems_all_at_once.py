@@ -1,4 +1,4 @@
-"""Mistakes of every kind in one file are told at once, each at its place, none twice."""
+"""Mistakes of every kind in one file are reported at once, each at its place, none twice."""
 
 import pytest
 
@@ -50,7 +50,7 @@ def problems(tmp_path, text):
     return caught.value.problems
 
 
-def test_words_values_and_names_that_are_wrong_are_told_together(tmp_path):
+def test_words_values_and_names_that_are_wrong_are_reported_together(tmp_path):
     found = problems(tmp_path, MISTAKES)
     assert [(problem.line, problem.column) for problem in found] == [place[:2] for place in PLACES]
     for problem, (_, _, word) in zip(found, PLACES, strict=True):
@@ -58,13 +58,13 @@ def test_words_values_and_names_that_are_wrong_are_told_together(tmp_path):
         assert problem.source_line
 
 
-def test_a_wrong_robot_and_a_wrong_world_are_told_together(tmp_path):
+def test_a_wrong_robot_and_a_wrong_world_are_reported_together(tmp_path):
     text = "scenario: Two\nrobot: ur3x\nworld: lesson_or\nsteps:\n  - wait: 1 s\n"
     found = problems(tmp_path, text)
     assert [problem.line for problem in found] == [2, 3]
 
 
-def test_what_follows_from_another_mistake_is_not_told(tmp_path):
+def test_what_follows_from_another_mistake_is_not_reported(tmp_path):
     text = """\
 scenario: One
 robot: open_manipulator_x
@@ -95,7 +95,7 @@ expect:
 """
 
 
-def test_a_mistake_in_a_formula_is_told_at_its_word(tmp_path):
+def test_a_mistake_in_a_formula_is_reported_at_its_word(tmp_path):
     path = tmp_path / "formulas.scenario.yaml"
     path.write_text(FORMULAS)
     with pytest.raises(SpecError) as caught:
@@ -113,7 +113,7 @@ def test_a_mistake_in_a_formula_is_told_at_its_word(tmp_path):
 
 
 @pytest.mark.parametrize("expected", ["tcp_path", "always: tcp_path", "tcp_path: {for: 1 s}"])
-def test_the_path_of_no_step_is_told_before_anything_runs(expected, tmp_path):
+def test_the_path_of_no_step_is_reported_before_anything_runs(expected, tmp_path):
     text = "scenario: Path\nrobot: ur3e\nsteps:\n  - ptp: {joints: {elbow_joint: 1}}\n    id: go\n"
     (tmp_path / "whole.scenario.yaml").write_text(f"{text}expect:\n  - {expected}\n")
     with pytest.raises(SpecError) as caught:

@@ -35,7 +35,7 @@ def test_a_distance_may_be_little_less_than_with_the_arm_at_its_commands():
     actual[90] = 0.0175
     run = clearance_run(actual)
     spec = Clearance(between=("robot", "box"), max_below_plan=0.003)
-    assert verdict(run, spec).status == "not observable", "nobody recorded what was planned"
+    assert verdict(run, spec).status == "not observable", "the plan was not recorded"
     run = changed(run, planned_clearances={("robot", "box"): planned})
     assert verdict(run, spec).margin == pytest.approx(0.0005)
     answer = verdict(run, Clearance(between=("robot", "box"), max_below_plan=0.002))

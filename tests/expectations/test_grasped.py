@@ -58,7 +58,7 @@ def test_turning_in_the_hand_counts():
     assert answer.margin == pytest.approx(-0.01)
 
 
-def test_too_little_force_on_one_side_is_no_grasp_and_both_are_told():
+def test_too_little_force_on_one_side_is_no_grasp_and_both_are_reported():
     run = lift_run()
     weak = {
         **run.signals.contact_forces,

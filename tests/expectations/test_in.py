@@ -33,8 +33,8 @@ def test_what_is_inside_the_outline_of_a_container_is_in_it():
     spec = In(object="box", container="bin")
     answer = verdict(in_bin(), spec)
     assert (answer.status, answer.unit) == ("passed", "rad"), "the lean is the tighter of the two"
-    beside = verdict(in_bin(x=0.101), spec)
-    assert (beside.status, beside.unit, beside.margin) == ("failed", "m", pytest.approx(-0.001))
+    outside = verdict(in_bin(x=0.101), spec)
+    assert (outside.status, outside.unit, outside.margin) == ("failed", "m", pytest.approx(-0.001))
     assert verdict(in_bin(box=(0, 0, 0.099)), spec).margin == pytest.approx(0.001)
     assert verdict(in_bin(box=(0, 0, 0.101)), spec).status == "failed", "above its rim"
 

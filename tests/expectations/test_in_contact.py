@@ -7,7 +7,7 @@ from harness.expectations.never import Never
 from tests.assertions.synthetic_run import force, make_run, verdict
 
 
-def test_contact_counts_from_the_asked_force_on():
+def test_contact_counts_from_the_required_force_on():
     run = make_run(contact_forces={("left_finger", "box"): force(200, (30, 40), value=2.0)})
     spec = InContact(between=("box", "gripper"), min_force=2.0)
     answer = verdict(run, spec)

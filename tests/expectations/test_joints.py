@@ -13,7 +13,7 @@ def positions(shoulder, finger=0.0):
     return np.tile([shoulder, finger], (200, 1))
 
 
-def test_joints_and_named_targets_tell_the_worst_joint():
+def test_joints_and_named_targets_report_the_worst_joint():
     run = make_run(joint_positions=positions(0.009))
     assert verdict(run, NamedTarget(state="home")).margin == pytest.approx(0.001)
     assert verdict(run, NamedTarget(state="home", tolerance=0.008)).status == "failed"

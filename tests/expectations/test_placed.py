@@ -67,9 +67,9 @@ def test_a_box_at_rest_on_the_table_is_placed():
             "orientation error 1.1 deg",
         ),
     ],
-    ids=["hovering", "elsewhere", "touched", "attached", "beside", "leaning", "turned"],
+    ids=["hovering", "elsewhere", "touched", "attached", "next to it", "leaning", "turned"],
 )
-def test_what_is_not_quite_placed_is_told_why(changes, spec, said):
+def test_what_is_not_quite_placed_is_reported_why(changes, spec, said):
     shelf = thing("shelf", Box((0.3, 0.3, 0.02)), static=True, pose=(2, 0, 0, 1, 0, 0, 0))
     run = make_run(**{"objects": (TABLE, BOX, shelf), "contact_forces": STANDING, **changes})
     answer = verdict(run, spec)

@@ -128,7 +128,7 @@ def test_it_is_checked_explained_listed_and_in_the_schema(site, scenario):
 
 def test_it_is_on_the_reference_page(site):
     code = (
-        "from harness.language.expectations_reference import expectations_reference;"
+        "from docs.generators.expectations import expectations_reference;"
         "print(expectations_reference())"
     )
     section = python("-c", code, site=site).split("\n## `tcp_height`\n")[1].split("\n## ")[0]

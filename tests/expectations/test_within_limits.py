@@ -14,7 +14,7 @@ def positions(shoulder, finger=0.0):
     return np.tile([shoulder, finger], (200, 1))
 
 
-def test_limits_are_inclusive_and_the_worst_joint_is_told():
+def test_limits_are_inclusive_and_the_worst_joint_is_reported():
     at_limit = make_run(
         joint_positions=positions(1.0), joint_efforts=positions(10.0), joint_velocities=positions(2)
     )

@@ -1,4 +1,4 @@
-"""Recordings as other programs make them, written by Foxglove's writer from a run of ours.
+"""Recordings as other programs make them, written by Foxglove's writer from a harness run.
 
 A student's Gazebo with MoveIt: the arm's and the gripper's controllers publish joint states of
 their own, in alphabetical order, without the joints that follow others; Gazebo's poses come over

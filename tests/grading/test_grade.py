@@ -26,7 +26,6 @@ from harness.recording.link_poses import link_poses
 from harness.recording.run import Signals, Verdict
 from harness.recording.store import read_run
 from harness.reporting.rosbag.write import BagOptions, write_bag
-from harness.session.run_case import run_case
 from tests.grading.recordings import (
     GAZEBO_STARTED,
     POSES,
@@ -40,6 +39,7 @@ from tests.grading.recordings import (
     transform,
     vector,
 )
+from tests.running import run_case
 
 SCENARIO = data_folder("scenarios") / "grading/pick_and_place.scenario.yaml"
 GAZEBO = BagTopics(objects=(POSES,))
@@ -75,7 +75,7 @@ def status_of(grade, word):
 
 
 @pytest.mark.parametrize("kind", ["mcap", "sqlite3"])
-def test_a_bag_of_ours_gets_the_verdicts_of_its_run_wherever_they_can_be_seen(
+def test_a_bag_of_the_harness_gets_the_verdicts_of_its_run_wherever_they_can_be_seen(
     stored, tmp_path, kind
 ):
     write_bag(tmp_path / "bag", stored, BagOptions(storage=kind))
@@ -119,7 +119,7 @@ def test_a_students_recording_earns_what_it_shows(recording, tmp_path):
     assert grade.notes == ()
 
 
-def test_what_is_worth_nothing_does_not_spoil_a_full_grade(recording, tmp_path, capsys):
+def test_what_is_worth_nothing_does_not_lower_a_full_grade(recording, tmp_path, capsys):
     bag = recording.write(tmp_path / "student.mcap")
     assert main(["grade", str(SCENARIO), str(bag), "--objects", POSES]) == 0
     said = capsys.readouterr().out.splitlines()
@@ -140,7 +140,7 @@ def test_joints_that_follow_another_are_where_that_one_puts_them(recording, stor
     assert np.allclose(run.signals.tcp_pose, stored.run.signals.tcp_pose[rows], atol=1e-6)
 
 
-def test_a_cylinder_that_nobody_moved_costs_its_points_with_a_reason(recording, tmp_path, capsys):
+def test_a_cylinder_that_was_not_moved_costs_its_points_with_a_reason(recording, tmp_path, capsys):
     for message in recording.of(POSES):
         message.content = recording.of(POSES)[0].content
     bag = recording.write(tmp_path / "lazy.mcap")
@@ -150,9 +150,11 @@ def test_a_cylinder_that_nobody_moved_costs_its_points_with_a_reason(recording, 
     assert "green_cylinder is 0.0 mm from its start" in said
     assert said.splitlines()[-1] == "8 of 14 points"
     assert main([*words, "--json"]) == 1
-    told = json.loads(capsys.readouterr().out)
-    assert (told["earned"], told["points"], told["not_observable"]) == (8, 14, 0)
-    lost = [row["verdict"]["expectation"] for row in told["rows"] if row["earned"] < row["points"]]
+    reported = json.loads(capsys.readouterr().out)
+    assert (reported["earned"], reported["points"], reported["not_observable"]) == (8, 14, 0)
+    lost = [
+        row["verdict"]["expectation"] for row in reported["rows"] if row["earned"] < row["points"]
+    ]
     assert len(lost) == 3
 
 
@@ -230,7 +232,7 @@ def test_after_a_simulation_was_restarted_only_the_last_attempt_counts(recording
 
 def test_frames_alone_give_the_joints_too(stored, tmp_path):
     write_bag(tmp_path / "bag", stored)
-    other = BagTopics(joint_states="/nobody")
+    other = BagTopics(joint_states="/missing")
     grade = grade_bag(SCENARIO, tmp_path / "bag", other)
     assert grade.notes[0] == "there are no joint states; the joints are read from /tf"
     rows = np.searchsorted(stored.run.signals.times, grade.run.signals.times - 1e-6)
@@ -261,7 +263,7 @@ def test_a_gap_is_no_failure_and_no_success(recording, tmp_path):
     assert any("green_cylinder: no pose for" in note for note in grade.notes)
 
 
-def test_a_recording_of_another_arm_is_told(recording, tmp_path):
+def test_a_recording_of_another_arm_is_reported(recording, tmp_path):
     pose = [0, 0, 0.5, 1, 0, 0, 0]
     content = {"transforms": [transform("upper_arm_link", "forearm_link", pose)]}
     recording.add("/tf", "tf2_msgs/msg/TFMessage", 0.0, content)
@@ -269,7 +271,7 @@ def test_a_recording_of_another_arm_is_told(recording, tmp_path):
     assert any("is it the same robot, on the same base?" in note for note in grade.notes)
 
 
-def test_frames_that_go_in_a_circle_are_told_and_end(recording, tmp_path):
+def test_frames_that_go_in_a_circle_are_reported_and_end(recording, tmp_path):
     circle = [transform("a", "green_cylinder", [0, 0, 0, 1, 0, 0, 0]),
               transform("green_cylinder", "a", [0, 0, 0, 1, 0, 0, 0])]  # fmt: skip
     blind = recording.without(POSES)
@@ -279,11 +281,11 @@ def test_frames_that_go_in_a_circle_are_told_and_end(recording, tmp_path):
     assert status_of(grade, "displaced") in ("not observable", "not reached")
 
 
-def test_a_student_can_tell_when_steps_began(recording, tmp_path):
+def test_a_student_can_record_when_steps_began(recording, tmp_path):
     for time, step in ((4.0, "pick"), (10.1, "hold")):
         content = {"data": json.dumps({"event": "step_started", "step": step})}
         recording.add("/armharness/events", "std_msgs/msg/String", time, content)
-    run = grade_bag(SCENARIO, recording.write(tmp_path / "told.mcap"), GAZEBO).run
+    run = grade_bag(SCENARIO, recording.write(tmp_path / "reported.mcap"), GAZEBO).run
     assert [step.id for step in run.steps] == ["pick", "hold"]
     assert run.steps[0].start_time == pytest.approx(4.0, abs=0.05)
     assert run.steps[0].end_time == pytest.approx(10.1, abs=0.05)
@@ -297,7 +299,7 @@ def test_chunks_may_be_compressed_in_any_way(recording, tmp_path, compression):
 
 
 def test_qos_in_any_dialect_is_no_reason_to_refuse(recording, tmp_path):
-    """Version 9 with words, as Kilted writes it, and then what nobody can read."""
+    """Version 9 with words, as Kilted writes it, and then an unreadable version."""
     with Writer(tmp_path / "bag", version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:
         kinds = {m.topic: m.msgtype for m in recording.messages}
         topics = {
@@ -349,11 +351,11 @@ EACH = {
 
 def test_the_page_says_what_a_recording_can_show(recording, tmp_path):
     """Every kind in the page's table is judged, or not, as its row says."""
-    page = (data_folder("scenarios") / "GRADING.md").read_text()
+    page = (data_folder("scenarios").parent / "docs/guides/grading.md").read_text()
     rows = re.findall(r"(?m)^\| (?:needs )?([^|]+?) \| (.*) \|$", page)
     said = {what: set(re.findall(r"`([a-z_]+)`", kinds)) & set(EACH) for what, kinds in rows}
     seen = said["joints"] | said["poses of objects"]
-    unseen = (said["commands"] | said["events of a run of ours"] | said["contacts"]) - seen
+    unseen = (said["commands"] | said["events of a harness run"] | said["contacts"]) - seen
     assert seen | unseen == set(EACH)
     file = tmp_path / "each.scenario.yaml"
     text = SCENARIO.read_text()
@@ -524,13 +526,13 @@ def whole(stored, tmp_path_factory):
 
 
 @pytest.mark.parametrize("breaks", BROKEN, ids=lambda breaks: breaks.__name__)
-def test_a_recording_that_cannot_be_used_is_told_by_its_name(breaks, whole, tmp_path, capsys):
+def test_a_recording_that_cannot_be_used_is_reported_by_its_name(breaks, whole, tmp_path, capsys):
     bag, said = breaks(tmp_path, whole)
     assert main(["grade", str(SCENARIO), str(bag)]) == 2
-    told = capsys.readouterr().err
-    assert told.startswith(str(bag)) or str(tmp_path) in told.split(":")[0]
-    assert said in told
-    assert "Traceback" not in told
+    reported = capsys.readouterr().err
+    assert reported.startswith(str(bag)) or str(tmp_path) in reported.split(":")[0]
+    assert said in reported
+    assert "Traceback" not in reported
 
 
 @pytest.mark.parametrize(
@@ -547,7 +549,7 @@ def test_a_recording_that_cannot_be_used_is_told_by_its_name(breaks, whole, tmp_
         (["--set", "robot.model=open_manipulator_x"], ""),
     ],
 )
-def test_wrong_names_are_told_with_the_right_ones(words, said, whole, capsys):
+def test_wrong_names_are_reported_with_the_right_ones(words, said, whole, capsys):
     try:
         code = main(["grade", str(SCENARIO), str(whole), *words])
     except SystemExit as error:

@@ -1,4 +1,4 @@
-"""What a function may be called with and may return, and how mistakes in it are told."""
+"""What a function may be called with and may return, and how mistakes in it are reported."""
 
 # ruff: noqa: ARG001, ARG005
 
@@ -36,7 +36,7 @@ def test_every_word_says_the_same_target():
     assert arguments_of(("pitch",), down, np.zeros(1))["pitch"] == pytest.approx(0.4)
 
 
-def test_parameters_say_what_is_asked_for():
+def test_parameters_say_what_is_requested():
     assert task_of(parameter_words(lambda x, y, z: None)) == "position"
     assert task_of(parameter_words(lambda position, pitch: None)) == "position and pitch"
     assert task_of(parameter_words(lambda position, quat_xyzw: None)) == "pose"
@@ -45,17 +45,17 @@ def test_parameters_say_what_is_asked_for():
 
 
 @pytest.mark.parametrize(
-    ("function", "told"),
+    ("function", "reported"),
     [
         (lambda goal: None, r"no argument is known for the parameter `goal`; names: x, y, z, "),
         (lambda matrx: None, r"`matrx`; did you mean `matrix`\?"),
-        (lambda x, y: None, "not told where the target is"),
-        (lambda quat_wxyz: None, "not told where the target is"),
+        (lambda x, y: None, "does not receive the target's position"),
+        (lambda quat_wxyz: None, "does not receive the target's position"),
         (dict, "cannot be read; wrap it|`.*`"),
     ],
 )
-def test_parameters_that_nobody_knows_are_told(function, told):
-    with pytest.raises(UnusableSolver, match=told):
+def test_unknown_parameters_are_reported(function, reported):
+    with pytest.raises(UnusableSolver, match=reported):
         parameter_words(function)
 
 
@@ -98,7 +98,7 @@ def test_a_numpy_warning_is_no_error_but_its_nan_is_an_answer():
 
 
 @pytest.mark.parametrize(
-    ("name", "text", "told"),
+    ("name", "text", "reported"),
     [
         ("ik", "", "'ik' is not module:function or file.py:function"),
         ("nowhere.py:ik", "", "no such file: 'nowhere.py'"),
@@ -111,9 +111,11 @@ def test_a_numpy_warning_is_no_error_but_its_nan_is_an_answer():
         ("mine.py:ik", "exit()", "SystemExit"),
     ],
 )  # fmt: skip
-def test_a_function_that_cannot_be_imported_is_told(tmp_path, monkeypatch, name, text, told):
+def test_a_function_that_cannot_be_imported_is_reported(
+    tmp_path, monkeypatch, name, text, reported
+):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("sys.path", ["", *__import__("sys").path])
     (tmp_path / "mine.py").write_text(text)
-    with pytest.raises(UnusableSolver, match=told):
+    with pytest.raises(UnusableSolver, match=reported):
         find_function(name)

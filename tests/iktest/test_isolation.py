@@ -1,4 +1,4 @@
-"""A function that hangs, or takes its process with it, is stopped, told and shrunk."""
+"""A function that hangs, or takes its process with it, is stopped, reported and shrunk."""
 
 import contextlib
 import subprocess
@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from docs import ROOT
 from harness.iktest import IkTest, run_ik_test
 from harness.iktest.contract import UnusableSolver
-from tests.docs.generated import ROOT
 from tests.iktest.arms import EXAMPLES, OM
 
 HEAD = f"""
@@ -41,7 +41,7 @@ def test_a_function_that_hangs_is_stopped_and_the_rest_is_not_tried(tmp_path):
     assert not report.has_passed
 
 
-def test_a_function_that_kills_its_process_is_told_and_shrunk(tmp_path):
+def test_a_function_that_kills_its_process_is_reported_and_shrunk(tmp_path):
     body = "    if z < 0: os.kill(os.getpid(), 11)\n    return correct(x, y, z, pitch)\n"
     report = report_of(tmp_path, body)
     [finding] = report.findings

@@ -42,14 +42,14 @@ def test_a_correct_solver_passes_with_everything_it_claims():
     assert report.speed.calls == 40
 
 
-def test_a_tool_of_another_length_is_told_in_the_links_axes():
+def test_a_tool_of_another_length_is_reported_in_the_links_axes():
     def longer(x, y, z, pitch):
         heading = np.arctan2(y, x - 0.012)
         ahead, up = -0.01 * np.cos(pitch), 0.01 * np.sin(pitch)
         return correct(x + ahead * np.cos(heading), y + ahead * np.sin(heading), z + up, pitch)[:1]
 
     finding = found(longer)["reaches"]
-    assert finding.kind == "is off by (-10.0, 0.0, 0.0) mm in the link's own axes, wherever asked"
+    assert finding.kind == "is off by (-10.0, 0.0, 0.0) mm in the link's own axes, at every target"
     assert np.array_equal(finding.target.joint_positions, HOME)
 
 
@@ -108,13 +108,13 @@ def test_another_branch_in_mid_line_is_a_jump_and_a_steep_motion_is_none():
     assert "continuity" not in found(correct)
 
 
-def test_an_answer_that_depends_on_what_was_asked_before_is_found():
+def test_an_answer_that_depends_on_the_call_before_is_found():
     counter = itertools.count()
 
     def ik(x, y, z, pitch):
         return [[*rest, q4 + 1e-12 * next(counter)] for *rest, q4 in correct(x, y, z, pitch)]
 
-    assert found(ik)["determinism"].kind == "answers differently when asked again"
+    assert found(ik)["determinism"].kind == "answers differently when called again"
 
 
 def test_a_way_left_out_is_found_only_where_all_are_claimed():
@@ -129,22 +129,22 @@ def test_a_way_left_out_is_found_only_where_all_are_claimed():
 
 def test_the_same_seed_finds_the_same_and_another_draws_others():
     def run(seed):
-        asked = []
+        calls = []
 
         def ik(x, y, z, pitch):
-            asked.append((x, y, z, pitch))
+            calls.append((x, y, z, pitch))
             return [0.1, 0.2, 0.3, 0.4]
 
         facts = run_ik_test(IkTest(ik, OM, examples=20, seed=seed)).facts()
         del facts["wall_times"]
-        return asked, facts
+        return calls, facts
 
     first, again, (other, _) = run(3), run(3), run(4)
     assert first == again
     assert first[0] != other
 
 
-def test_the_assertion_of_a_test_tells_findings_in_numbers():
+def test_the_assertion_of_a_test_reports_findings_in_numbers():
     def ik(x, y, z, pitch):
         return correct(x, y, z - 0.017, pitch)
 
@@ -152,7 +152,7 @@ def test_the_assertion_of_a_test_tells_findings_in_numbers():
         check_ik(ik, OM, examples=20)
     text = str(caught.value)
     x, y, z = (round(float(value), 9) + 0.0 for value in HOME_TIP)
-    assert "is off by (0.0, 0.0, -17.0) mm in the world's axes, wherever asked" in text
+    assert "is off by (0.0, 0.0, -17.0) mm in the world's axes, at every target" in text
     assert f"call        ik(x={x!r}, y={y!r}, z={z!r}, pitch=0.0)" in text
     assert "reached by  home" in text
 

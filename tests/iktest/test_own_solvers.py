@@ -18,7 +18,7 @@ def test_closed_forms_keep_every_property_and_find_every_way(robot):
     check_ik(own_solver(RobotSource(robot)), robot, branches=True, examples=40)
 
 
-def test_a_tool_behind_a_gripper_is_solved_too():
+def test_a_tool_attached_to_a_gripper_is_solved_too():
     robot = RobotSource("ur3e", gripper="rh_p12_rn_a")
     check_ik(own_solver(robot), robot, branches=True, examples=30)
 

@@ -1,25 +1,15 @@
 """The page on packages' solvers says what the tests find in them."""
 
-import importlib.util
 import re
 
 import pytest
 
-from tests.docs.generated import ROOT
-from tests.iktest.arms import EXAMPLES
+from docs import ROOT
+from docs.generators.ik_packages import report_of
 
 pytestmark = pytest.mark.ik_packages
 
-PAGE = (EXAMPLES / "PACKAGES.md").read_text(encoding="utf-8")
-
-
-@pytest.fixture(scope="module")
-def packages():
-    """The module with the packages' solvers."""
-    spec = importlib.util.spec_from_file_location("packages", EXAMPLES / "packages.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+PAGE = (ROOT / "docs/reference/ik_packages.md").read_text(encoding="utf-8")
 
 
 def column(name):
@@ -36,19 +26,15 @@ def flawed(name):
 
 
 @pytest.mark.parametrize("name", ["eaik", "ikpy", "ikpy_checked"])
-def test_solvers_that_repeat_break_what_the_page_says(packages, name):
-    """Which properties, not how often: beside singularities that is the processor's."""
-    report = packages.report_of(name)
+def test_solvers_that_repeat_break_what_the_page_says(name):
+    """Which properties, not how often: near singularities that depends on the processor."""
+    report = report_of(name)
     assert {each.name for each in report.properties if each.flawed} == flawed(name)
 
 
-def test_trac_ik_never_answers_wrongly(packages):
+def test_trac_ik_never_answers_wrongly():
     """What it finds in 5 ms of wall time differs; what it says is right."""
     may = {"answers", "determinism", "continuity"}
-    report = packages.report_of("pytracik")
+    report = report_of("pytracik")
     assert {each.name for each in report.properties if each.flawed} <= may
     assert flawed("pytracik") <= may
-
-
-def test_the_page_is_linked():
-    assert "PACKAGES.md" in (ROOT / "scenarios/ik_test/README.md").read_text(encoding="utf-8")

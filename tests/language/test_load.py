@@ -87,7 +87,7 @@ def test_a_bare_verb_and_a_verb_without_content_are_steps():
     )
 
 
-def test_reserved_words_stand_beside_the_verb_in_any_order():
+def test_reserved_words_stand_next_to_the_verb_in_any_order():
     (step,) = steps(
         "- id: a",
         "  expect_error: NO_IK_SOLUTION",
@@ -205,7 +205,7 @@ def test_bundled_worlds_load(name):
     assert world.model.world == name
 
 
-def test_a_world_is_a_name_or_a_file_beside_the_scenario(tmp_path):
+def test_a_world_is_a_name_or_a_file_next_to_the_scenario(tmp_path):
     (tmp_path / "my.yaml").write_text("world: mine\nobjects: [{name: a, sphere: {radius: 1 cm}}]\n")
     assert load_world("my.yaml", tmp_path).world.objects[0].sphere.radius == 0.01
     for name, message, hint in (

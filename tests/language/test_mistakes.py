@@ -26,7 +26,7 @@ def test_ten_mistakes_give_ten_located_problems_at_once():
         (6, 5, "no verb is called `move_too`"),
         (8, 5, "a step has one verb; this one has `gripper` and `move_to`"),
         (9, 11, "`120 milimeter`: no unit is called `milimeter`"),
-        (10, 33, "`expect` stands beside `move_to`, not inside it"),
+        (10, 33, "`expect` stands next to `move_to`, not inside it"),
         (11, 23, "`xyz` has 2 items; item 3 is missing"),
         (12, 5, "`object` is missing in `pick`"),
         (14, 13, "no predicate is called `colision`"),
@@ -51,8 +51,8 @@ def test_a_problem_shows_the_line_a_caret_and_the_nearest_word():
         ("- §xyzzy", "no verb is called `xyzzy`", "verbs: add_object"),
         ("- §{id: a}", "a step has one verb; this one has none", "verbs: add_object"),
         ("- {§do: lin}", "`do:` is not written", "verbs"),
-        ("- {lin: up, §pose: {}}", "`pose` stands inside `lin`, not beside", "further right"),
-        ("- {lin: up, §expct: []}", "unknown key `expct` beside `lin`", "mean `expect`?"),
+        ("- {lin: up, §pose: {}}", "`pose` stands inside `lin`, not next to", "further right"),
+        ("- {lin: up, §expct: []}", "unknown key `expct` next to `lin`", "mean `expect`?"),
         ("- clear_objects: §up", "`clear_objects` takes a mapping, not `up`", "keys: world"),
         ("- §move_to:", "exactly one goal of", "found none"),
         ("- §move_to: {named_target: a, joints: {b: 1}}", "exactly one goal of", "and joints"),
@@ -116,7 +116,7 @@ def test_a_mistake_in_a_step_is_one_problem_at_its_place(step, message, hint):
         ("- never: {lifted: {object: a, above: §5 kg}}", "`5 kg` is a mass; a length", "cm"),
         ("- §lifted:", "`object` is missing in `lifted`", "add `object:`"),
         ("- {lifted: a, for: §-1}", "`for` must be at least 0, not `-1`", ""),
-        ("- {formula: time > 1, §for: 1}", "`for` has no meaning beside `formula`", ""),
+        ("- {formula: time > 1, §for: 1}", "`for` has no meaning next to `formula`", ""),
         ("- collision: {between: §[robot]}", "`between` has 1 item; item 2 is missing", ""),
     ],
 )
@@ -168,7 +168,7 @@ def test_a_value_of_the_wrong_shape_is_written_out_in_the_right_one(
 
 
 @pytest.mark.parametrize(
-    ("content", "meant"),
+    ("content", "keyword"),
     [
         ("set_named_target: up", "move_to"),
         ("sleep: 1 s", "wait"),
@@ -178,9 +178,9 @@ def test_a_value_of_the_wrong_shape_is_written_out_in_the_right_one(
         ("add_object: {name: a, box: {dimensions: [1 cm, 1 cm, 1 cm]}}", "size"),
     ],
 )
-def test_a_word_of_another_program_is_answered_with_the_word_of_this_one(content, meant):
+def test_a_word_of_another_program_is_answered_with_the_word_of_this_one(content, keyword):
     (problem,) = problems(f"{HEAD}  - {content}\n")
-    assert problem.hint.startswith(f"did you mean `{meant}`? ")
+    assert problem.hint.startswith(f"did you mean `{keyword}`? ")
 
 
 @pytest.mark.parametrize(

@@ -98,7 +98,7 @@ def test_percentages_stand_wherever_a_share_does():
         ("samples: 3\nexpect_rate: 120 %", "must be at most 1"),
         ("samples: 3\nexpect_rate: 90 percent", "no unit is called `percent`"),
         ("samples: 3\nexpect_rate: most", "is a number or a percentage, not `most`"),
-        (with_pose("{xyz: [0, 0, 5 %]}"), "`5 %` is a share; a length is meant"),
+        (with_pose("{xyz: [0, 0, 5 %]}"), "`5 %` is a share; a length is expected"),
     ],
 )
 def test_what_is_no_share_is_refused(lines, message):
@@ -118,7 +118,7 @@ def test_an_angle_of_at_most_a_turn_or_with_a_unit_is_not(number):
     assert load(with_pose(f"{{rpy: [0, 0, {number}]}}")).notes == ()
 
 
-def test_lengths_and_joints_are_told_apart():
+def test_lengths_and_joints_are_distinguished():
     assert load(with_pose("{xyz: [90, 0, 0]}")).notes == ()
     text = HEAD.replace("- settle", "- move_to: {joints: {joint1: 90, joint2: 1}}")
     (note,) = parse_scenario(text, Path("f.yaml")).notes
@@ -141,7 +141,7 @@ def test_named_colors_are_those_of_css():
         ("blank", "CSS name"),
     ],
 )
-def test_a_color_that_nobody_knows_is_refused(color, hint):
+def test_an_unknown_color_is_refused(color, hint):
     found = problem(with_pose("{}", f", color: {color}"))
     assert "no colour is called" in found.message
     assert hint in found.hint

@@ -126,7 +126,10 @@ def test_a_path_that_leads_nowhere_is_reported_at_the_option(path, message, hint
         ("{objects.cube.mass: {uniform: [§-1, 3]}}", "can be drawn as `-1`: `mass` must be more"),
         ("{objects.cube.mass: {uniform: [1, §3 cm]}}", "one unit"),
         ("{objects.cube.mass: {normal: {mean: 1, std: 1, low: §-1}}}", "as `-1`: `mass` must be"),
-        ("{objects.cube.in: {choice: [both, §nobody]}}", "as `nobody`: `in` cannot be `nobody`"),
+        (
+            "{objects.cube.in: {choice: [both, §none]}}",
+            "as `none`: `in` cannot be `none`",
+        ),
         ("{objects.cube.mass: {uniform: [§1 cm, 3 cm]}}", "as `1 cm`: `1 cm` is a length"),
         ("{§objects.cube.pos.xyz.0: {uniform: [1, 3]}}", "cannot vary: unknown key `pos`"),
         ("{§objects.post.left.pose.rpy.2: {uniform: [0, 1]}}", "cannot vary: a pose has one rot"),

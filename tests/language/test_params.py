@@ -100,7 +100,7 @@ def test_the_robots_model_is_set_however_the_file_says_it(robot, path):
         ("robot.modl", "ur5e", "unknown key `modl`", "did you mean `model`?"),
         ("robot.model", "[a", "`[a` is not a YAML value", "quote"),
         ("seed", "-1", "`seed` must be at least 0, not `-1`", ""),
-        ("steps.2.wait", "5 kg", "`5 kg` is a mass; a time is meant", "ms"),
+        ("steps.2.wait", "5 kg", "`5 kg` is a mass; a time is expected", "ms"),
         ("", "5", "the file has no `` to set", "what can be set"),
     ],
 )

@@ -4,12 +4,12 @@ from pathlib import Path
 import jsonschema
 import pytest
 
+from docs.generators.expectations import expectations_reference
+from docs.generators.reference import steps_reference
 from harness.core.resources import data_folder
-from harness.language.expectations_reference import expectations_reference
 from harness.language.files.source import Source
 from harness.language.files.yaml_file import parse_yaml
 from harness.language.language import PREDICATES
-from harness.language.reference import steps_reference
 from harness.language.schema import scenario_schema, schema_text, world_schema
 from harness.language.step import STEPS
 

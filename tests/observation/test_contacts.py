@@ -42,7 +42,7 @@ def test_a_recording_without_contacts_lists_none():
     assert contact_records(run) == ()
 
 
-def test_contacts_are_in_the_run_and_told_when_it_is_judged(tmp_path, capsys):
+def test_contacts_are_in_the_run_and_reported_when_it_is_judged(tmp_path, capsys):
     steps = "- wait: 0.3 s"
     stool = """
         objects:

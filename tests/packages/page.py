@@ -8,12 +8,13 @@ from pathlib import Path
 from tests.packages.arms import ARMS, OTHERS, PACKAGES, PackageArm
 from tests.packages.trial import Trial, try_arm
 
-PAGE = Path(__file__).parents[2] / "robots" / "PACKAGES.md"
+PAGE = Path(__file__).parents[2] / "docs/reference/robot_packages.md"
 RENEW = "python -m tests.packages.page"
 
 HEAD = """# Robots of other packages
 
-Every arm with a fixed base in three packages of the Python registry, as a scenario names it:
+This page lists every arm with a fixed base in three packages of the Python registry. A scenario
+names such an arm like this:
 
 ```yaml
 robot:
@@ -21,16 +22,16 @@ robot:
   srdf: package://example-robot-data/robots/panda_description/srdf/panda.srdf
 ```
 
-Each is loaded with the SRDF that it brings, where that fits it. Positions of all links at random
-joint positions, and masses, agree between MuJoCo and Pinocchio's own reading of the file to
-1e-9 m and 1e-9 kg. Then one `move_to` to a random state that touches nothing is planned and
-executed within limits: the first of at most ten that can be reached. (Not every one can: at joints
-of two turns, parts of what is free are cut off.)
+Each arm is loaded with its own SRDF, where that matches the URDF. The positions of all links at
+random joint positions, and the masses, agree between MuJoCo and Pinocchio's own reading of the file
+to 1e-9 m and 1e-9 kg. Then one `move_to` to a random collision-free state is planned and executed
+within the limits: the first of at most ten states that can be reached. (Not every state can be
+reached: with joints of two turns, some free regions are not connected.)
 
 ```sh
 pip install 'armharness[packages]'
-python -m pytest -m packages          # tries all, and holds this page to it
-python -m tests.packages.page         # tries all, and writes this page
+python -m pytest -m packages          # tries all arms, and compares them with this page
+python -m tests.packages.page         # tries all arms, and writes this page
 ```
 """
 
@@ -51,14 +52,14 @@ def page(rows: dict[str, str]) -> str:
     parts = [HEAD]
     for name, package in PACKAGES.items():
         parts.append(f"## {name}\n\n[{package.source}]({package.source}); {package.licence}.\n")
-        parts.append("| robot | joints | mass [kg] | SRDF | moved | why not |")
+        parts.append("| robot | joints | mass [kg] | SRDF | moved | reason |")
         parts.append("| --- | --- | --- | --- | --- | --- |")
         parts += [rows[arm.name] for arm in ARMS if arm.package == name]
         others = "; ".join(
             f"{what}: {', '.join(f'`{path}`' for path in paths.split())}"
             for what, paths in OTHERS[name].items()
         )
-        parts.append(f"\nNo arm with a fixed base: {others}.\n")
+        parts.append(f"\nWithout an arm on a fixed base: {others}.\n")
     return "\n".join(parts)
 
 

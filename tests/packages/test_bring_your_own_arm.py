@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
+from docs import ROOT
 from harness.cli.main import main
 from harness.language.reading.load import load_scenario
 from harness.language.scenario import RobotSpec
@@ -16,11 +17,10 @@ from harness.planning.collision.pair_statistics import random_positions, self_to
 from harness.recording.store import read_run
 from harness.robot.load import load_robot
 from harness.robot_tools.robot_source import RobotSource, load
-from tests.docs.generated import ROOT
 
 pytestmark = pytest.mark.packages
 
-PAGE = (ROOT / "robots/BRING_YOUR_OWN_ARM.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs/guides/bring_your_own_arm.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"(?ms)^```(sh|text|yaml)\n(.*?)^```$", PAGE)
 TIME = re.compile(r"  t=\d.*")
 
@@ -78,7 +78,7 @@ def test_the_picture_shows_the_arm(walked):
     assert white > 0.005
 
 
-def test_the_scenario_asks_for_the_robot_that_the_page_shows(walked):
+def test_the_scenario_names_the_robot_that_the_page_shows(walked):
     [robot] = [text for language, text in BLOCKS if language == "yaml"]
     written = (walked[0] / "panda/first.scenario.yaml").read_text(encoding="utf-8")
     assert robot in written

@@ -19,7 +19,7 @@ from harness.planning.model.robot_model import GroupSpace, RobotModel
 from harness.ports import PoseGoal, PositionGoal
 from harness.robot.load import gripper_names, load_robot, robot_names
 
-PAGE = Path(__file__).parents[2] / "robots" / "INVERSE_KINEMATICS.md"
+PAGE = Path(__file__).parents[2] / "docs/reference/inverse_kinematics.md"
 RENEW = "python -m tests.planning.ik_success"
 POSES = 1000
 ATTEMPTS = (0, 4, RESTARTS, MOST_RESTARTS)
@@ -29,27 +29,27 @@ KINDS = ("pose", "position and pitch", "position")
 TEXT = """\
 # Inverse kinematics of the bundled arms
 
-Closed forms give every branch of a UR (up to eight) and of OpenMANIPULATOR-X (up to four); they
-need no search. Every other arm, and a goal that a closed form does not fit, is solved numerically:
-damped least squares from where the arm stands, then from {restarts} random positions, and while
-nothing is found from up to {most}; the same seed gives the same answers.
+Closed forms give every branch of a UR (up to eight) and of OpenMANIPULATOR-X (up to four) without a
+search. Every other arm, and every goal without a closed form, is solved numerically: damped least
+squares from the current joint positions, then from {restarts} random ones, and from up to {most}
+while there is no solution. The same seed gives the same solutions.
 
-How often that finds a random reachable goal, measured on the bundled arms as if they had no closed
-form: {poses} goals each, taken at joint positions drawn evenly inside the limits. A goal counts as
-found when position and orientation are met to 1e-8 (m, rad) inside the joint limits; the largest
-miss is below what is in the last column.
+The table shows how often the numeric solver finds a random reachable goal, measured on the bundled
+arms as if they had no closed form: {poses} goals each, at joint positions drawn uniformly in the
+limits. A goal counts as found when position and orientation are reached to 1e-8 (m, rad) within the
+joint limits. The last column is an upper bound of the error of the solutions.
 
-| arm | joints | goal | no restart | 4 restarts | {restarts} restarts | {most} restarts | miss |
+| arm | joints | goal | no restart | 4 restarts | {restarts} restarts | {most} restarts | error |
 | --- | --- | --- | --- | --- | --- | --- | --- |
 {rows}
 
-Arms with fewer than six joints cannot take any pose. With four or five, position and pitch of a
-`pose` are solved for, with three its position. What is missed of the rest is in the step's record
-(`ik_solutions`, `residual`) and must be inside the goal's `tolerance`, else the step fails with
-GOAL_CONSTRAINTS_VIOLATED. The poses of the table are some that these arms can take: those of their
-own joint positions.
+Arms with fewer than six joints cannot reach every pose. With four or five joints the solver uses
+the position and the pitch of a `pose`, with three its position. The remaining error is in the
+record of the step (`ik_solutions`, `residual`) and must be within the goal's `tolerance`; otherwise
+the step fails with GOAL_CONSTRAINTS_VIOLATED. The poses in the table are reachable: they are those
+of joint positions of the arm.
 
-Written by `{renew}`; held by `python -m pytest -m measured`.
+`{renew}` writes this page; `python -m pytest -m measured` compares it with new measurements.
 """
 
 

@@ -34,7 +34,7 @@ LAWFUL = (
     "START_STATE_IN_COLLISION",
     "GOAL_VIOLATES_PATH_CONSTRAINTS",
 )
-"""How planning may fail on a problem that nobody made to be solvable."""
+"""How planning may fail on a random problem, which may have no solution."""
 
 
 @cache

@@ -99,7 +99,7 @@ def test_all_branches_of_a_ur_are_found_exact_and_inside_the_limits(model):
 
 
 @pytest.mark.parametrize("model", ["ur3e", "ur5e", "ur10e"])
-def test_a_stretched_ur_is_solved_beside_and_at_the_singularity_of_its_wrist(model):
+def test_a_stretched_ur_is_solved_next_to_and_at_the_singularity_of_its_wrist(model):
     """Rounded right angles seem to shorten the arm; at the singularity joint 6 must give way."""
     description = ur(model)
     kinematics = PinocchioKinematics(description)

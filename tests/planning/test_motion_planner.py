@@ -143,7 +143,7 @@ def test_a_point_out_of_reach_is_explained_with_its_distance():
     assert f"{1000 * away:.1f} mm" in error.message
 
 
-def test_an_orientation_out_of_reach_is_told_from_a_point_out_of_reach():
+def test_an_orientation_out_of_reach_is_distinguished_from_a_point_out_of_reach():
     cell = Cell(ur("ur3e"))
     goal = grasp_goal(0.5, -0.1, 0.3)
     error = failure(cell.planner.plan, ARM, cell.state, goal, PlanningOptions())
@@ -152,13 +152,13 @@ def test_an_orientation_out_of_reach_is_told_from_a_point_out_of_reach():
     assert error.facts["orientation_error"] > 0.01 or error.facts["position_error"] > 0.001
 
 
-def test_solutions_that_fall_to_limits_name_the_joint_and_how_far():
+def test_solutions_that_limits_reject_name_the_joint_and_how_far():
     cell = Cell(ur("ur3e"))
     found = cell.planner.check_goal(
         ARM, cell.state, grasp_goal(0.32, -0.17, 0.08), PlanningOptions()
     )
-    outside = found["outside_limits"]
-    assert len(outside) + len(found["ik_solutions"]) == 8
+    outside = found.explanation.plain()["outside_limits"]
+    assert len(outside) + len(found.explanation.plain()["ik_solutions"]) == 8
     for solution in outside:
         assert solution["joint"].endswith("_joint")
         assert solution["excess"] == pytest.approx(abs(solution["value"] - solution["limit"]))
@@ -190,7 +190,7 @@ def test_joint_goals_outside_their_limits_or_in_collision_are_refused():
     assert any("Table" in touch["pair"] for touch in error.facts["touches"])
 
 
-def test_an_exhausted_budget_tells_what_blocks_the_straight_way():
+def test_an_exhausted_budget_reports_what_blocks_the_straight_way():
     cell = Cell(ur("ur3e"))
     cell.state = cell.with_arm(cell.named("mogi_down"))
     cell.add(boxes(*FIRST_BOXES))
@@ -287,7 +287,7 @@ def test_padding_widens_what_must_be_gone_around():
 BENT = np.array([-0.86, -1.5, 1.6, -1.7, -1.57, -1.6])
 
 
-def bent_beside(turn):
+def bent_away_from_goal(turn):
     """A UR5e turned away from where it shall go, the goal, and the branches that reach it."""
     cell = Cell(ur("ur5e"), with_tables=False)
     goal = PoseGoal(TCP, cell.kinematics.link_pose(cell.with_arm(BENT), TCP))
@@ -296,7 +296,7 @@ def bent_beside(turn):
 
 
 def test_a_pose_goal_ends_in_the_cheapest_branch_when_the_straight_way_is_free():
-    cell, goal, branches = bent_beside(0.8)
+    cell, goal, branches = bent_away_from_goal(0.8)
     assert len(branches) >= 4
     space = GroupSpace(cell.kinematics.robot, ARM, cell.state)
     costs = [space.effort(space.part(cell.state), positions) for positions in branches]
@@ -314,12 +314,12 @@ def test_a_pose_goal_ends_in_the_cheapest_branch_when_the_straight_way_is_free()
     ],
 )
 def test_a_pose_goal_ends_in_the_cheapest_branch_around_a_ball_too(turn, center, radius):
-    cell, goal, branches = bent_beside(turn)
+    cell, goal, branches = bent_away_from_goal(turn)
     cell.add(thing("ball", at(*center), Shape(Sphere(radius))))
     space = GroupSpace(cell.kinematics.robot, ARM, cell.state)
 
-    def plan_to(wanted):
-        plan = cell.planner.plan(ARM, cell.state, wanted, PlanningOptions())
+    def plan_to(goal):
+        plan = cell.planner.plan(ARM, cell.state, goal, PlanningOptions())
         positions = plan.trajectory.positions
         return positions[-1], sum(space.effort(*edge) for edge in pairwise(positions))
 
@@ -335,7 +335,7 @@ def test_a_pose_goal_ends_in_the_cheapest_branch_around_a_ball_too(turn, center,
 
 
 def test_cheaper_branches_are_searched_within_the_budget_that_is_given():
-    cell, goal, branches = bent_beside(0.85)
+    cell, goal, branches = bent_away_from_goal(0.85)
     cell.add(thing("ball", at(0.58, -0.05, 1.36), Shape(Sphere(0.08))))
     ample, scarce = (
         cell.planner.plan(ARM, cell.state, goal, PlanningOptions(max_state_checks=checks))
@@ -346,8 +346,8 @@ def test_cheaper_branches_are_searched_within_the_budget_that_is_given():
     assert scarce.statistics["state_checks"] < ample.statistics["state_checks"]
 
 
-def test_a_planner_that_is_not_there_is_told_where_a_straight_way_is_free_too():
-    cell, goal, _ = bent_beside(0.85)
+def test_a_planner_that_is_not_there_is_reported_where_a_straight_way_is_free_too():
+    cell, goal, _ = bent_away_from_goal(0.85)
     cell.add(thing("ball", at(0.58, -0.05, 1.36), Shape(Sphere(0.08))))
     error = failure(cell.planner.plan, ARM, cell.state, goal, PlanningOptions(planner_id="RTT"))
     assert error.code == "PLANNING_FAILED"

@@ -96,7 +96,7 @@ boxes = st.lists(
     block=st.floats(0.04, 0.08),
     seed=st.integers(0, 2**32 - 1),
 )
-def a_motion_round_a_block_ends_where_asked_and_comes_out_the_same_again(
+def a_motion_round_a_block_ends_at_its_goal_and_comes_out_the_same_again(
     model, off, boxes, swing, target, block, seed
 ):
     options = replace(OPTIONS, seed=seed)
@@ -249,7 +249,7 @@ def a_relative_motion_goes_its_distance_along_its_line(model, off, direction, mo
     gone = (track - track[0]) @ unit
     assert np.linalg.norm(track - track[0] - gone[:, None] * unit, axis=1).max() <= ON_PATH
     assert 0.01 - REACHED <= gone[-1] <= most + 0.01 + REACHED
-    assert plan.result["distance"] == pytest.approx(gone[-1], abs=1e-6)
+    assert plan.result.plain()["distance"] == pytest.approx(gone[-1], abs=1e-6)
     return True
 
 
@@ -281,15 +281,15 @@ def a_cartesian_path_keeps_its_precision(model, off, corners, precision):
     problem = Problem(model, off)
     points = through(problem, corners)
     goals = [PositionGoal(problem.link, point) for point in points[1:]]
-    wanted = CartesianPathOptions(0.005, precision, 0.2, JumpThreshold(0.5, 0.1))
-    plan = problem.plan("plan_cartesian_path", goals, wanted)
+    path_options = CartesianPathOptions(0.005, precision, 0.2, JumpThreshold(0.5, 0.1))
+    plan = problem.plan("plan_cartesian_path", goals, path_options)
     if plan is None:
         return False
     track = [pose.translation for pose in problem.poses(plan)]
     worst = max(off_lines(place, points) for place in track)
     assert worst <= precision
-    assert plan.result["deviation"] == pytest.approx(worst, abs=1e-7)
-    if plan.result["fraction"] == 1.0:
+    assert plan.result.plain()["deviation"] == pytest.approx(worst, abs=1e-7)
+    if plan.result.plain()["fraction"] == 1.0:
         assert np.linalg.norm(track[-1] - points[-1]) < REACHED
     return True
 

@@ -103,7 +103,7 @@ def failure(call, *arguments):
     return caught.value
 
 
-def test_a_start_and_a_goal_outside_the_constraints_are_told_apart(cell):
+def test_a_start_and_a_goal_outside_the_constraints_are_distinguished(cell):
     pose = here(cell)
     turned = (pose @ SE3.from_xyz_rpy((0, 0, 0), (0.3, 0, 0))).rotation
     off = PathConstraints(orientation=OrientationBand(TCP, turned, (0.1, 0.1, 0.1)))
@@ -136,15 +136,15 @@ def test_of_several_goals_the_nearest_that_can_be_taken_is(cell):
     goals = AnyGoal((out, JointGoal(far), JointGoal(near)))
     plan = cell.planner.plan(ARM, cell.state, goals, OPTIONS)
     assert np.allclose(plan.trajectory.positions[-1], near, atol=1e-6)
-    told = plan.explanation["alternatives"]
-    assert [each["error_code"] for each in told] == ["NO_IK_SOLUTION", "", ""]
+    reported = plan.explanation.plain()["alternatives"]
+    assert [each["error_code"] for each in reported] == ["NO_IK_SOLUTION", "", ""]
     error = failure(cell.planner.plan, ARM, cell.state, AnyGoal((out, out)), OPTIONS)
     assert error.code == "NO_IK_SOLUTION"
     assert error.message.startswith("none of 2 goals is feasible: 1: ")
 
 
 def test_a_goal_region_is_reached_where_its_middle_cannot_be(cell):
-    """A block stands in the middle of the goal; the region has room beside it."""
+    """A block stands in the middle of the goal; the region has room next to it."""
     middle = grasp_goal(0.25, -0.17, 0.16)
     cell.add(thing("lump", at(*middle.pose.translation, (0, 0, 0)), Shape(Box((0.09, 0.09, 0.05)))))
     blocked = failure(cell.planner.plan, ARM, cell.state, middle, OPTIONS)

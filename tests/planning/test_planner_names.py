@@ -86,7 +86,9 @@ def test_every_planner_repeats_itself_in_a_fresh_process(trial):
 
 @pytest.mark.parametrize("budget", [1, 2, 74, 150])
 @pytest.mark.parametrize("name", planner_names())
-def test_a_budget_that_is_too_small_ends_every_planner_and_tells_what_is_left(trial, name, budget):
+def test_a_budget_that_is_too_small_ends_every_planner_and_reports_what_is_left(
+    trial, name, budget
+):
     found = trial.search(name, budget=budget)
     assert found.waypoints is None
     assert found.checks < budget + 500

@@ -54,7 +54,7 @@ def test_a_roadmap_leads_to_the_goal_that_is_nearest_along_it(trial):
     assert np.array_equal(found.waypoints, [trial.start, near])
 
 
-def test_a_roadmap_in_parts_tells_how_far_they_are_apart(trial):
+def test_a_roadmap_in_parts_reports_how_far_they_are_apart(trial):
     apart = np.linalg.norm(trial.goal - trial.start)
     gaps = [trial.search("PRM", seed, 150).gap for seed in range(6)]
     assert all(0.1 < gap <= apart + 1e-9 for gap in gaps)

@@ -1,4 +1,4 @@
-"""One state with wide margins speaks for those around it: never otherwise than they do."""
+"""A clearance certificate at one state agrees with the exact check of the states around it."""
 
 import numpy as np
 import pytest
@@ -67,7 +67,7 @@ def test_no_pair_comes_nearer_than_its_rate_says(model, kind):
                 for found in map(cell.scene.distances, map(space.whole, (first, second)))
             )
             for pair, rate in rates.items():
-                if before[pair] <= 0 or after[pair] <= 0:  # how deep is told roughly
+                if before[pair] <= 0 or after[pair] <= 0:  # how deep is reported roughly
                     continue
                 nearer = abs(before[pair] - after[pair])
                 assert nearer <= rate * moved + 2e-5, pair

@@ -81,7 +81,7 @@ def test_every_output_has_the_steps_of_a_plug_in(plugged_in):
     verbs = schema["$defs"]["Step"]["anyOf"][0]["properties"]
     assert verbs["remark"]["description"].startswith("Write a sentence")
     pause = schema["$defs"]["Remark"]["anyOf"][0]["properties"]["pause"]
-    assert pause["description"] == "The step takes this long [s]. In s (as text: s, ms)."
+    assert pause["description"] == "The step takes this long [s]. The unit is s (as text: s, ms)."
     assert said("check", "remarks.scenario.yaml") == "remarks.scenario.yaml: ok\n"
     explained = said("explain", "remarks.scenario.yaml")
     assert re.search(r"5  remark the arm stands where it starts  \[seed \d+\]", explained)
@@ -90,7 +90,7 @@ def test_every_output_has_the_steps_of_a_plug_in(plugged_in):
     wrong.write_text(SCENARIO.replace("about: red_box", "abuot: red_box").replace("40 ms", "4 m"))
     problems = said("check", "wrong.scenario.yaml", code=2)
     assert "wrong.scenario.yaml:11:33: unknown key `abuot` in `remark`" in problems
-    assert "`4 m` is a length; a time is meant" in problems
+    assert "`4 m` is a length; a time is expected" in problems
     wrong.write_text(SCENARIO.replace("red_box", "red_bax").replace("joint1", "joint9"))
     problems = said("check", "wrong.scenario.yaml", code=2)
     assert "11:40: there is no object 'red_bax'" in problems
@@ -121,7 +121,7 @@ def test_a_run_of_a_plug_in_s_steps_is_recorded_and_reported(plugged_in):
 def test_the_reference_page_has_the_steps_of_a_plug_in(tmp_path):
     (tmp_path / "remarks.py").write_text(SOURCE, encoding="utf-8")
     install(tmp_path)
-    code = "from harness.language.reference import steps_reference; print(steps_reference())"
+    code = "from docs.generators.reference import steps_reference; print(steps_reference())"
     done = subprocess.run(
         [sys.executable, "-c", code],
         env={**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])},

@@ -5,6 +5,7 @@ import subprocess
 import sys
 from xml.etree import ElementTree
 
+import numpy as np  # noqa: F401
 import pytest
 
 import harness.language.files.yaml_file  # noqa: F401
@@ -86,11 +87,11 @@ def test_k_knows_titles_files_and_tags(pytester, write, words):
 
 def test_other_yaml_files_and_switched_off_names_are_left_alone(pytester, write):
     write(holds=HOLDS)
-    pytester.makefile(".yaml", other="scenario: Not one of ours")
+    pytester.makefile(".yaml", other="scenario: Not a harness file")
     items, _recorder = pytester.inline_genitems("-o", "harness_files=")
     assert items == []
     items, _recorder = pytester.inline_genitems("-o", "harness_files=other.yaml")
-    assert [item.name for item in items] == ["Not one of ours"]
+    assert [item.name for item in items] == ["Not a harness file"]
     result = run(pytester, "-p", "no:armharness")
     result.assert_outcomes()
 
@@ -116,7 +117,7 @@ def test_outcomes_are_reported_with_lines_and_numbers(pytester, write):
     assert 'property name="digest" value="' in junit
 
 
-def test_reports_go_where_they_are_asked_to(pytester, write):
+def test_reports_go_where_they_are_requested(pytester, write):
     write(holds=HOLDS)
     run(pytester, "--harness-report-dir", "elsewhere").assert_outcomes(passed=1)
     assert (pytester.path / "elsewhere/holds/run.json").is_file()
@@ -173,7 +174,7 @@ def test_every_parametrised_case_is_an_item_with_a_readable_name(pytester, write
     run(pytester, "holds.scenario.yaml::Hold still[ur3e-1]").assert_outcomes(passed=1)
 
 
-def test_random_samples_are_one_item_that_tells_the_rate(pytester, write):
+def test_random_samples_are_one_item_that_reports_the_rate(pytester, write):
     lines = "params: {time: 0.1 s}\nrandomize:\n  time: {uniform: [0.15 s, 0.25 s]}\nsamples: 4\n"
     varied = HOLDS.replace("wait: 0.1 s", 'wait: "${time}"') + lines
     write(varied=varied, shown=varied.replace("at_most: 0.2 s", "at_most: 0.3 s"))
@@ -209,7 +210,7 @@ def test_the_fixture_runs_scenarios_of_tests_written_by_hand(pytester, write):
     assert (pytester.path / "reports/tests/test_holds-1/run.json").is_file()
 
 
-def test_other_plugins_work_beside_it(pytester, write):
+def test_other_plugins_work_next_to_it(pytester, write):
     write(holds=HOLDS, again=HOLDS.replace("0.1 s", "0.15 s"))
     words = ["-n", "2", "--randomly-seed=7", "--timeout=120", "--html=report.html",
              "--self-contained-html", "--cov=harness", "--cov-report=json"]  # fmt: skip
@@ -265,18 +266,18 @@ def test_a_session_leaves_the_files_of_a_suite_in_file_order(pytester, write, op
     assert (whole.get("tests"), whole.get("failures"), whole.get("errors")) == ("3", "1", "1")
 
 
-def test_margins_are_in_junit_and_told_when_they_get_small(pytester, write):
-    def told(wait):
+def test_margins_are_in_junit_and_reported_when_they_get_small(pytester, write):
+    def reported(wait):
         write(tight=TIGHT.replace("wait: 0.1 s", f"wait: {wait} s"))
         result = pytester.runpytest("--harness-no-report", "--junitxml=junit.xml")
         result.assert_outcomes(passed=1)
         return [line for line in result.outlines if " of its limit" in line or "as they" in line]
 
-    assert told(0.05) == []
-    [line] = told(0.1)
+    assert reported(0.05) == []
+    [line] = reported(0.1)
     assert re.match(r"holds by 2\.9% of its limit, was 51\.5% last time: duration, at most", line)
     assert line.endswith("(tight.scenario.yaml::Just in time)")
-    assert told(0.1) == ["1 below 5% as they were last time"]
+    assert reported(0.1) == ["1 below 5% as they were last time"]
     assert not (pytester.path / "reports").exists()
     found = properties(pytester)
     assert [name for name, _ in found[:2]] == ["seed", "digest"]

@@ -36,7 +36,7 @@ def test_links_stand_where_pinocchio_puts_them(spec, tmp_path):
         np.testing.assert_allclose(same, 1.0, atol=1e-9)
 
 
-def test_only_the_links_asked_for_come_back(tmp_path):
+def test_only_the_requested_links_come_back(tmp_path):
     description = load_robot(RobotSpec.model_validate({"model": "open_manipulator_x"}), tmp_path)
     record = robot_record(description, PinocchioKinematics(description))
     samples = np.zeros((3, len(record.joints)))

@@ -48,7 +48,7 @@ def opened(shared):
     return shared
 
 
-def test_the_page_tells_outcome_steps_and_expectations(opened):
+def test_the_page_reports_outcome_steps_and_expectations(opened):
     page = opened.page
     assert opened.text("header .pill") == "FAILED"
     assert page.locator("#steps .step").count() == 4
@@ -330,8 +330,8 @@ CONTRASTS = """() => {
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_text_stands_out_from_what_is_behind_it(visit, failed_run, scheme):
-    """Contrast of 4.5, as WCAG 2.1 asks for (1.4.3); what is switched off may have less."""
+def test_text_stands_out_from_its_background(visit, failed_run, scheme):
+    """Contrast of 4.5, as WCAG 2.1 requires (1.4.3); what is switched off may have less."""
     page = visit(failed_run / "report.html", color_scheme=scheme).page
     for tab in ("expect", "planner", "findings", "source", "joints", "environment"):
         page.click(f"#tab-{tab}")

@@ -13,7 +13,6 @@ from harness.recording.run import CaptureRecord, ContactRecord, VideoRecord
 from harness.recording.store import StoredRun
 from harness.reporting.html.page import page_html
 from harness.reporting.terminal import failure_place
-from harness.session.run_case import run_case
 from tests.assertions.synthetic_run import (
     BOX,
     TABLE,
@@ -24,6 +23,7 @@ from tests.assertions.synthetic_run import (
     step,
 )
 from tests.reporting.browser import wait_for
+from tests.running import run_case
 
 RED, GREEN = (0, 0, 255), (0, 255, 0)  # BGR
 
@@ -119,23 +119,23 @@ def test_a_ten_minute_run_opens_and_scrubs(visit, tmp_path):
     assert shown == pytest.approx(expected, abs=0.2)
 
 
-def test_contacts_are_told_and_drawn_where_they_were(visit, tmp_path):
+def test_contacts_are_reported_and_drawn_where_they_were(visit, tmp_path):
     pressed = np.full((200, 6), np.nan)
     pressed[50:150] = (0.3, 0.0, 0.1, 0.0, -12.5, 0.0)
     run = lift_run(presses={("left_finger", "box"): pressed})
     opened = visit(write(tmp_path, run), "#t=1")
     page = opened.page
-    told = "left_finger presses box 12.5 N"
-    assert told in opened.text("#readout")
+    reported = "left_finger presses box 12.5 N"
+    assert reported in opened.text("#readout")
     page.wait_for_timeout(300)
     with_arrow = page.locator("#view canvas").screenshot()
     page.click("#tool-contacts")
     page.wait_for_timeout(300)
-    assert told not in opened.text("#readout")
+    assert reported not in opened.text("#readout")
     assert page.locator("#view canvas").screenshot() != with_arrow
     page.click("#tool-contacts")
     page.keyboard.press("Home")
-    assert told not in opened.text("#readout"), "before it touches"
+    assert reported not in opened.text("#readout"), "before it touches"
 
 
 HUES = """() => {

@@ -127,8 +127,8 @@ def test_commands_leave_out_joints_that_only_follow_another(stored, messages):
     for time, message in messages["/joint_commands"][::97]:
         row = int(np.argmin(np.abs(stored.run.signals.times - time)))
         assert not followers & set(message.name)
-        wanted = stored.run.signals.joint_commands[row, [columns[name] for name in message.name]]
-        assert np.array_equal(message.position, wanted)
+        expected = stored.run.signals.joint_commands[row, [columns[name] for name in message.name]]
+        assert np.array_equal(message.position, expected)
 
 
 def test_every_frame_has_one_parent_and_a_way_to_the_world(messages, stored):
@@ -258,25 +258,27 @@ def test_a_captured_picture_is_there_raw_compressed_and_with_its_depth(messages,
     assert 0.01 < np.min(depth) < 5
 
 
-def test_events_tell_steps_and_verdicts_in_the_order_in_which_they_came(messages, stored):
-    told = [(time, json.loads(message.data)) for time, message in messages["/armharness/events"]]
-    assert [time for time, _ in told] == sorted(time for time, _ in told)
-    assert told[0][1] == {
+def test_events_report_steps_and_verdicts_in_the_order_in_which_they_came(messages, stored):
+    reported = [
+        (time, json.loads(message.data)) for time, message in messages["/armharness/events"]
+    ]
+    assert [time for time, _ in reported] == sorted(time for time, _ in reported)
+    assert reported[0][1] == {
         "event": "run_started", "scenario": "Something for every topic", "case": "", "seed": 3
     }  # fmt: skip
-    assert told[-1][1]["digest"] == stored.digest
-    assert told[-1][1]["outcome"] == "failed"
-    steps = [(e["event"], e["step"]) for _, e in told if e["event"].startswith("step")]
+    assert reported[-1][1]["digest"] == stored.digest
+    assert reported[-1][1]["outcome"] == "failed"
+    steps = [(e["event"], e["step"]) for _, e in reported if e["event"].startswith("step")]
     ids = [step.id for step in stored.run.steps]
     reached = ids[:-1]
     expected = [(word, name) for name in reached for word in ("step_started", "step_finished")]
     assert steps == [*expected, ("step_not_reached", ids[-1])]
-    failed = next(e for _, e in told if e.get("step") == "too_far" and "status" in e)
+    failed = next(e for _, e in reported if e.get("step") == "too_far" and "status" in e)
     assert (failed["status"], failed["error_code"]) == ("failed", "NO_IK_SOLUTION")
-    verdicts = {e["expectation"]: e["status"] for _, e in told if e["event"] == "verdict"}
+    verdicts = {e["expectation"]: e["status"] for _, e in reported if e["event"] == "verdict"}
     assert verdicts == {v.expectation: v.status for v in stored.verdicts}
     logged = [(message.level, message.msg) for _, message in messages["/rosout"]]
-    assert len(logged) == len(told)
+    assert len(logged) == len(reported)
     assert any(level == 40 and "too_far: failed: NO_IK_SOLUTION" in said for level, said in logged)
 
 
@@ -362,7 +364,7 @@ def test_export_needs_neither_planner_nor_physics_and_writes_the_same_bag(folder
     assert (tmp_path / "r").read_text() == read_run(folder).run.robot.urdf
 
 
-def test_mesh_addresses_become_files_that_are_there_when_asked_for(folder, tmp_path):
+def test_mesh_addresses_become_files_that_are_there_when_requested(folder, tmp_path):
     assert main(["export", str(folder), "--urdf", str(tmp_path / "r"), "--meshes", "file"]) == 0
     text = (tmp_path / "r").read_text()
     assert "package://" in read_run(folder).run.robot.urdf
@@ -371,7 +373,7 @@ def test_mesh_addresses_become_files_that_are_there_when_asked_for(folder, tmp_p
     assert all(Path(address).is_file() for address in addresses)
 
 
-def test_frames_are_published_raw_too_when_asked_for(folder, tmp_path):
+def test_frames_are_published_raw_too_when_requested(folder, tmp_path):
     place = tmp_path / "raw"
     assert main(["export", str(folder), "--bag", str(place), "--raw-images", "--rate", "20"]) == 0
     messages = decoded(place)
@@ -392,7 +394,7 @@ def test_frames_are_published_raw_too_when_asked_for(folder, tmp_path):
         (["{run}", "--bag", "/proc/nowhere/bag"], "cannot write '/proc/nowhere'"),
     ],
 )
-def test_wrong_use_of_export_is_told_and_writes_nothing(folder, tmp_path, capsys, words, said):
+def test_wrong_use_of_export_is_reported_and_writes_nothing(folder, tmp_path, capsys, words, said):
     names = {"run": folder, "tmp": tmp_path}
     assert main(["export", *(word.format(**names) for word in words)]) == 2
     assert said in capsys.readouterr().err

@@ -15,7 +15,7 @@ from tests.reporting.bag_runs import everything
 
 pytestmark = [pytest.mark.ros, pytest.mark.filterwarnings("ignore::DeprecationWarning")]
 WITHOUT_WHEELS = {"tf2_msgs", "moveit_msgs"}
-"""Of these nobody publishes wheels; the other readers decode them."""
+"""There are no wheels of these messages; the other readers decode them."""
 
 
 @pytest.fixture(scope="module")

@@ -81,11 +81,11 @@ def test_junit_names_seed_digest_margins_requirements_and_report():
     assert "[[ATTACHMENT|" in said
 
 
-@pytest.mark.parametrize(("asked", "failures"), [(0.4, 0), (0.9, 1)])
-def test_samples_may_fail_in_junit_and_a_rate_that_is_not_shown_may_not(asked, failures):
+@pytest.mark.parametrize(("required", "failures"), [(0.4, 0), (0.9, 1)])
+def test_samples_may_fail_in_junit_and_a_rate_that_is_not_shown_may_not(required, failures):
     samples = [replace(failed(0), case="ur3e-sample0")]
     samples += [replace(passed(1), case=f"ur3e-sample{number}") for number in range(1, 12)]
-    rate = rate_of([False] + [True] * 11, asked, 0.95, stop_early=False)
+    rate = rate_of([False] + [True] * 11, required, 0.95, stop_early=False)
     outcome = "failed" if failures else "passed"
     rates = [SampledRate("a/pick.scenario.yaml", "ur3e", rate, outcome)]
     root = ET.fromstring(junit_xml(SuiteRecord(outcome, [*map(SuiteCase, samples)], rates)))

@@ -23,7 +23,7 @@ def names(page):
             page.locator("tbody tr:not(.group) td:nth-child(2)").all_inner_texts()]  # fmt: skip
 
 
-def test_it_tells_everything_and_hostile_names_stay_text(small, visit):
+def test_it_lists_everything_and_hostile_names_stay_text(small, visit):
     seen = visit(small)
     page = seen.page
     assert page.title() == "1 of 5 passed; 1 of 1 success rates not confirmed"

@@ -1,7 +1,7 @@
 """What of URDF, SRDF and MoveIt's files is read, ignored, refused: rows that are test cases.
 
 A row changes one of the files of an arm that is fine. *Read*: the change makes a difference that
-`holds` sees. *Ignored*: the robot stays the same, and a note tells of it unless that says nothing.
+`holds` sees. *Ignored*: the robot stays the same, and a note reports it unless it has no effect.
 *Refused*: an error at the place.
 """
 
@@ -49,7 +49,7 @@ class Row:
         old: In the file; it is replaced.
         new: What stands there then.
         holds: For what is read: true of the robot with the change, and false of that without.
-        told: In a note of what is ignored, or in the error of what is refused.
+        reported: In a note of what is ignored, or in the error of what is refused.
     """
 
     word: str
@@ -58,22 +58,22 @@ class Row:
     old: str
     new: str
     holds: Holds | None = None
-    told: str = ""
+    reported: str = ""
 
 
-def read(word: str, meaning: str, old: str, new: str, holds: Holds, told: str = "") -> Row:
+def read(word: str, meaning: str, old: str, new: str, holds: Holds, reported: str = "") -> Row:
     """A row of what makes a difference."""
-    return Row(word, "read", meaning, old, new, holds, told)
+    return Row(word, "read", meaning, old, new, holds, reported)
 
 
-def ignored(word: str, meaning: str, old: str, new: str, told: str = "") -> Row:
+def ignored(word: str, meaning: str, old: str, new: str, reported: str = "") -> Row:
     """A row of what makes none."""
-    return Row(word, "ignored", meaning, old, new, None, told)
+    return Row(word, "ignored", meaning, old, new, None, reported)
 
 
-def refused(word: str, meaning: str, old: str, new: str, told: str) -> Row:
+def refused(word: str, meaning: str, old: str, new: str, reported: str) -> Row:
     """A row of what is an error."""
-    return Row(word, "refused", meaning, old, new, None, told)
+    return Row(word, "refused", meaning, old, new, None, reported)
 
 
 def link(arm: RobotDescription, name: str):
@@ -107,7 +107,7 @@ URDF_ROWS = (
     read("`<inertial>`: `<mass>`, `<origin>`, `<inertia>`", "turned into link axes",
           '<mass value="1"/>', '<mass value="2"/>', lambda arm: link(arm,
           "upper").inertial.mass == 2),
-    read("an inertia that no body has", "taken as the nearest possible one, told",
+    read("an inertia that no body has", "taken as the nearest possible one, reported",
           'izz="0.002"', 'izz="0.9"',
           lambda arm: any("no body has the principal moments" in note for note in arm.notes)),
     refused("a mass below zero", "", '<mass value="1"/>', '<mass value="-1"/>', "weighs -1 kg"),
@@ -135,7 +135,7 @@ URDF_ROWS = (
             ("dae", "the same; `unit` counts, `up_axis` does not, as in RViz"),
         )
     ),
-    ignored("`<visual>` with another mesh", "is not drawn, told", SHAPE,
+    ignored("`<visual>` with another mesh", "is not drawn, reported", SHAPE,
              SHAPE + VISUAL.format(MESH.format("part.ply")), "'part.ply' is not drawn"),
     refused("`<collision>` with another mesh", "", CYLINDER, MESH.format("part.ply"),
              "not an STL, OBJ or DAE file"),
@@ -159,7 +159,7 @@ URDF_ROWS = (
     refused("no `<limit>`", "of a revolute or prismatic joint that follows none", LIMIT, "",
              "has no <limit>"),
     refused("lower = upper", "it cannot move", LIMIT, LIMIT.replace("-2", "2"), "cannot move"),
-    read("`velocity`, `effort`", "0 is a placeholder and counts as none, told",
+    read("`velocity`, `effort`", "0 is a placeholder and counts as none, reported",
           LIMIT, LIMIT.replace('velocity="2"', 'velocity="0"'),
           lambda arm: any("a limit of 0 for its velocity" in note for note in arm.notes)),
     read("`<mimic>`", "followed in planning and in physics, over several joints if need be",
@@ -182,11 +182,12 @@ URDF_ROWS = (
           lambda arm: arm.joint_by_name["bend"].command_interfaces == ("acceleration",)),
     read("their `min`, `max`", "narrow position, velocity and effort", END,
           CONTROL.format("velocity") + END, lambda arm: arm.joint_by_name["bend"].velocity == 0.9),
-    ignored("`<ros2_control>` of a joint that is not there", "told", END,
+    ignored("`<ros2_control>` of a joint that is not there", "reported", END,
              CONTROL.format("position").replace("bend", "bond") + END, "no joint 'bond'"),
-    ignored("`<transmission>`", "told", END, "<transmission/>" + END, "1 <transmission> element"),
-    ignored("`<gazebo>`", "told", END, "<gazebo/>" + END, "1 <gazebo> element"),
-    ignored("any other element", "told", END, "<sensor/>" + END, "1 <sensor> element"),
+    ignored("`<transmission>`", "reported", END, "<transmission/>" + END,
+            "1 <transmission> element"),
+    ignored("`<gazebo>`", "reported", END, "<gazebo/>" + END, "1 <gazebo> element"),
+    ignored("any other element", "reported", END, "<sensor/>" + END, "1 <sensor> element"),
     refused("several roots, none, a circle", "", END, '<link name="loose"/>' + END,
              "one root link"),
     refused("a name twice", "", END, '<link name="tool"/>' + END, "is there twice"),
@@ -214,7 +215,7 @@ SRDF_ROWS = (
     read("xacro elements", "rendered with `args`, by the rules of xacro files",
           '<group_state name="home" group="manipulator">\n    <joint name="turn" value="0.1"/>',
           XACRO_STATE, lambda arm: abs(arm.start_state["turn"] - 0.392699) < 1e-6),
-    read("`<group>` of a `<chain>`", "pose goals speak of its tip", GROUP,
+    read("`<group>` of a `<chain>`", "pose goals refer to its tip", GROUP,
           GROUP.replace("tool", "lower"), lambda arm: joints(arm) == ("turn", "bend")),
     read("of `<joint>`s", "", GROUP,
           '<group name="manipulator"><joint name="turn"/><joint name="bend"/></group>',
@@ -232,17 +233,17 @@ SRDF_ROWS = (
     read("`<group_state>`",
           "for `named_target`; `home`, `ready` ... is where the robot starts", END,
           STATE.format("0.3") + END, lambda arm: "up" in arm.states_of("manipulator")),
-    read("a state outside the limits", "kept, told; going there fails",
+    read("a state outside the limits", "kept, reported; going there fails",
           END, STATE.format("3") + END,
           lambda arm: any("outside its limits" in note for note in arm.notes)),
     refused("a state of a joint that is not there", "", END,
              STATE.format("3").replace("bend", "bond") + END, "unknown joint 'bond'"),
     ignored("several values of a joint there", "of a virtual or a fixed one; it stands still",
              BENT, BENT + '<joint name="held" value="0 0 1"/>'),
-    read("`<end_effector>`", "a gripper, if one joint closes two sides; else told", END,
+    read("`<end_effector>`", "a gripper, if one joint closes two sides; else reported", END,
           TOOL.format("hand") + '<group name="hand"><joint name="left_joint"/></group>' + END,
           lambda arm: arm.gripper.group == "hand"),
-    read("`<virtual_joint>`", "fixed; floating and planar count as fixed, told",
+    read("`<virtual_joint>`", "fixed; floating and planar count as fixed, reported",
           '"held" type="fixed"',
           '"held" type="floating"',
           lambda arm: any("counts as fixed" in note for note in arm.notes)),
@@ -251,11 +252,11 @@ SRDF_ROWS = (
     read("`<disable_collisions>`", "the pair may touch", END,
           '<disable_collisions link1="base_link" link2="wrist" reason="Never"/>' + END,
           lambda arm: ("base_link", "wrist") in arm.allowed_collisions),
-    ignored("`<disable_collisions>` of links that are not there", "told", END,
+    ignored("`<disable_collisions>` of links that are not there", "reported", END,
              '<disable_collisions link1="base_link" link2="gone" reason="Never"/>' + END,
              "unknown links ignored: gone"),
     *(
-        ignored(f"`<{tag}>`", "told", END, f"<{tag}/>" + END, f"1 <{tag}> element")
+        ignored(f"`<{tag}>`", "reported", END, f"<{tag}/>" + END, f"1 <{tag}> element")
         for tag in ("disable_default_collisions", "enable_collisions", "joint_property",
                     "link_sphere_approximation")
     ),
@@ -265,7 +266,8 @@ BEND = "    max_velocity: 2\n"
 LIMITS_ROWS = (
     read("`has_velocity_limits`, `max_velocity`", "narrows", BEND, "    max_velocity: 0.5\n",
           lambda arm: arm.joint_by_name["bend"].velocity == 0.5),
-    read("a limit wider than the URDF's", "the URDF's stays, told", BEND, "    max_velocity: 9\n",
+    read("a limit wider than the URDF's", "the URDF's stays, reported", BEND,
+          "    max_velocity: 9\n",
           lambda arm: any("wider velocity limit" in note for note in arm.notes)),
     read("`has_acceleration_limits`, `max_acceleration`", "as it is, for no URDF says it", BEND,
           BEND + "    has_acceleration_limits: true\n    max_acceleration: 9\n",

@@ -1,4 +1,4 @@
-"""The tables of robots/FORMATS.md: the files that their rows change, and how they are named."""
+"""The tables of docs/reference/robot_formats.md, with the files that their rows change."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ FILES = {
     "arm.xml": MJCF,
     "calibration.yaml": calibration_text(),
 }
-BESIDE = {
+NEXT_TO_THEM = {
     "part.stl": ASCII_STL,
     "part.obj": TETRAHEDRON,
     "part.dae": COLLADA,
@@ -39,7 +39,7 @@ BESIDE = {
     **PARTS,
     **{f"parts/{name}": text for name, text in PARTS.items()},
 }
-"""Files that a row may speak of."""
+"""Files that a row may name."""
 
 MOVEIT = {"joint_limits": "limits.yaml", "kinematics": "kinematics.yaml"}
 OTHER_WORDS: dict[str, dict[str, Any]] = {
@@ -59,7 +59,7 @@ TABLES: dict[str, tuple[str, str, tuple[Row, ...]]] = {
     "arm.xacro": (
         "xacro",
         "`robot: {xacro: ..., args: {...}}`; rendered by the xacro library, without ROS, in a"
-        " process of its own.\nMistakes are told at the file and line they are written in,"
+        " process of its own.\nMistakes are reported at the file and line they are written in,"
         " included files too.",
         XACRO_ROWS,
     ),

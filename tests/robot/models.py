@@ -15,7 +15,7 @@ UR_TYPES = tuple(name for name in robot_names() if name.startswith("ur"))
 
 
 def robot(**spec) -> RobotDescription:
-    """The robot that a scenario's `robot:` asks for."""
+    """The robot that a scenario's `robot:` names."""
     return load_robot(RobotSpec.model_validate(spec))
 
 

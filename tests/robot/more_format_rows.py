@@ -22,7 +22,7 @@ PARTS = {
     "more.xacro": f'<?xml version="1.0"?>\n<robot {NAMESPACE}>{FRAME}</robot>\n',
     "sizes.yaml": "far: 0.4\n",
 }
-"""Files beside the xacro file, and in its package `parts`."""
+"""Files next to the xacro file, and in its package `parts`."""
 
 FAR = '"far" value="0.2"'
 MACRO = (
@@ -87,21 +87,22 @@ MJCF_ROWS = (
          lambda arm: np.allclose(arm.joint_by_name["lift"].pose.rotation, np.eye(3))),
     read("`damping`, `frictionloss`", "", 'damping="0.5"', 'damping="0.7"',
          lambda arm: arm.joint_by_name["lift"].damping == 0.7),
-    ignored("`armature`, `stiffness`", "told", ELBOW, ELBOW.replace("/>", ' armature="0.1"/>'),
+    ignored("`armature`, `stiffness`", "reported", ELBOW, ELBOW.replace("/>", ' armature="0.1"/>'),
             "1 joints have an armature or a spring"),
     read("`<geom>` box, sphere, cylinder, capsule, mesh", "of STL, OBJ or DAE files", BALL,
          BALL.replace("sphere", "capsule").replace("0.01", "0.01 0.02"),
          lambda arm: type(link(arm, "finger").collisions[0].geometry).__name__ == "Capsule"),
-    ignored("other geoms", "told; MuJoCo counts their mass", BALL,
+    ignored("other geoms", "reported; MuJoCo counts their mass", BALL,
             BALL.replace('"sphere" size="0.01"', '"ellipsoid" mass="0" size="0.01 0.01 0.02"')
             + BALL.replace("/>", ' mass="0.004188790204786391"/>'), "ellipsoid is left out"),
     read("`contype` and `conaffinity` of 0", "is drawn, and touches nothing", BALL,
          BALL.replace("/>", ' contype="0" conaffinity="0"/>'),
          lambda arm: not link(arm, "finger").collisions),
     read("`<site>`", "a frame", SITE, SITE + '<site name="more"/>', has_more),
-    read("`<equality>` of joints", "a mimic; of a curve the slope, told", "0.4 0 0 0", "0.5 0 0 0",
+    read("`<equality>` of joints", "a mimic; of a curve the slope, reported", "0.4 0 0 0",
+         "0.5 0 0 0",
          lambda arm: arm.joint_by_name["pinch"].mimic.multiplier == 0.5),
-    ignored("any other equality", "told", EQUALITY, EQUALITY + '<weld body1="finger"/>',
+    ignored("any other equality", "reported", EQUALITY, EQUALITY + '<weld body1="finger"/>',
             "an equality of the kind weld is ignored"),
     read("`<keyframe>`", "a state of its name", 'qpos="0.1 0.5', 'qpos="0.1 0.6',
          lambda arm: arm.start_state["lift"] == 0.6),
@@ -111,21 +112,22 @@ MJCF_ROWS = (
     read("`actuatorfrcrange`, `forcerange`, `ctrlrange` of a motor", "the joint's effort",
          'forcerange="-50 50"', 'forcerange="-40 40"',
          lambda arm: arm.joint_by_name["pan"].effort == 40),
-    ignored("`<actuator>` otherwise", "told: every joint has the program's own servo",
+    ignored("`<actuator>` otherwise", "reported: every joint has the program's own servo",
             "<actuator>", '<actuator><velocity joint="slide" kv="3"/>', "4 actuators"),
-    ignored("`<sensor>`", "told", EQUALITY, '<sensor><jointpos joint="pan"/></sensor>' + EQUALITY,
+    ignored("`<sensor>`", "reported", EQUALITY,
+            '<sensor><jointpos joint="pan"/></sensor>' + EQUALITY,
             "1 sensors are ignored"),
     read("a fixed `<tendon>` of two joints, with an actuator", "the second follows the first",
          "<actuator>", '<tendon><fixed name="t"><joint joint="pan" coef="1"/>'
          '<joint joint="lift" coef="-2"/></fixed></tendon><actuator><motor tendon="t"/>',
          lambda arm: arm.joint_by_name["lift"].mimic.multiplier == -2
          if arm.joint_by_name["lift"].mimic else False),
-    ignored("`<tendon>` otherwise", "told", EQUALITY,
+    ignored("`<tendon>` otherwise", "reported", EQUALITY,
             '<tendon><fixed><joint joint="pan" coef="1"/></fixed></tendon>' + EQUALITY,
             "1 tendons are ignored"),
-    ignored("geoms of the world", "told", WORLD, WORLD + '<geom size="1"/>',
+    ignored("geoms of the world", "reported", WORLD, WORLD + '<geom size="1"/>',
             "2 geoms of the world body"),
-    ignored("bodies that are free or moved by hand", "told", WORLD,
+    ignored("bodies that are free or moved by hand", "reported", WORLD,
             WORLD + f'<body name="held" mocap="true">{BALL}</body>', "held, cube"),
     ignored("`<option>`, `<visual>`, `<statistic>`", "the scenario's world says them", WORLD,
             '<option gravity="0 0 -1"/>' + WORLD),

@@ -1,4 +1,4 @@
-"""Files that are broken, hostile or huge, as `harness check` tells of them: place, exit code 2.
+"""Files that are broken, hostile or huge, as `harness check` reports them: place, exit code 2.
 
 Each in seconds and in bounded memory. (SDF: tests/world/test_sdf_bad_input.py.)
 """
@@ -52,7 +52,7 @@ def write(folder, file, text):
 
 
 @pytest.mark.parametrize("file", FILES)
-def test_the_files_are_fine_before_they_are_spoilt(tmp_path, file, capsys):
+def test_the_files_are_fine_before_they_are_broken(tmp_path, file, capsys):
     assert main(["check", str(write(tmp_path, file, FILES[file]))]) == 0, capsys.readouterr().out
 
 
@@ -184,22 +184,22 @@ CASES = {
 
 
 @pytest.mark.parametrize(
-    ("kind", "file", "old", "new", "told"),
+    ("kind", "file", "old", "new", "reported"),
     [(kind, *case) for kind, cases in CASES.items() for case in cases],
 )
-def test_a_bad_file_is_told_at_its_place(tmp_path, capsys, kind, file, old, new, told):
+def test_a_bad_file_is_reported_at_its_place(tmp_path, capsys, kind, file, old, new, reported):
     assert old in FILES[file]
     scenario = write(tmp_path, file, FILES[file].replace(old, new))
     began = time.process_time()
     assert main(["check", str(scenario)]) == 2
     assert time.process_time() - began < SECONDS
     out = capsys.readouterr().out
-    assert f"{tmp_path / file}:{told}" in out.splitlines()[0], kind
+    assert f"{tmp_path / file}:{reported}" in out.splitlines()[0], kind
     assert "^" in out or "not closed before" in out, "the place is shown"
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "reported"),
     [
         ("<equality>", "<worldbody><replicate count='1000'><replicate count='2'>"
          "<geom size='1'/></replicate></replicate></worldbody><equality>", "more than 1000 copies"),
@@ -213,11 +213,11 @@ def test_a_bad_file_is_told_at_its_place(tmp_path, capsys, kind, file, old, new,
          "has more than 200 attributes"),
     ],
 )  # fmt: skip
-def test_an_mjcf_that_asks_for_endless_memory_is_refused_before_it_is_compiled(
-    tmp_path, capsys, old, new, told
+def test_an_mjcf_that_needs_endless_memory_is_refused_before_it_is_compiled(
+    tmp_path, capsys, old, new, reported
 ):
     assert main(["check", str(write(tmp_path, "arm.xml", MJCF.replace(old, new)))]) == 2
-    assert told in capsys.readouterr().out.splitlines()[0]
+    assert reported in capsys.readouterr().out.splitlines()[0]
 
 
 def test_mjcf_files_that_include_others_twice_each_end_at_a_number(tmp_path, capsys):

@@ -71,7 +71,7 @@ def test_a_joint_that_a_linkage_follows_is_the_arms(tmp_path):
     assert arm.groups["arm"].joint_names == ("turn", "bend", "reach")
 
 
-def test_of_several_arms_the_first_moves_and_the_others_are_told(tmp_path):
+def test_of_several_arms_the_first_moves_and_the_others_are_reported(tmp_path):
     def arm(side):
         return joint(f"{side}_a", "base_link") + joint(f"{side}_b", f"{side}_a")
 
@@ -85,7 +85,7 @@ def test_of_several_arms_the_first_moves_and_the_others_are_told(tmp_path):
     assert not any("several arms" in note for note in other.notes)
 
 
-def test_a_root_called_world_stands_in_ours(tmp_path):
+def test_a_root_called_world_stands_in_the_harness_world(tmp_path):
     write_arm(
         tmp_path, URDF.replace('"base_link"', '"world"'), SRDF.replace('"base_link"', '"world"')
     )
@@ -140,7 +140,7 @@ def test_a_state_may_place_joints_of_several_axes_that_stand_still_here(tmp_path
         ({"urdf": "package://gone/arm.urdf"}, ["robot.urdf", "package 'gone' is not found"]),
     ],
 )
-def test_an_option_that_does_not_fit_is_told_with_the_way_out(tmp_path, options, words):
+def test_an_option_that_does_not_fit_is_reported_with_the_way_out(tmp_path, options, words):
     write_arm(tmp_path)
     with pytest.raises(RobotError) as caught:
         load_arm(tmp_path, **options)
@@ -174,7 +174,7 @@ def test_accelerations_are_assumed_that_the_efforts_are_enough_for(tmp_path, eff
     assert least <= load_arm(tmp_path).joint_by_name["bend"].acceleration <= most
 
 
-def test_a_joint_that_gravity_is_too_much_for_is_told(tmp_path):
+def test_a_joint_that_gravity_is_too_much_for_is_reported(tmp_path):
     write_arm(tmp_path, URDF.replace('velocity="2" effort="30"', 'velocity="2" effort="3"'))
     assert any("'bend' cannot hold the arm everywhere" in note for note in load_arm(tmp_path).notes)
 

@@ -24,8 +24,8 @@ from tests.robot.models import robot
         ({"model": "rh_p12_rn_a", "gripper": "rh_p12_rn_a"}, ["is a gripper"]),
         ({"model": "./nowhere"}, ["nowhere has no robot.yaml"]),
         ({"urdf": "arm.urdf"}, ["robot.urdf: there is no file arm.urdf"]),
-        ({"model": "ur3e", "srdf": "a.srdf"}, ["robot.srdf requires a robot's file"]),
-        ({"model": "ur3e", "tcp_link": "tool0"}, ["robot.tcp_link requires a robot's file"]),
+        ({"model": "ur3e", "srdf": "a.srdf"}, ["robot.srdf: it requires a robot's file"]),
+        ({"model": "ur3e", "tcp_link": "tool0"}, ["robot.tcp_link: it requires a robot's file"]),
         ({"xacro": "arm.xacro"}, ["robot.xacro: there is no file"]),
         ({"mjcf": "arm.xml"}, ["robot.mjcf: there is no file"]),
         ({"model": "ur3e", "base": {"frame": "Table"}}, ["'world'", "'Table'"]),
@@ -91,7 +91,7 @@ def test_ur_type_is_a_model_as_the_course_writes_it():
     assert robot(ur_type="ur3e").name == "ur3e"
 
 
-def test_a_folder_beside_the_scenario_is_a_robot(tmp_path):
+def test_a_folder_next_to_the_scenario_is_a_robot(tmp_path):
     shutil.copytree(data_folder("robots") / "open_manipulator_x", tmp_path / "mine")
     spec = RobotSpec.model_validate({"model": "mine"})
     mine = load_robot(spec, tmp_path)

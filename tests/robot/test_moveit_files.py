@@ -92,14 +92,14 @@ def test_position_only_ik_frees_the_orientation(tmp_path, only):
         ),
     ],
 )
-def test_what_the_robot_has_not_is_told_at_its_place(tmp_path, files, words):
+def test_what_the_robot_has_not_is_reported_at_its_place(tmp_path, files, words):
     with pytest.raises(SpecError) as caught:
         load(tmp_path, **files)
     for word in words:
         assert word in str(caught.value)
 
 
-def test_a_file_that_is_not_there_is_told(tmp_path):
+def test_a_file_that_is_not_there_is_reported(tmp_path):
     words = {"model": "ur5e", "moveit": {"kinematics": "gone.yaml"}}
     with pytest.raises(RobotError, match="moveit: there is no file"):
         load_robot(RobotSpec.model_validate(words), tmp_path)

@@ -210,7 +210,7 @@ def test_a_named_group_is_the_gripper_without_an_end_effector(tmp_path):
         (HAND.replace("<collision>", "<visual>").replace("</collision>", "</visual>"), "no coll"),
     ],
 )
-def test_a_hand_that_does_not_grasp_is_told(tmp_path, hand, words):
+def test_a_hand_that_does_not_grasp_is_reported(tmp_path, hand, words):
     write(tmp_path, hand)
     assert any(words in note for note in load_arm(tmp_path).notes)
     with pytest.raises(RobotError, match="'hand' is not a gripper"):

@@ -1,4 +1,4 @@
-"""Where package:// leads: folders given, the robot's own package and those beside it, Python's."""
+"""Where package:// leads: folders given, the robot's own package and those next to it, Python's."""
 
 import os
 
@@ -66,13 +66,13 @@ def test_a_given_folder_holds_packages_or_is_one(tmp_path, monkeypatch, place, g
     assert mesh(tmp_path, urdf) == expected
 
 
-def test_a_package_beside_the_robots_own_is_found(tmp_path):
+def test_a_package_next_to_the_robots_own_is_found(tmp_path):
     urdf = arm(tmp_path / "src" / "arm")
     folder = looks(tmp_path / "src" / "looks", manifest=False)
     assert mesh(tmp_path, urdf) == folder / "meshes" / "part.obj"
 
 
-def test_a_package_installed_apart_beside_the_robots_own_is_found(tmp_path):
+def test_a_package_installed_apart_next_to_the_robots_own_is_found(tmp_path):
     urdf = arm(tmp_path / "install" / "arm" / "share" / "arm")
     folder = looks(tmp_path / "install" / "looks" / "share" / "looks")
     assert mesh(tmp_path, urdf) == folder / "meshes" / "part.obj"
@@ -159,7 +159,7 @@ def test_a_folder_that_is_not_there_is_wrong_usage(tmp_path, capsys):
     assert "--package-path: there is no folder" in capsys.readouterr().err
 
 
-def test_what_is_nowhere_is_told_with_the_ways_out(tmp_path):
+def test_what_is_nowhere_is_reported_with_the_ways_out(tmp_path):
     urdf = arm(tmp_path / "arm")
     with pytest.raises(SpecError) as caught:
         mesh(tmp_path, urdf)

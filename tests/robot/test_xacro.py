@@ -1,4 +1,4 @@
-"""xacro files of people: rendered without ROS, inside bounds, mistakes told at their place."""
+"""xacro files of people: rendered without ROS, inside bounds, mistakes reported at their place."""
 
 import time
 
@@ -58,7 +58,7 @@ def test_a_xacro_file_is_rendered_with_its_arguments(tmp_path):
         assert "harness-place" not in arm.urdf
 
 
-def test_a_mistake_of_a_macro_is_told_in_the_file_that_has_it(tmp_path):
+def test_a_mistake_of_a_macro_is_reported_in_the_file_that_has_it(tmp_path):
     write(tmp_path, limb=LIMB.replace('lower="-2"', 'lower="low"'))
     with pytest.raises(SpecError) as caught:
         load(tmp_path)
@@ -94,7 +94,7 @@ def test_what_cannot_be_rendered_is_refused_at_its_place(
     tmp_path, monkeypatch, old, new, place, words
 ):
     assert old in ARM
-    monkeypatch.setattr(file, "PROCESSOR_TIME", 2)  # an arm of ours takes a tenth of one
+    monkeypatch.setattr(file, "PROCESSOR_TIME", 2)  # a bundled arm takes a tenth of one
     write(tmp_path, ARM.replace(old, new))
     began = time.process_time()
     with pytest.raises(SpecError) as caught:
@@ -126,7 +126,7 @@ def test_an_expression_starts_and_writes_nothing(tmp_path):
     assert not (tmp_path / "made").exists()
 
 
-def test_an_argument_that_the_file_does_not_take_is_told(tmp_path):
+def test_an_argument_that_the_file_does_not_take_is_reported(tmp_path):
     write(
         tmp_path,
         ARM.replace('<xacro:include filename="$(find parts)/limb.xacro"/>', LIMB[len(HEAD) : -9]),

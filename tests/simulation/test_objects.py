@@ -1,4 +1,4 @@
-"""Objects appear, move and disappear in a running physics; what the record tells of them."""
+"""Objects appear, move and disappear in a running physics; what the record says of them."""
 
 from dataclasses import replace
 

@@ -105,21 +105,21 @@ def test_reachable_poses_carry_what_reaches_them(chain):
 
 @EACH_ARM
 @pytest.mark.parametrize("any_orientation", [True, False])
-def test_no_joint_positions_come_to_an_unreachable_pose(chain, any_orientation):
+def test_no_joint_positions_reach_an_unreachable_pose(chain, any_orientation):
     """Thousands of random states come close to the sphere, none to a pose outside it."""
     rng = np.random.default_rng(1)
     states = rng.uniform(chain.lower, chain.upper, (3000, chain.dof))
-    behind = chain.tip.inverse()
+    tool_to_link = chain.tip.inverse()
     poses = [chain.link_pose(state) for state in states]
     if not any_orientation:
-        poses = [pose @ behind for pose in poses]
+        poses = [pose @ tool_to_link for pose in poses]
     places = np.array([pose.translation for pose in poses])
     centre, radius = chain.farthest()
     radius += float(np.linalg.norm(chain.tip.translation)) if any_orientation else 0.0
     reached = np.linalg.norm(places - centre, axis=1).max()
     assert 0.8 * radius < reached <= radius
     for target in drawn(unreachable_poses(chain, any_orientation=any_orientation), 30):
-        last = target.pose if any_orientation else target.pose @ behind
+        last = target.pose if any_orientation else target.pose @ tool_to_link
         assert np.linalg.norm(last.translation - centre) > radius * 1.0009
 
 

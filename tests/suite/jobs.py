@@ -49,13 +49,13 @@ def never_returns_from_native_code(job, notify):
     re.match(r"(a+)+$", "a" * 80 + "b")
 
 
-def leaves_a_process_behind(job, _notify):
+def leaves_a_process_running(job, _notify):
     child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
     Path(job.file).write_text(str(child.pid))
     return CaseResult(str(job.file), "", "t", "passed")
 
 
-def tells_its_pid_and_sleeps(job, _notify):
+def reports_its_pid_and_sleeps(job, _notify):
     Path(job.file).write_text(str(os.getpid()))
     time.sleep(600)
 
@@ -84,11 +84,11 @@ def forget_by_mistake():
     raise ZeroDivisionError("what is prepared may fail")
 
 
-def tells_what_is_remembered(job, _notify):
+def reports_what_is_remembered(job, _notify):
     return CaseResult(str(job.file), "", " ".join(REMEMBERED), "passed")
 
 
-def tells_robots_already_read(job, _notify):
+def reports_robots_already_read(job, _notify):
     from harness.robot.load import _bundled
 
     return CaseResult(str(job.file), "", str(_bundled.cache_info().currsize), "passed")

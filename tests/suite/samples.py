@@ -4,7 +4,7 @@ from harness.suite.rates import Tally
 
 
 def rate_of(outcomes, at_least, confidence, *, stop_early):
-    """What outcomes in their order come to."""
+    """The rate of outcomes in their order."""
     tally = Tally(at_least, confidence, stop_early=stop_early)
     for is_good in outcomes:
         tally.add(is_good)

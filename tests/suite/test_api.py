@@ -1,4 +1,4 @@
-"""Scenarios from Python: what the documentation shows runs, and mistakes are told."""
+"""Scenarios from Python: what the documentation shows runs, and mistakes are reported."""
 
 import os
 import re
@@ -22,7 +22,7 @@ from harness.steps.move_to import MoveTo
 from harness.steps.wait import Wait
 from harness.suite.discovery import UsageError
 
-PAGE = data_folder("scenarios") / "PYTHON.md"
+PAGE = data_folder("scenarios").parent / "docs/guides/python.md"
 BUNDLED = sorted(data_folder("scenarios").rglob("*.scenario.yaml"))
 WAITS = {"scenario": "Wait", "robot": "open_manipulator_x", "steps": [Wait(duration=0.1)]}
 
@@ -121,15 +121,15 @@ def test_a_model_that_fails_names_no_file_and_quotes_its_own_lines(title, tmp_pa
         scenario=title, robot="open_manipulator_x", steps=[MoveTo(named_target="home")],
         expect=[NamedTarget(state="init")],
     )  # fmt: skip
-    told = str(harness.run(scenario))
-    [line] = [line for line in told.splitlines() if line.startswith("<Scenario model>:")]
+    reported = str(harness.run(scenario))
+    [line] = [line for line in reported.splitlines() if line.startswith("<Scenario model>:")]
     number = int(line.split(":")[1])
     quoted = scenario_text(scenario).splitlines()[number - 1]
     assert "state: init" in quoted
-    assert f"{number} | {quoted}" in told
-    assert str(tmp_path) not in told
+    assert f"{number} | {quoted}" in reported
+    assert str(tmp_path) not in reported
     mistaken = scenario.model_copy(update={"steps": (MoveTo(named_target="hime"),)})
-    told = str(harness.run(mistaken))
-    assert "<Scenario model>:" in told
-    assert "did you mean 'home'" in told
-    assert str(tmp_path) not in told
+    reported = str(harness.run(mistaken))
+    assert "<Scenario model>:" in reported
+    assert "did you mean 'home'" in reported
+    assert str(tmp_path) not in reported

@@ -66,7 +66,7 @@ def test_reports_of_files_with_the_same_name_have_folders_of_their_own(folder):
 
 
 def test_a_report_is_never_inside_another_files_report(folder):
-    (folder / "sub.scenario.yaml").write_text("scenario: Beside the folder sub\n")
+    (folder / "sub.scenario.yaml").write_text("scenario: Next to the folder sub\n")
     files = discover(["."])
     folders = report_folders(files, Path("r"))
     assert folders == [Path("r/b"), Path("r/sub/a"), Path("r/sub.scenario")]

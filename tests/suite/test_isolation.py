@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from harness.core.errors import HarnessError
-from harness.suite.cases import CaseJob, read_ahead, run_here, run_isolated
+from harness.session.run_request import RunRequest
+from harness.suite.cases import read_ahead, run_here, run_isolated
 from harness.suite.warm import ServerStartError, WarmServer
 from tests.suite import jobs
 
@@ -22,7 +23,9 @@ def server():
 
 
 def outcome(server, function, file="a.scenario.yaml", **options):
-    [(_index, result)] = run_isolated([CaseJob(Path(file))], server, function=function, **options)
+    [(_index, result)] = run_isolated(
+        [RunRequest(Path(file))], server, function=function, **options
+    )
     return result
 
 
@@ -46,7 +49,7 @@ def wait_for_text(file, seconds=10.0):
 
 
 def test_every_case_has_a_process_of_its_own(server):
-    cases = [CaseJob(Path(f"{name}.scenario.yaml")) for name in "abc"]
+    cases = [RunRequest(Path(f"{name}.scenario.yaml")) for name in "abc"]
     digests = {
         result.digest for _index, result in run_isolated(cases, server, function=jobs.passes)
     }
@@ -54,11 +57,11 @@ def test_every_case_has_a_process_of_its_own(server):
     assert f"pid {os.getpid()}" not in digests
 
 
-def test_a_case_in_this_process_tells_the_same(server):
+def test_a_case_in_this_process_reports_the_same(server):
     def without_pid(results):
         return [(index, result.file, result.outcome) for index, result in results]
 
-    cases = [CaseJob(Path("a.scenario.yaml"))]
+    cases = [RunRequest(Path("a.scenario.yaml"))]
     here = without_pid(run_here(cases, function=jobs.passes))
     assert here == without_pid(run_isolated(cases, server, function=jobs.passes))
 
@@ -70,7 +73,11 @@ def test_progress_of_a_running_case_is_heard(server):
 
 
 def test_results_come_as_cases_end_and_carry_their_index(server):
-    cases = [CaseJob(Path("a"), seed=700), CaseJob(Path("b"), seed=0), CaseJob(Path("c"), seed=0)]
+    cases = [
+        RunRequest(Path("a"), seed=700),
+        RunRequest(Path("b"), seed=0),
+        RunRequest(Path("c"), seed=0),
+    ]
     function = jobs.passes_after_its_seed_in_ms
     one_by_one = [index for index, _ in run_isolated(cases, server, function=function)]
     side_by_side = [index for index, _ in run_isolated(cases, server, workers=2, function=function)]
@@ -82,7 +89,7 @@ def test_an_exception_is_an_error_with_its_traceback(server):
     result = outcome(server, jobs.raises)
     assert result.outcome == "error"
     assert "ZeroDivisionError: one by nothing" in result.message
-    [(_index, here)] = run_here([CaseJob(Path("a"))], function=jobs.raises)
+    [(_index, here)] = run_here([RunRequest(Path("a"))], function=jobs.raises)
     assert here.outcome == "error"
     assert "ZeroDivisionError: one by nothing" in here.message
 
@@ -125,9 +132,9 @@ def test_the_hard_cap_can_come_from_the_environment(server, monkeypatch):
     assert "after 0.25 s" in outcome(server, jobs.never_returns_from_native_code).message
 
 
-def test_what_a_case_leaves_behind_ends_with_it(server, tmp_path):
+def test_what_a_case_leaves_running_ends_with_it(server, tmp_path):
     file = tmp_path / "pid"
-    assert outcome(server, jobs.leaves_a_process_behind, file=file).outcome == "passed"
+    assert outcome(server, jobs.leaves_a_process_running, file=file).outcome == "passed"
     assert wait_until_gone(int(file.read_text()))
 
 
@@ -141,7 +148,7 @@ def test_what_a_case_prints_stays_out_of_this_process(server, capfd):
 def test_closing_the_server_ends_running_cases(tmp_path):
     file = tmp_path / "pid"
     with WarmServer(LIGHT) as server:
-        server.start(jobs.tells_its_pid_and_sleeps, CaseJob(file))
+        server.start(jobs.reports_its_pid_and_sleeps, RunRequest(file))
         pid = int(wait_for_text(file))
         assert is_alive(pid)
     assert wait_until_gone(pid)
@@ -153,8 +160,8 @@ def test_a_caller_that_is_killed_leaves_no_process(tmp_path):
         "import sys; from pathlib import Path; from tests.suite import jobs\n"
         "from harness.suite.cases import *\n"
         "server = WarmServer(('json',))\n"
-        "list(run_isolated([CaseJob(Path(sys.argv[1]))], server,"
-        " function=jobs.tells_its_pid_and_sleeps))\n"
+        "list(run_isolated([RunRequest(Path(sys.argv[1]))], server,"
+        " function=jobs.reports_its_pid_and_sleeps))\n"
     )
     root = Path(__file__).parents[2]
     caller = subprocess.Popen([sys.executable, "-c", code, str(file)], cwd=root)
@@ -166,7 +173,7 @@ def test_a_caller_that_is_killed_leaves_no_process(tmp_path):
 
 def test_a_server_that_dies_makes_its_cases_errors_and_leaves_no_process(server, tmp_path):
     file = tmp_path / "pid"
-    number = server.start(jobs.tells_its_pid_and_sleeps, CaseJob(file))
+    number = server.start(jobs.reports_its_pid_and_sleeps, RunRequest(file))
     pid = int(wait_for_text(file))
     os.kill(server.pid, signal.SIGKILL)
     ended = []
@@ -177,7 +184,7 @@ def test_a_server_that_dies_makes_its_cases_errors_and_leaves_no_process(server,
     assert outcome(server, jobs.passes).outcome == "passed"  # on a new server
 
 
-def test_a_missing_module_is_told_by_name():
+def test_a_missing_module_is_reported_by_name():
     with (
         WarmServer(("json", "no_such_module_at_all")) as server,
         pytest.raises(ServerStartError, match="No module named 'no_such_module_at_all'") as caught,
@@ -194,17 +201,17 @@ def test_server_and_child_have_one_thread_with_every_solver_imported():
 
 def test_every_child_finds_what_the_server_has_prepared(server):
     server.prepare(jobs.remember, "this")
-    assert outcome(server, jobs.tells_what_is_remembered).title == "this"
+    assert outcome(server, jobs.reports_what_is_remembered).title == "this"
     server.prepare(jobs.remember, "and that")
-    assert outcome(server, jobs.tells_what_is_remembered).title == "this and that"
+    assert outcome(server, jobs.reports_what_is_remembered).title == "this and that"
 
 
 def test_a_preparation_that_fails_leaves_the_server_at_work(server):
     server.prepare(jobs.remember, "this")
     server.prepare(jobs.forget_by_mistake)
-    assert outcome(server, jobs.tells_what_is_remembered).title == ""
+    assert outcome(server, jobs.reports_what_is_remembered).title == ""
 
 
 def test_bundled_robots_that_scenarios_name_are_read_once_for_all(server):
     server.prepare(read_ahead, frozenset({"Pick", "open_manipulator_x", "rh_p12_rn_a"}))
-    assert outcome(server, jobs.tells_robots_already_read).title == "2"
+    assert outcome(server, jobs.reports_robots_already_read).title == "2"

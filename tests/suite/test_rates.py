@@ -20,7 +20,7 @@ def test_the_interval_is_wilsons(total, share, confidence):
 
 
 @pytest.mark.parametrize("rate", [0.5, 0.9])
-def test_at_the_asked_rate_itself_the_sequential_test_rarely_decides(rate):
+def test_at_the_required_rate_itself_the_sequential_test_rarely_decides(rate):
     rng = random.Random(1)
     wrong = 0
     for _ in range(400):
@@ -34,7 +34,7 @@ def test_at_the_asked_rate_itself_the_sequential_test_rarely_decides(rate):
 
 
 @pytest.mark.parametrize(("true", "verdict"), [(0.99, "shown"), (0.5, "refuted")])
-def test_far_from_the_asked_rate_it_decides_early_and_rightly(true, verdict):
+def test_far_from_the_required_rate_it_decides_early_and_rightly(true, verdict):
     rng = random.Random(2)
     for _ in range(50):
         outcomes = [rng.random() < true for _ in range(400)]
@@ -44,7 +44,7 @@ def test_far_from_the_asked_rate_it_decides_early_and_rightly(true, verdict):
         assert rate.total < 200
 
 
-def test_without_an_asked_rate_every_one_must_pass():
+def test_without_an_required_rate_every_one_must_pass():
     assert rate_of([True] * 5, None, 0.95, stop_early=True).verdict == "shown"
     assert rate_of([True, False], None, 0.95, stop_early=True).verdict == "refuted"
 

@@ -35,24 +35,24 @@ def places(document):
 
 
 def test_samples_that_overlap_are_counted(file, tmp_path):
-    told = results(file(POST), "--no-report", cwd=tmp_path)
-    overlapping = [abs(x - 0.5) < FREE for x in places(told)]
-    assert [case["overlap"] > 0 for case in told["cases"]] == overlapping
+    reported = results(file(POST), "--no-report", cwd=tmp_path)
+    overlapping = [abs(x - 0.5) < FREE for x in places(reported)]
+    assert [case["overlap"] > 0 for case in reported["cases"]] == overlapping
     assert any(overlapping)
-    [rate] = told["rates"]
+    [rate] = reported["rates"]
     assert (rate["rate"]["overlapping"], rate["rate"]["redraws"]) == (sum(overlapping), 0)
 
 
 def test_samples_that_overlap_are_drawn_again_and_counted(file, tmp_path):
     path = file(REDRAWN)
-    told = results(path, "--no-report", cwd=tmp_path)
-    assert all(abs(x - 0.5) >= FREE for x in places(told))
-    assert all(case["overlap"] == 0 for case in told["cases"])
-    redraws = [case["redraws"] for case in told["cases"]]
-    rate = told["rates"][0]["rate"]
+    reported = results(path, "--no-report", cwd=tmp_path)
+    assert all(abs(x - 0.5) >= FREE for x in places(reported))
+    assert all(case["overlap"] == 0 for case in reported["cases"])
+    redraws = [case["redraws"] for case in reported["cases"]]
+    rate = reported["rates"][0]["rate"]
     assert (rate["overlapping"], rate["redraws"]) == (0, sum(redraws))
     assert rate["redrawn"] == sum(count > 0 for count in redraws) > 0
-    assert [case["digest"] for case in told["cases"]] == [
+    assert [case["digest"] for case in reported["cases"]] == [
         case["digest"] for case in results(path, "--no-report", cwd=tmp_path)["cases"]
     ]
 

@@ -121,7 +121,7 @@ def test_a_rate_that_cannot_be_shown_fails_and_says_what_to_do(varied):
     assert "at least 60.0% is not confirmed: take more samples, or require less" in done.stdout
 
 
-def test_samples_of_what_has_none_are_refused_and_leave_files_beside_sampled_ones_alone(varied):
+def test_samples_of_what_has_none_are_refused_and_leave_files_next_to_sampled_ones_alone(varied):
     path = varied()
     plain = path.with_name("plain.scenario.yaml")
     plain.write_text(VARIED.partition("randomize:")[0])
@@ -139,7 +139,7 @@ def test_samples_of_what_has_none_are_refused_and_leave_files_beside_sampled_one
     assert [case["case"] for case in both["cases"]] == ["sample0", "sample1", ""]
 
 
-def test_a_table_tells_which_quantity_decides(varied):
+def test_a_table_reports_which_quantity_decides(varied):
     path = varied(GRID)
     done = harness("run", path, "--no-report", cwd=path.parent)
     assert done.returncode == 1
@@ -182,11 +182,11 @@ def test_a_case_that_is_not_there_is_named_with_those_that_are(varied):
     assert "0.05_s-1, 0.05_s-2" in done.stderr
 
 
-def test_a_mistake_in_one_value_is_told_of_its_cases_alone(varied):
+def test_a_mistake_in_one_value_is_reported_of_its_cases_alone(varied):
     path = varied(GRID.replace("0.2 s]", "0.2 m]"))
     done = harness("check", path, cwd=path.parent)
     assert done.returncode == 2
-    assert f"{path}:5:11: `0.2 m` is a length; a time is meant" in done.stdout
+    assert f"{path}:5:11: `0.2 m` is a length; a time is expected" in done.stdout
     assert "[0.05_s-1]: ok" in done.stdout
     ran = harness("run", path, "--no-report", cwd=path.parent)
     assert ran.returncode == 2
@@ -225,7 +225,7 @@ def test_samples_that_cannot_be_run_do_not_count_in_the_rate(varied):
     assert "--set" not in done.stdout
 
 
-def test_a_mistake_of_the_file_is_told_once_not_for_every_sample(varied):
+def test_a_mistake_of_the_file_is_reported_once_not_for_every_sample(varied):
     path = varied(VARIED.replace("wait:", "wiat:"))
     done = harness("run", path, "--no-report", cwd=path.parent)
     assert done.returncode == 2
@@ -233,16 +233,16 @@ def test_a_mistake_of_the_file_is_told_once_not_for_every_sample(varied):
     assert "1 invalid of 1 case" in done.stdout
 
 
-def test_failures_are_told_in_the_format_that_is_asked_for(varied):
+def test_failures_are_reported_in_the_format_that_is_requested(varied):
     path = varied(GRID)
     words = ("--no-report", "--case", "0.2_s-1")
     short = harness("run", path, *words, "--format", "short", cwd=path.parent)
     assert short.stdout.startswith(f"{path}:7:1: [0.2_s-1] duration")
     assert len(short.stdout.splitlines()) == 1
-    told = harness("run", path, *words, "--format", "github", cwd=path.parent)
-    assert told.stdout.startswith(f"::error file={path},line=7,title=Wait [0.2_s-1]::duration")
+    reported = harness("run", path, *words, "--format", "github", cwd=path.parent)
+    assert reported.stdout.startswith(f"::error file={path},line=7,title=Wait [0.2_s-1]::duration")
     path.write_text(GRID.replace("wait", "wiat"))
     checked = harness("check", path, "--format", "short", cwd=path.parent)
     assert checked.stdout.startswith(f"{path}:5:5: no verb is called `wiat`")
     assert len(checked.stdout.splitlines()) == 1
-    assert (short.returncode, told.returncode, checked.returncode) == (1, 1, 2)
+    assert (short.returncode, reported.returncode, checked.returncode) == (1, 1, 2)

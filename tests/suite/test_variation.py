@@ -1,4 +1,4 @@
-"""The cases that a file's values come to."""
+"""The cases that a file's values produce."""
 
 import json
 
@@ -93,7 +93,9 @@ def test_samples_of_each_parametrised_case_share_a_group():
         ("expect_rate: {at_least: 0.5}", 1, 1, "say how many"),
     ],
 )
-def test_a_mistake_is_told_at_its_place_and_leaves_one_case(tmp_path, lines, line, column, said):
+def test_a_mistake_is_reported_at_its_place_and_leaves_one_case(
+    tmp_path, lines, line, column, said
+):
     path = tmp_path / "varied.scenario.yaml"
     path.write_text(FILE + lines + "\n")
     with pytest.raises(SpecError) as caught:

@@ -1,4 +1,4 @@
-"""Every run tells where plan and physics differed, with the numbers."""
+"""Every run reports where plan and physics differed, with the numbers."""
 
 from pathlib import Path
 
@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from harness.recording.store import read_run
-from harness.session.run_case import run_case
 from tests.engine.front_door import run
+from tests.running import run_case
 
 ROOT = Path(__file__).parents[2]
 
@@ -24,7 +24,7 @@ def weak_grip(tmp_path_factory):
     return read_run(folder).run
 
 
-def test_an_object_that_slips_out_is_told_with_the_time_of_its_loss(weak_grip):
+def test_an_object_that_slips_out_is_reported_with_the_time_of_its_loss(weak_grip):
     (found,) = findings(weak_grip, "held")
     assert "believed that it held green_cylinder; the physics lost it at" in found.message
     lift = next(step for step in weak_grip.steps if step.id.endswith(".lift"))
@@ -32,7 +32,7 @@ def test_an_object_that_slips_out_is_told_with_the_time_of_its_loss(weak_grip):
     assert found.values["drift"] > 0.05
 
 
-def test_planned_clearance_stands_beside_the_actual_one(weak_grip):
+def test_planned_clearance_stands_next_to_the_actual_one(weak_grip):
     found = findings(weak_grip, "clearance")[0]
     pair = tuple(found.values["pair"])
     row = round(found.time / weak_grip.timestep)
@@ -86,7 +86,7 @@ def test_pressing_fingers_are_not_planned_to_be_inside_of_what_they_press(tmp_pa
     assert {key for key in saved.signals.planned_clearances if key[0] == "green_cylinder"}
 
 
-def test_the_worst_joint_is_told_with_its_lag(tmp_path):
+def test_the_worst_joint_is_reported_with_its_lag(tmp_path):
     _, saved = run(
         tmp_path,
         "- inject: {command_latency: 20 ms}\n- ptp: {joints: {shoulder_pan_joint: 1.0}}",
@@ -96,7 +96,7 @@ def test_the_worst_joint_is_told_with_its_lag(tmp_path):
     assert found.values["error"] > 0.01
 
 
-def test_an_allowed_pair_that_touched_is_told_with_time_and_force(tmp_path):
+def test_an_allowed_pair_that_touched_is_reported_with_time_and_force(tmp_path):
     _, saved = run(
         tmp_path,
         """

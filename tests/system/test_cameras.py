@@ -14,7 +14,7 @@ from harness.recording.film import decoded_film
 from harness.recording.link_poses import link_poses
 from harness.recording.plain import to_plain
 from harness.recording.store import read_run
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 FOLDER = data_folder("scenarios") / "cameras"
 GRIPPER = FOLDER / "01_gripper_camera.scenario.yaml"

@@ -74,7 +74,7 @@ def test_there_are_sixty_cases_of_which_thirty_move_an_object_by_contact():
             assert max(force.max() for force in pressed) > 1.0
 
 
-def test_two_workers_in_random_order_come_to_the_same_digests_twice(suite, first):
+def test_two_workers_in_random_order_reach_the_same_digests_twice(suite, first):
     again = digests(suite, "-n", "2", "--randomly-seed=2")
     assert len(first) >= 60
     assert again == first

@@ -1,4 +1,4 @@
-"""Every bundled failure passes as expected, and reads well where nobody expects it."""
+"""Every bundled failure passes as expected, and reads well where it is unexpected."""
 
 import re
 from pathlib import Path
@@ -12,12 +12,12 @@ from harness.recording.store import read_run
 from harness.reporting.explanation import explanation_lines
 from harness.reporting.terminal import failure
 from harness.session.check import check_file
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 FAILURES = data_folder("scenarios") / "failures"
 FILES = sorted(FAILURES.glob("*.scenario.yaml"))
 
-TOLD = {
+MESSAGES = {
     "too_far": [
         r"cannot reach .* the nearest point it reaches, .*, is \d+\.\d mm away",
         r"reach: NO_IK_SOLUTION: nearest reachable pose: \(.*\), \d+\.\d mm and \d+\.\d° away",
@@ -94,7 +94,7 @@ TOLD = {
         r"what to do: the planner does not know hidden_post \(it is `in: simulation`\)",
     ],
 }
-"""Id of each step that fails -> what a person is told, in this order."""
+"""Id of each step that fails -> what a person is reported, in this order."""
 
 
 @pytest.fixture(scope="module", params=FILES, ids=lambda file: file.name.split(".")[0])
@@ -117,14 +117,14 @@ def unexpected(file: Path, folder: Path, step_id: str) -> Path:
     return changed
 
 
-def test_every_failure_is_told_in_the_words_that_a_person_needs(failed):
+def test_every_failure_is_reported_in_the_words_that_a_person_needs(failed):
     file, run, _ = failed
     steps = [step for step in run.steps if step.status == "expected_error"]
     assert steps
     for step in steps:
         text = [step.message, *explanation_lines(step.explanation, step.message)]
         said = iter(text)
-        for pattern in TOLD[step.id]:
+        for pattern in MESSAGES[step.id]:
             assert any(re.search(pattern, line) for line in said), (file.name, pattern, text)
 
 
@@ -134,7 +134,7 @@ def test_stages_come_in_order_and_the_first_that_failed_has_the_code(failed):
         stages = stages_of(step.explanation)
         if not stages:
             continue
-        names = [stage.name for stage in stages]
+        names = [stage.stage for stage in stages]
         assert names == [name for name in STAGES if name in names]
         codes = [stage.code for stage in stages if stage.status == "failed"]
         assert step.error_code in codes
@@ -193,10 +193,10 @@ def test_without_the_expectation_the_run_fails_and_the_terminal_explains(tmp_pat
     file = unexpected(FAILURES / f"{name}.scenario.yaml", tmp_path, step)
     result = run_case(file, stills=False)
     assert result.outcome == "failed"
-    told = iter(failure(result).splitlines())
-    for pattern in TOLD[step]:
+    reported = iter(failure(result).splitlines())
+    for pattern in MESSAGES[step]:
         if not pattern.startswith("picture"):
-            assert any(re.search(pattern, line) for line in told), pattern
+            assert any(re.search(pattern, line) for line in reported), pattern
 
 
 @pytest.mark.parametrize(
@@ -214,6 +214,6 @@ def test_a_check_finds_the_static_ones_and_explains_them(tmp_path, name, step):
     assert not check_file(file).predicted
     found = check_file(unexpected(file, tmp_path, step))
     [problem], [lines] = found.predicted, found.explanations
-    told = iter([problem.message, *lines])
-    for pattern in TOLD[step]:
-        assert any(re.search(pattern, line) for line in told), pattern
+    reported = iter([problem.message, *lines])
+    for pattern in MESSAGES[step]:
+        assert any(re.search(pattern, line) for line in reported), pattern

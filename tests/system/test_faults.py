@@ -1,12 +1,12 @@
-"""Injected faults: what they do to a run, and that a fault without effect is told."""
+"""Injected faults: what they do to a run, and that a fault without effect is reported."""
 
 from pathlib import Path
 
 import pytest
 
 from harness.recording.store import read_run
-from harness.session.run_case import run_case
 from tests.engine.front_door import problems, run
+from tests.running import run_case
 
 ROOT = Path(__file__).parents[2]
 HOME = "- move_to: mogi_home\n"
@@ -52,13 +52,13 @@ def test_faults_that_change_nothing_are_findings_with_their_reason(tmp_path):
             "no_effect",
             "the gripper pressed on nothing afterwards",
         ),
-        ("joint_stall", "wrist_3_joint"): ("no_effect", "it was not told to move afterwards"),
-        ("command_latency", ""): ("no_effect", "no joint was told to move afterwards"),
+        ("joint_stall", "wrist_3_joint"): ("no_effect", "it was not commanded to move afterwards"),
+        ("command_latency", ""): ("no_effect", "no joint was commanded to move afterwards"),
         ("push", "red_box"): ("no_effect", "it did not move: friction or a hand held it"),
     }
-    told = [f.message for f in saved.findings if f.kind == "fault_without_effect"]
-    assert "push of red_box had no effect: it did not move: friction or a hand held it" in told
-    assert len(told) == 6
+    reported = [f.message for f in saved.findings if f.kind == "fault_without_effect"]
+    assert "push of red_box had no effect: it did not move: friction or a hand held it" in reported
+    assert len(reported) == 6
 
 
 def test_a_fault_that_is_set_back_in_time_had_no_effect(tmp_path):
@@ -73,16 +73,16 @@ def test_a_fault_that_is_set_back_in_time_had_no_effect(tmp_path):
 """,
         world="lesson_ur",
     )
-    broke, mended = (step.result["faults"] for step in saved.steps[1:3])
+    broke, repaired = (step.result["faults"] for step in saved.steps[1:3])
     assert {fault["fault"]: (fault["receipt"], fault["evidence"]) for fault in broke} == {
         "friction": ("no_effect", "nothing pulled at it before it was set again"),
         "gripper_effort": ("no_effect", "the gripper pressed on nothing before it was set again"),
         "sensor_noise": ("no_effect", "no time passed before it was set again"),
-        "command_latency": ("no_effect", "no joint was told to move before it was set again"),
+        "command_latency": ("no_effect", "no joint was commanded to move before it was set again"),
     }
-    assert {fault["receipt"] for fault in mended} == {"landed"}
-    told = [found for found in saved.findings if found.kind == "fault_without_effect"]
-    assert len(told) == 4
+    assert {fault["receipt"] for fault in repaired} == {"landed"}
+    reported = [found for found in saved.findings if found.kind == "fault_without_effect"]
+    assert len(reported) == 4
 
 
 def test_pushes_of_one_step_are_at_the_same_time(tmp_path):
@@ -141,7 +141,7 @@ def test_a_stalled_joint_does_not_move_whatever_its_motor_does(tmp_path):
     assert rows.max() - rows.min() < 1e-4
 
 
-def test_mistakes_in_a_fault_are_told_where_they_stand(tmp_path):
+def test_mistakes_in_a_fault_are_reported_where_they_stand(tmp_path):
     assert problems(tmp_path, "- inject: {}")[0][0] == 5
     found = problems(
         tmp_path,

@@ -34,7 +34,7 @@ ARM = """<robot name="arm"><link name="base"/><link name="tip"/>
 
 @pytest.fixture
 def folders(tmp_path):
-    """A project's folder, and a folder beside it."""
+    """A project's folder, and a folder next to it."""
     own, other = tmp_path / "own", tmp_path / "other"
     own.mkdir()
     other.mkdir()

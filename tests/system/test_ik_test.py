@@ -8,14 +8,14 @@ import cv2
 import numpy as np
 import pytest
 
+from docs import ROOT
 from harness.cli.main import main
 from harness.strategies import load_chain
-from tests.docs.generated import ROOT
 
 EXAMPLES = ROOT / "scenarios/ik_test"
 ARM = ["--robot", "open_manipulator_x"]
 STUDENT = "scenarios/ik_test/student_ik.py:ik"
-PAGE = EXAMPLES / "README.md"
+PAGE = ROOT / "docs/guides/ik_test.md"
 
 
 def cpu_seconds():
@@ -35,11 +35,11 @@ def test_both_mistakes_are_found_each_with_its_smallest_example(tmp_path, monkey
     home = load_chain("open_manipulator_x").home
 
     assert height["property"] == turn["property"] == "reaches"
-    assert height["kind"] == "is off by (0.0, 0.0, -17.0) mm in the world's axes, wherever asked"
+    assert height["kind"] == "is off by (0.0, 0.0, -17.0) mm in the world's axes, at every target"
     assert height["asked_joint_positions"] == home.tolist()
     assert np.subtract(height["reached"], height["asked"])[:3] == pytest.approx([0, 0, -0.017])
 
-    # The smallest example of atan: one joint off home puts the tip just behind joint 1's axis.
+    # The smallest example of atan: one joint off home puts the tip just past joint 1's axis.
     away = np.subtract(turn["asked_joint_positions"], home)
     assert np.count_nonzero(np.abs(away) > 1e-9) == 1
     assert -0.01 < turn["asked"][0] - 0.012 < 0
@@ -80,7 +80,7 @@ def test_only_the_two_mistakes_part_the_two_files():
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "reported"),
     [
         (["mine.py:ik", *ARM], "no such file: 'mine.py'"),
         (["mine:ik", *ARM], "no module 'mine'"),
@@ -94,10 +94,12 @@ def test_only_the_two_mistakes_part_the_two_files():
         ([f"{EXAMPLES / 'student_ik.py'}:ik", *ARM, "--link", "hand"], "no link 'hand'"),
     ],
 )  # fmt: skip
-def test_wrong_usage_is_told_with_exit_code_2(tmp_path, monkeypatch, capfd, arguments, told):
+def test_wrong_usage_is_reported_with_exit_code_2(
+    tmp_path, monkeypatch, capfd, arguments, reported
+):
     monkeypatch.chdir(tmp_path)
     assert main(["ik-test", *arguments]) == 2
     said = capfd.readouterr()
-    assert told in said.err
+    assert reported in said.err
     assert said.out == ""
     assert list(tmp_path.iterdir()) == []

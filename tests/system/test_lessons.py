@@ -1,4 +1,4 @@
-"""The lessons pass, and come to the same digest in a row, side by side and alone."""
+"""The lessons pass, and have the same digest in a row, side by side and alone."""
 
 import json
 from pathlib import Path
@@ -9,7 +9,7 @@ import pytest
 from harness.cli.main import main
 from harness.core.resources import data_folder
 from harness.recording.store import read_run
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 LESSONS = data_folder("scenarios") / "lessons"
 FLAGSHIP = LESSONS / "03_ur_sixteen_steps.scenario.yaml"
@@ -23,8 +23,8 @@ def run_json(capsys, *arguments):
 
 def test_all_lessons_pass_with_equal_digests_in_a_row_side_by_side_and_alone(capsys):
     code, in_a_row = run_json(capsys, LESSONS)
-    told = {name: (case["outcome"], case["message"]) for name, case in in_a_row.items()}
-    assert code == 0, told
+    reported = {name: (case["outcome"], case["message"]) for name, case in in_a_row.items()}
+    assert code == 0, reported
     assert len(in_a_row) == len(list(LESSONS.glob("*.scenario.yaml")))
     _, side_by_side = run_json(capsys, LESSONS, "-j", "2")
     _, alone = run_json(capsys, FLAGSHIP)

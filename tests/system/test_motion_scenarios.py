@@ -6,7 +6,7 @@ import pytest
 
 from harness.core.resources import data_folder
 from harness.recording.store import read_run
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 MOTIONS = sorted((data_folder("scenarios") / "motions").glob("*.scenario.yaml"))
 
@@ -14,8 +14,8 @@ MOTIONS = sorted((data_folder("scenarios") / "motions").glob("*.scenario.yaml"))
 @pytest.mark.parametrize("path", MOTIONS, ids=lambda path: path.name.split(".")[0])
 def test_a_motion_scenario_passes(path, tmp_path):
     result = run_case(path, report_dir=tmp_path / "run", stills=False)
-    told = [step.message for step in result.steps if step.status == "failed"]
-    assert result.outcome == "passed", (told, result.message)
+    reported = [step.message for step in result.steps if step.status == "failed"]
+    assert result.outcome == "passed", (reported, result.message)
     record = read_run(tmp_path / "run").run
     moved = [step for step in record.steps if step.trajectory is not None]
     refused = [step for step in record.steps if step.error_code]
@@ -23,6 +23,6 @@ def test_a_motion_scenario_passes(path, tmp_path):
     assert all(step.start_index == step.end_index - 1 for step in refused)  # and nothing moved
 
 
-def test_the_page_beside_them_tells_all_of_them():
-    told = (MOTIONS[0].parent / "README.md").read_text()
-    assert all(f"]({Path(path).name})" in told for path in MOTIONS)
+def test_the_page_next_to_them_lists_all_of_them():
+    reported = (MOTIONS[0].parent / "README.md").read_text()
+    assert all(f"]({Path(path).name})" in reported for path in MOTIONS)

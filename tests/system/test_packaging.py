@@ -65,7 +65,7 @@ def test_the_wheel_holds_package_data_and_licence_and_nothing_else(wheel):
     tops = {name.split("/")[0] for name in inside}
     assert tops == {"harness", f"{wheel.name.split('-py3')[0]}.dist-info"}
     assert any(name.endswith("licenses/LICENSE") for name in inside)
-    assert "harness/cli/templates/new.scenario.yaml" in inside
+    assert {"harness/cli/templates/new.scenario.yaml", "harness/py.typed"} <= set(inside)
     assert not [name for name in inside if "__pycache__" in name or "/reports/" in name]
     for kind in ("robots", "worlds", "scenarios"):
         ours = {

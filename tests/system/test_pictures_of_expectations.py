@@ -1,12 +1,12 @@
-"""The reference's pictures of expectations tell what becomes of them in real runs."""
+"""The reference's pictures of expectations show their results in real runs."""
 
 import html
 import re
 
 import pytest
 
+from docs.generators.expectation_pictures import FOLDER, RENEW, pictures, title_of, words_in
 from harness.language.language import PREDICATES
-from tests.docs.pictures import FOLDER, RENEW, pictures, said_in, title_of
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,7 @@ def test_every_predicate_has_a_small_picture_of_a_pass_and_a_failure(panels):
 
 def test_the_pictures_say_what_the_runs_of_now_say(panels):
     for word, pair in panels.items():
-        kept = without_numbers(said_in((FOLDER / f"{word}.svg").read_text(encoding="utf-8")))
+        kept = without_numbers(words_in((FOLDER / f"{word}.svg").read_text(encoding="utf-8")))
         for text, _, _, verdict in pair:
             title = without_numbers(title_of(text, verdict).replace("\n", " "))
             assert title in kept, f"{word}.svg is of other runs; {RENEW}"

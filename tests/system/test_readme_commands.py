@@ -1,4 +1,4 @@
-"""Every long-running command of README works with the extras that its line names."""
+"""Every long-running command of CONTRIBUTING.md works with the extras that its line names."""
 
 import re
 import subprocess
@@ -15,7 +15,7 @@ COMMAND = re.compile(r"^python -m pytest -m (?P<marker>\w+)[^#]*#(?P<remark>.*)$
 
 def _commands() -> dict[str, str]:
     """The extras of each marker's command, as pip reads them."""
-    section = (ROOT / "README.md").read_text().split("## Long runs and timings")[1]
+    section = (ROOT / "CONTRIBUTING.md").read_text().split("## Long runs and timings")[1]
     found = {}
     for match in COMMAND.finditer(section.split("\n## ")[0]):
         extras = re.search(r"'\.\[([\w,-]+)\]'", match["remark"])
@@ -23,7 +23,7 @@ def _commands() -> dict[str, str]:
     return found
 
 
-def test_readme_has_a_command_for_every_marker_that_the_test_command_leaves_out(pytestconfig):
+def test_there_is_a_command_for_every_marker_that_the_test_command_leaves_out(pytestconfig):
     left_out = set(re.findall(r"not (\w+)", " ".join(pytestconfig.getini("addopts"))))
     assert left_out
     assert left_out <= set(_commands())

@@ -5,8 +5,8 @@ import textwrap
 import pytest
 
 from harness.cli.main import main
-from harness.session.run_case import run_case
 from tests.engine.front_door import run
+from tests.running import run_case
 
 PICK = """
 scenario: A pick that looks like one
@@ -53,7 +53,7 @@ def test_a_real_pick_passes_both(tmp_path):
 @pytest.mark.parametrize(
     ("what", "changes"),
     [
-        ("closing 4 cm beside the box", {"x": 0.32 - 0.03 - 0.013 - 0.04}),
+        ("closing 4 cm next to the box", {"x": 0.32 - 0.03 - 0.013 - 0.04}),
         ("friction 0.01", {"objects": SLIPPERY}),
         ("2 % of the grasp force", {"close": "gripper: {position: 0.62, max_effort: WEAK}"}),
         ("attached in the planning scene, never touched", {"close": "wait: 0.1 s"}),

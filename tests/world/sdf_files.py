@@ -132,7 +132,7 @@ COLLADA = """<?xml version="1.0"?>
 
 
 def write(folder, text, name="world.sdf"):
-    """A world file with a model and a mesh beside it."""
+    """A world file with a model and a mesh next to it."""
     (folder / "crate").mkdir(exist_ok=True)
     (folder / "crate" / "model.sdf").write_text(CRATE, encoding="utf-8")
     (folder / "part.obj").write_text(TETRAHEDRON, encoding="utf-8")

@@ -91,7 +91,7 @@ def test_the_new_form_has_poses_of_objects_and_of_shapes_on_them(tmp_path):
     assert found["ball"].color == (1, 0, 0, 1)
 
 
-def test_subframes_are_told_of(tmp_path):
+def test_subframes_are_reported(tmp_path):
     (note,) = scene(tmp_path, NEW).imported.notes
     assert "a subframe of an object is left out" in str(note)
     assert note.line == 17
@@ -150,7 +150,7 @@ def test_a_plane_is_solid_behind_its_normal_at_its_distance(tmp_path):
         (NEW[: NEW.index("0.4 0.2")], 2, "the file ends inside the object 'table'"),
     ],
 )
-def test_a_mistake_is_told_at_its_line(tmp_path, text, line, message):
+def test_a_mistake_is_reported_at_its_line(tmp_path, text, line, message):
     with pytest.raises(SpecError) as caught:
         scene(tmp_path, text)
     (problem,) = caught.value.problems

@@ -1,4 +1,4 @@
-"""SDF worlds as a scenario's: run, checked, told of in report and check."""
+"""SDF worlds as a scenario's: run, checked, reported in report and check."""
 
 import json
 from pathlib import Path
@@ -11,7 +11,7 @@ from harness.language.reading.load import parse_scenario
 from harness.recording.store import read_run
 from harness.robot.mesh_file import hull_points
 from harness.session.prepare import prepare
-from harness.session.run_case import run_case
+from tests.running import run_case
 from tests.world.sdf_files import ASCII_STL, COLLADA, CRATE, load, text_with, write
 
 TABLE_AND_CYLINDER = """<?xml version="1.0"?>
@@ -54,7 +54,7 @@ def cell(tmp_path):
     return path
 
 
-def test_a_cylinder_is_picked_up_in_an_sdf_world_and_the_report_tells_what_is_left_out(cell):
+def test_a_cylinder_is_picked_up_in_an_sdf_world_and_the_report_reports_what_is_left_out(cell):
     report = cell.parent / "report"
     result = run_case(cell, report_dir=report, stills=False)
     assert result.outcome == "passed", result
@@ -65,7 +65,7 @@ def test_a_cylinder_is_picked_up_in_an_sdf_world_and_the_report_tells_what_is_le
     assert again.digest == result.digest
 
 
-def test_check_tells_what_is_left_out(cell, capsys):
+def test_check_reports_what_is_left_out(cell, capsys):
     assert main(["check", str(cell)]) == 0
     assert "note: " in capsys.readouterr().out
     assert main(["check", "--json", str(cell)]) == 0
@@ -74,7 +74,7 @@ def test_check_tells_what_is_left_out(cell, capsys):
                                      "there is no wall clock")  # fmt: skip
 
 
-def test_a_mistake_of_the_world_is_told_at_its_line_with_exit_code_2(cell, capsys):
+def test_a_mistake_of_the_world_is_reported_at_its_line_with_exit_code_2(cell, capsys):
     world = cell.parent / "cell.sdf"
     world.write_text(TABLE_AND_CYLINDER.replace("<mass>0.1</mass>", "<mass>zero</mass>"))
     assert main(["run", str(cell), "--no-report"]) == 2
@@ -136,7 +136,7 @@ def test_meshes_of_every_kind_touch_as_the_same_solid(tmp_path, name, content):
     assert points == [[0, 0, 0], [0, 0, 0.1], [0, 0.1, 0], [0.1, 0, 0]]
 
 
-def test_a_mesh_that_cannot_be_touched_is_told_at_its_line_in_the_sdf_file(tmp_path):
+def test_a_mesh_that_cannot_be_touched_is_reported_at_its_line_in_the_sdf_file(tmp_path):
     text = text_with("mesh", "\n<uri>flat.obj</uri>")
     (tmp_path / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     with pytest.raises(SpecError, match="is flat: it encloses nothing") as caught:

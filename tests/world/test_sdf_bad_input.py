@@ -86,13 +86,13 @@ BOMB = "<!DOCTYPE b [<!ENTITY a 'aaaaaaaaaa'>" + "".join(
         (text_with("physics", "\n<max_step_size>1</max_step_size>"), 5, "a physics step of 1 s"),
     ],
 )
-def test_a_mistake_is_told_at_its_line(tmp_path, text, line, message):
+def test_a_mistake_is_reported_at_its_line(tmp_path, text, line, message):
     problem = problem_of(tmp_path, text)
     assert message in problem.message
     assert (problem.path, problem.line) == (str(tmp_path / "world.sdf"), line)
 
 
-def test_models_that_include_each_other_are_told_with_the_circle(tmp_path):
+def test_models_that_include_each_other_are_reported_with_the_circle(tmp_path):
     (tmp_path / "loop").mkdir()
     loop = "<sdf version='1.9'><model name='a'>\n<include><uri>model://loop</uri></include></model></sdf>"
     (tmp_path / "loop" / "model.sdf").write_text(loop)

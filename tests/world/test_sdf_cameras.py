@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from harness.core.errors import SpecError
-from harness.session.run_case import run_case
+from tests.running import run_case
 from tests.world.sdf_files import load, text_with
 
 WORLD = """<?xml version="1.0"?>
@@ -57,7 +57,7 @@ def test_cameras_called_alike_are_named_after_their_models(tmp_path):
     assert world.cameras[0].pose.frame == "world"  # nothing of that model is left but its camera
 
 
-def test_a_format_without_a_meaning_and_other_sensors_are_told(tmp_path):
+def test_a_format_without_a_meaning_and_other_sensors_are_reported(tmp_path):
     found = load(tmp_path, text_with("image", "<format>BAYER_RGGB8</format>"))
     assert any("BAYER_RGGB8 is taken as R8G8B8" in note.message for note in found.notes)
     found = load(tmp_path, text_with("link", "<sensor name='l' type='gpu_lidar'/>"))
@@ -76,7 +76,7 @@ def test_a_format_without_a_meaning_and_other_sensors_are_told(tmp_path):
         ("noise", "\n<type>perlin</type>", "the noise type `perlin` is not known"),
     ],
 )
-def test_a_number_that_no_camera_has_is_told_at_its_place(tmp_path, kind, snippet, message):
+def test_a_number_that_no_camera_has_is_reported_at_its_place(tmp_path, kind, snippet, message):
     text = text_with(kind, snippet)
     with pytest.raises(SpecError) as caught:
         load(tmp_path, text)

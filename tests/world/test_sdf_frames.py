@@ -81,7 +81,7 @@ def test_the_frame_of_a_pose_has_its_old_word_and_its_new_one(tmp_path, word):
         ("model", "<link name='world'/>", "'world' is a reserved name"),
     ],
 )
-def test_a_frame_that_cannot_be_is_told_at_its_place(tmp_path, kind, snippet, message):
+def test_a_frame_that_cannot_be_is_reported_at_its_place(tmp_path, kind, snippet, message):
     text = text_with(kind, snippet)
     with pytest.raises(SpecError, match=message) as caught:
         load(tmp_path, text)
@@ -90,7 +90,7 @@ def test_a_frame_that_cannot_be_is_told_at_its_place(tmp_path, kind, snippet, me
     assert problem.line > 1
 
 
-def test_what_can_move_in_gazebo_is_held_here_and_told_of(tmp_path):
+def test_what_can_move_in_gazebo_is_held_here_and_reported(tmp_path):
     found = load(tmp_path, text_with().replace('type="fixed"', 'type="revolute"'))
     assert [item.name for item in found.world.objects] == ["m", "crate"]
     assert "the revolute joint 'j' is held in its initial position" in [

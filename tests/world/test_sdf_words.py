@@ -1,4 +1,4 @@
-"""Each row of the table of SDF's words: read ones change the world, others are told of."""
+"""Each row of the table of SDF's words: read ones change the world, others are reported."""
 
 import math
 
@@ -262,7 +262,7 @@ def test_a_word_that_is_read_counts(tmp_path, kind, tag):
 
 
 @pytest.mark.parametrize(("kind", "tag"), rows("ignored"))
-def test_a_word_that_is_ignored_changes_nothing_and_is_told_with_its_line(tmp_path, kind, tag):
+def test_a_word_that_is_ignored_changes_nothing_and_is_reported_with_its_line(tmp_path, kind, tag):
     plain = load(tmp_path, text_with())
     text = text_with(kind, f"<{tag}>0.3</{tag}>")
     found = load(tmp_path, text)
@@ -276,7 +276,7 @@ def test_a_word_that_is_ignored_changes_nothing_and_is_told_with_its_line(tmp_pa
     ("kind", "tag", "value"),
     [(kind, tag, value) for kind, tag in ROWS for value in WORDS[kind][tag].silent],
 )
-def test_a_word_that_says_what_is_so_anyway_is_not_told_of(tmp_path, kind, tag, value):
+def test_a_word_that_says_what_is_so_anyway_is_not_reported(tmp_path, kind, tag, value):
     plain = load(tmp_path, text_with())
     assert load(tmp_path, text_with(kind, f"<{tag}>{value}</{tag}>")).notes == plain.notes
 
@@ -290,14 +290,14 @@ def test_a_shape_that_cannot_be_touched_is_refused_in_a_collision(tmp_path, kind
 
 
 @pytest.mark.parametrize(("kind", "tag"), rows("refused"))
-def test_a_shape_that_cannot_be_drawn_is_told_of_in_a_visual(tmp_path, kind, tag):
+def test_a_shape_that_cannot_be_drawn_is_reported_of_in_a_visual(tmp_path, kind, tag):
     visual = f"<visual name='d'><{kind}><{tag}/></{kind}></visual>"
     found = load(tmp_path, text_with("link", visual))
     assert f"a <{tag}> of a visual is not drawn" in [note.message for note in found.notes]
     assert found.world == load(tmp_path, text_with()).world
 
 
-def test_a_word_that_sdf_does_not_know_is_told_of(tmp_path):
+def test_a_word_that_sdf_does_not_know_is_reported(tmp_path):
     found = load(tmp_path, text_with("link", "<gz:extra/><mass>1</mass>"))
     messages = [note.message for note in found.notes]
     assert "<gz:extra> of <link> is not known and left out" in messages
@@ -311,20 +311,20 @@ def test_equal_notes_are_one_with_their_number(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("inertial", "told"),
+    ("inertial", "reported"),
     [
         ("<inertial><mass>1</mass></inertial>", "has 1 kg m^2 about each axis"),
         ("", "has 1 kg and 1 kg m^2"),
     ],
 )
-def test_what_sdf_takes_for_a_missing_inertia_is_told(tmp_path, inertial, told):
+def test_what_sdf_takes_for_a_missing_inertia_is_reported(tmp_path, inertial, reported):
     tensor = "<inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia>"
     given = f"<inertial><mass>1</mass>{tensor}</inertial>"
     text = text_with()
     assert given in text
-    assert not any(told in note.message for note in load(tmp_path, text).notes)
+    assert not any(reported in note.message for note in load(tmp_path, text).notes)
     found = load(tmp_path, text.replace(given, inertial, 1))
-    assert any(told in note.message for note in found.notes)
+    assert any(reported in note.message for note in found.notes)
 
 
 AUTOMATIC = text_with("inertial", "").replace(
@@ -372,7 +372,7 @@ def test_a_file_of_models_alone_is_a_world_of_them(tmp_path):
     assert (world.world, names(world), len(world.lights)) == ("world", ["n"], 1)
 
 
-def test_lights_of_other_kinds_are_told_of(tmp_path):
+def test_lights_of_other_kinds_are_reported(tmp_path):
     found = load(tmp_path, text_with("world", "<light name='o' type='spot'/>"))
     assert "a spot light is left out: pictures have directional ones" in [
         note.message for note in found.notes

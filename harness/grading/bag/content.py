@@ -19,7 +19,7 @@ class Track:
     Attributes:
         logged: Times of the recorder's clock [ns].
         stamps: Times of the sender's clock [ns]; 0 where a message has none.
-        numbers: The rows, concatenated.
+        numbers: The numbers of all rows, concatenated.
         width: Length of a row.
     """
 

@@ -22,7 +22,7 @@ class Frames:
     with a note.
 
     Attributes:
-        notes: Assumptions about frames.
+        notes: The assumptions made about frames.
     """
 
     def __init__(

@@ -34,7 +34,7 @@ def reference_track(
 
     Args:
         content: The content of the recording.
-        description: The robot.
+        description: The description of the robot.
         arm_joints: Joints of the arm; all movable joints of a gripper without an arm.
     """
     arm = set(arm_joints)

@@ -60,8 +60,8 @@ class Recorded:
     """The scenario's knowledge about a recording.
 
     Attributes:
-        robot: The robot's record.
-        description: The robot's description.
+        robot: The record of the robot.
+        description: The description of the robot.
         objects: Objects of the world, then those that steps add.
         at_start: Names of the world's objects.
         frames: Links whose poses expectations need.

@@ -19,7 +19,7 @@ def rows_at(times: FloatArray, rows: FloatArray, sample_times: FloatArray) -> Fl
     Args:
         times: Times of the rows [s], in any order; of equal times the first is used.
         rows: Rows, shape (N, width).
-        sample_times: Rising times [s].
+        sample_times: The times of the samples, rising [s].
     """
     times, first = np.unique(times, return_index=True)
     rows = rows[first]

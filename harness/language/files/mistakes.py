@@ -30,7 +30,7 @@ LONGEST_VALUE = 60  # characters of a value that are quoted
 
 
 class MistakeError(ValueError):
-    """A value that cannot be meant; validators raise it, the loader adds the place.
+    """A value that is certainly wrong; validators raise it, the loader adds the place.
 
     Attributes:
         message: What is wrong, the offending value quoted.
@@ -46,7 +46,7 @@ class MistakeError(ValueError):
 
 
 def describe(value: Any) -> str:
-    """A value as a person would speak of it: `` `x` ``, a list, nothing."""
+    """A value as a person would describe it: `` `x` ``, a list, nothing."""
     if isinstance(value, dict):
         return "a mapping"
     if isinstance(value, list | tuple):
@@ -66,7 +66,7 @@ def nearest(word: str, valid: Iterable[str]) -> str | None:
     plain = word.lower().replace("-", "_").replace(" ", "_")
     if plain in folded:
         return folded[plain]
-    known = next((ours for ours, others in SYNONYMS.items() if plain in others), None)
+    known = next((keyword for keyword, others in SYNONYMS.items() if plain in others), None)
     if known in words:
         return known
     near = difflib.get_close_matches(plain, folded, 1, 0.6)

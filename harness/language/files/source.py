@@ -26,7 +26,7 @@ class Source:
     """A text that values come from: a file, or an option of the command line.
 
     Attributes:
-        path: As the user named it.
+        path: The path as the user named it.
         lines: Its lines; empty for an option, whose problems have no line.
     """
 
@@ -43,7 +43,7 @@ class Source:
         return self.lines[number - 1] if 0 < number <= len(self.lines) else ""
 
     def end_of(self, before: str) -> Place:
-        """The place behind the first characters of the text."""
+        """The place after the first characters of the text."""
         lines = LINE_BREAK.split(before)
         return Place(self, len(lines), len(lines[-1]) + 1)
 
@@ -75,14 +75,14 @@ class Place:
             for column, character in enumerate(self.source.line(number), 1)
             if not character.isspace() and (number, column) >= (self.line, self.column)
         ]
-        meant = [character for character in text if not character.isspace()]
+        printed = [character for character in text if not character.isspace()]
         before = sum(not character.isspace() for character in text[:start])
         for first in range(MOST_BEFORE_TEXT):
-            if [character for *_, character in written[first : first + len(meant)]] == meant:
-                if not meant:
+            if [character for *_, character in written[first : first + len(printed)]] == printed:
+                if not printed:
                     break
-                line, column, _ = written[first + min(before, len(meant) - 1)]
-                return Place(self.source, line, column + (before == len(meant)), length)
+                line, column, _ = written[first + min(before, len(printed) - 1)]
+                return Place(self.source, line, column + (before == len(printed)), length)
         return self
 
 

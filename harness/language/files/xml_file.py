@@ -33,9 +33,9 @@ class XmlElement:
     """An element.
 
     Attributes:
-        tag: With its prefix as written; namespaces are not resolved.
-        attributes: By name as written.
-        place: Of its start tag.
+        tag: The tag with its prefix as written; namespaces are not resolved.
+        attributes: The attributes by name as written.
+        place: The place of its start tag.
         text: All of its own character data.
     """
 
@@ -82,7 +82,7 @@ class XmlElement:
         raise SpecError([self.problem(message, hint, at=at)])
 
     def _place_of(self, name: str) -> Place:
-        """Where an attribute's value stands; the element's place where that cannot be told."""
+        """Where an attribute's value stands; the element's place where that is unknown."""
         source, line = self.place.source, self.place.line
         pattern = re.compile(rf"(?<![\w:.-]){re.escape(name)}\s*=\s*[\"']")
         begin = self.place.column - 1
@@ -102,7 +102,7 @@ def read_xml(path: Path, named: str = "") -> XmlElement:
     """The root element of a file.
 
     Args:
-        path: The file.
+        path: The path of the file.
         named: What messages call it; its path by default.
 
     Raises:
@@ -183,8 +183,8 @@ class _Reader:
         except expat.ExpatError as error:
             place = Place(self._quoted(), error.lineno, error.offset + 1)
             reason = expat.errors.messages.get(error.code, "")
-            told = f"not well-formed XML: {reason or expat.ErrorString(error.code)}"
-            raise SpecError([place.problem(told, self._still_open())]) from error
+            message = f"not well-formed XML: {reason or expat.ErrorString(error.code)}"
+            raise SpecError([place.problem(message, self._still_open())]) from error
         assert self._root is not None
         return self._root
 
@@ -212,7 +212,7 @@ class _Reader:
         if len(self._open) >= DEEPEST:
             self._refuse(f"elements are nested more than {DEEPEST} deep")
         here = self._here(tag)
-        place = Place(here.source, here.line, here.column + 1, len(tag))  # behind the bracket
+        place = Place(here.source, here.line, here.column + 1, len(tag))  # after the bracket
         mark = attributes.pop(PLACE_ATTRIBUTE, "")
         if mark:
             place = self._marked(mark, len(tag))

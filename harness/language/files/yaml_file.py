@@ -33,7 +33,7 @@ def read_text(
     """The text of a file.
 
     Args:
-        path: The file.
+        path: The path of the file.
         shown: What messages call it; its path by default.
         kind: What it should be, for messages.
         largest: Bytes that it may have.
@@ -46,7 +46,7 @@ def read_text(
         mode = path.stat()
         if not stat.S_ISREG(mode.st_mode):
             found = "a folder" if stat.S_ISDIR(mode.st_mode) else "not a regular file"
-            raise SpecError([Problem(name, 0, 0, f"this is {found}; a {kind} is wanted")])
+            raise SpecError([Problem(name, 0, 0, f"this is {found}; a {kind} is expected")])
         if mode.st_size > largest:
             size = f"{mode.st_size / 1e6:.1f} MB; at most {largest / 1e6:.0f} MB are read"
             raise SpecError([Problem(name, 0, 0, f"the file has {size}")])
@@ -83,8 +83,8 @@ def parse_yaml(text: str, source: Source, problems: list[Problem] | None = None)
     """The one document of a text; a mapping.
 
     Args:
-        text: Of the file.
-        source: The file.
+        text: The text of the file.
+        source: The source that messages name.
         problems: Gets every duplicate key, tag and number that is not finite, so that the rest of
             the file can be read as well; None: they are raised.
 
@@ -138,7 +138,7 @@ class _Composer:
         self.source = source
         self.problems: list[Problem] = []
         self._anchors: dict[str, Located] = {}
-        self._sizes: dict[str, tuple[int, int]] = {}  # values and depth behind an anchor
+        self._sizes: dict[str, tuple[int, int]] = {}  # values and depth of an anchor
         self._count = 0
 
     def document(self, text: str) -> Located | None:

@@ -33,7 +33,7 @@ def scalar_of(text: str) -> Scalar:
     """The value of a text without quotes.
 
     Raises:
-        OverflowError: A number that is not finite, or has too many digits to be meant.
+        OverflowError: A number that is not finite, or has too many digits.
     """
     if is_plain_text(text):
         return text

@@ -178,7 +178,7 @@ def _is_item(line: str, column: int) -> bool:
 
 
 def _place(mark: yaml.Mark, source: Source) -> Place:
-    """A mark's place; behind the last line: the end of the last that says something."""
+    """A mark's place; after the last line: the end of the last that says something."""
     if source.line(mark.line + 1).strip():
         return Place(source, mark.line + 1, mark.column + 1)
     said = [number for number in range(1, mark.line + 2) if source.line(number).strip()]

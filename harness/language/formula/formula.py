@@ -7,7 +7,7 @@ nothing in it is executed. From the weakest binding to the strongest:
     < <= > >= · + - · * / · - (sign)
 
 `U`, `G`, `F`, `->`, `|`, `&`, `!` are other ways to write until, always, eventually, implies, or,
-and, not. A number may carry a unit behind it: `5 cm`, `90 deg`, `200 ms`.
+and, not. A number may carry a unit: `5 cm`, `90 deg`, `200 ms`.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ FUNCTIONS = {"abs": 1, "min": 2, "max": 2}
 UNITS = {
     name: (unit, factor) for unit in ("m", "rad", "s", "N") for name, factor in COMMON[unit].items()
 }
-"""Unit behind a number -> its SI unit and factor."""
+"""Unit after a number -> its SI unit and factor."""
 
 
 @dataclass(frozen=True)

@@ -210,14 +210,14 @@ class _Parser:
 
     def function(self, token: Token) -> Arithmetic:
         count = FUNCTIONS[token.text]
-        self.expect("(", f"behind `{token.text}`")
+        self.expect("(", f"after `{token.text}`")
         operands: list[Number] = []
         for index in range(count):
             if index:
                 self.expect(",", f"between the numbers of `{token.text}`")
             inner = self.token
             operands.append(self.number(self.expression(0), inner))
-        self.expect(")", f"behind the last number of `{token.text}`")
+        self.expect(")", f"after the last number of `{token.text}`")
         _same_unit(operands, token)
         return Arithmetic(token.text, tuple(operands), token.start)
 
@@ -242,7 +242,7 @@ class _Parser:
             if not self.at(","):
                 break
             self.take()
-        self.expect(")", f"behind the names of `{token.text}`")
+        self.expect(")", f"after the names of `{token.text}`")
         if len(names) != len(kinds):
             raise self.wrong(
                 names[-1], f"`{token.text}` is of {_count(kinds)}, not {len(names)}", usage

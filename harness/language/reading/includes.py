@@ -51,7 +51,7 @@ def with_includes(root: Located, path: Path, problems: list[Problem]) -> Located
     """A file's values with the steps of included files in place of every `include`.
 
     Raises:
-        SpecError: The files come to more values than a file may have.
+        SpecError: The files hold more values than a file may have.
     """
     steps = root.mapping().get("steps")
     if steps is None or not any(INCLUDE in item.mapping() for _, item in walk(steps.value)):
@@ -82,7 +82,7 @@ class _Expander:
         return Located(entries, item.place)
 
     def _block(self, item: Located, include: Entry, context: _Context) -> Located:
-        """The step as `repeat: {times: 1, steps: ...}`; what stands beside it stays."""
+        """The step as `repeat: {times: 1, steps: ...}`; the keys next to it stay."""
         place = include.key
         steps = self._steps(filled(include.value, context.params, self.problems), place, context)
         own_id = item.mapping().get("id")
@@ -90,10 +90,10 @@ class _Expander:
             steps = _with_prefix(steps, f"{own_id.value.value}.")
         times = Entry(place, Located(1, place))
         block = Located({"times": times, "steps": Entry(place, steps)}, place)
-        beside = {key: entry for key, entry in item.mapping().items() if key != INCLUDE}
-        if "name" not in beside:
-            beside["name"] = Entry(place, Located(_file_of(include.value), place))
-        return Located({"repeat": Entry(place, block), **beside}, item.place)
+        siblings = {key: entry for key, entry in item.mapping().items() if key != INCLUDE}
+        if "name" not in siblings:
+            siblings["name"] = Entry(place, Located(_file_of(include.value), place))
+        return Located({"repeat": Entry(place, block), **siblings}, item.place)
 
     def _steps(self, include: Located, place: Place, context: _Context) -> Located:
         """The steps of the file; a stand-in, and a problem, where they cannot be had."""
@@ -165,7 +165,7 @@ class _Expander:
     def _bound(self, steps: Located, file: Located) -> None:
         self.count += sum(1 for _ in walk(steps))
         if self.count > LARGEST_TREE:
-            message = f"the included files come to more than {LARGEST_TREE} values"
+            message = f"the included files hold more than {LARGEST_TREE} values"
             raise SpecError([file.place.problem(message)])
 
 
@@ -176,7 +176,7 @@ def _file_of(include: Located) -> str:
 
 
 def _with_prefix(steps: Located, prefix: str) -> Located:
-    """The steps with longer ids, and what speaks of them under `during` alike."""
+    """The steps with longer ids, and what refers to them under `during` alike."""
     ids = {
         item.value
         for loc, item in walk(steps)

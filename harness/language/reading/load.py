@@ -19,7 +19,7 @@ from harness.language.files.yaml_file import parse_yaml, read_text, require_key
 from harness.language.reading.includes import with_includes
 from harness.language.reading.overrides import from_options, override
 from harness.language.reading.params import substitute
-from harness.language.reading.repair import Mended, mended
+from harness.language.reading.repair import Repaired, repair
 from harness.language.reading.short_forms import models_shape
 from harness.language.reading.varied_paths import check_variation, values_of_case
 from harness.language.reading.wording import problems_of
@@ -41,8 +41,8 @@ class Loaded(Generic[M]):
     Attributes:
         model: What the file says.
         path: Where it was read.
-        text: As read.
-        lines: From a field of the model to its line and column.
+        text: The text as it was read.
+        lines: The line and column of each field of the model.
         written: The file's values in its own short forms, parameters and overrides applied.
         notes: What the file may say and probably does not intend.
     """
@@ -81,12 +81,12 @@ class LoadedWorld(Loaded[WorldSpec]):
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """What a scenario file came to.
+    """The result of reading a scenario file.
 
     Attributes:
         loaded: The scenario; with problems, what remains of it; None when that is too little.
         problems: Mistakes found so far.
-        doubtful: Words of what was left out; a mistake that speaks of one may follow from another.
+        doubtful: Words of what was left out; a mistake that names one may follow from another.
         missing: `robot` or `world`, where something else stands in for what cannot be read.
     """
 
@@ -105,7 +105,7 @@ def read_scenario(
     """A scenario file with its mistakes, for whoever goes on to find more.
 
     Args:
-        path: The file.
+        path: The path of the file.
         overrides: Dotted path -> YAML value, as given with `--set`.
         seed: Taken in place of the file's.
         text: What would stand in the file; None: what does.
@@ -131,8 +131,8 @@ def read_scenario(
         if error.remains is None:
             return Reading(None, tuple(error.problems))
         loaded = LoadedScenario(error.remains, path, text, error.lines, written, tuple(notes))
-        missing = frozenset(error.mended.missing)
-        return Reading(loaded, tuple(error.problems), frozenset(error.mended.words), missing)
+        missing = frozenset(error.repaired.missing)
+        return Reading(loaded, tuple(error.problems), frozenset(error.repaired.words), missing)
     return Reading(LoadedScenario(model, path, text, lines, written, tuple(notes)))
 
 
@@ -153,7 +153,7 @@ def load_scenario(
     """A scenario file, checked as far as it can be without robot and world.
 
     Args:
-        path: The file.
+        path: The path of the file.
         overrides: Dotted path -> YAML value, as given with `--set`.
         seed: Taken in place of the file's.
 
@@ -177,10 +177,10 @@ def _whole(reading: Reading) -> LoadedScenario:
 
 
 def load_world(name_or_path: str, base_dir: Path) -> LoadedWorld:
-    """A bundled world by its name, or a world file of ours.
+    """A bundled world by its name, or a harness world file.
 
     Args:
-        name_or_path: As a scenario's `world` says it.
+        name_or_path: The name or path in a scenario's `world`.
         base_dir: Folder of the scenario file; relative paths begin here.
 
     Raises:
@@ -234,7 +234,7 @@ def file_path(text: str, base_dir: Path) -> Path:
     """
     if "://" in text:
         raise _no_world(
-            text, f"`{text}` is a URL; only files are read", "save the file beside this"
+            text, f"`{text}` is a URL; only files are read", "save the file next to this one"
         )
     if not text.isprintable():
         raise _no_world(text, f"{text!r} is not a path", "")
@@ -245,9 +245,9 @@ class _BrokenError(SpecError):
     """A file has mistakes; carries what remains of it besides.
 
     Attributes:
-        lines: From a field of the model to its line and column.
+        lines: The line and column of each field of the model.
         remains: A model of what could be read; None when too little could.
-        mended: What was done to get it.
+        repaired: What was left out of it and replaced.
     """
 
     def __init__(
@@ -255,10 +255,10 @@ class _BrokenError(SpecError):
         problems: list[Problem],
         lines: SourceMap,
         remains: Any = None,
-        mended: Mended | None = None,
+        repaired: Repaired | None = None,
     ) -> None:
         super().__init__(problems)
-        self.lines, self.remains, self.mended = lines, remains, mended or Mended({})
+        self.lines, self.remains, self.repaired = lines, remains, repaired or Repaired({})
 
 
 def _model(
@@ -301,13 +301,13 @@ def _contains(lines: SourceMap, loc: Loc, known: set[tuple[str, int, int]]) -> b
 
 def _remains(
     data: object, model: type[M], errors: Sequence[ErrorDetails]
-) -> tuple[M | None, Mended | None]:
+) -> tuple[M | None, Repaired | None]:
     """A model of what is not broken, and what was taken out of it."""
     if model is not Scenario or not isinstance(data, dict):
         return None, None
     places = [error["loc"] for error in errors]
     for _ in range(MOST_REPAIRS):
-        found = mended(cast("dict[str, Any]", data), places)
+        found = repair(cast("dict[str, Any]", data), places)
         try:
             return model.model_validate(found.data), found
         except ValidationError as error:
@@ -316,7 +316,7 @@ def _remains(
 
 
 def _of_world(problem: Problem, name: str) -> Problem:
-    """A problem without a line, told so that it can stand in the scenario's."""
+    """A problem without a line, worded so that it can stand in the scenario's."""
     if problem.line:
         return problem
     return replace(problem, message=f"world `{name}`: {problem.message}")

@@ -1,4 +1,4 @@
-"""Takes a step or an expectation apart: its one word, the content, and what stands beside."""
+"""Split a step or an expectation into its one word, its content and the keys next to it."""
 
 from __future__ import annotations
 
@@ -41,40 +41,40 @@ UNTIL_USAGE = "`- {always: A, until: B}`: A holds until B does"
 
 
 class Words(NamedTuple):
-    """A mapping taken apart: its one word, its content, and what stands beside it."""
+    """A mapping taken apart: its one word, its content, and the keys next to it."""
 
     word: str
     entry: Entry
-    beside: dict[str, Entry]
+    siblings: dict[str, Entry]
 
 
 def take_apart(
     item: Located,
     words: Mapping[str, object],
-    beside: tuple[str, ...],
+    siblings: tuple[str, ...],
     whole: str,
     kind: str,
     problems: list[Problem],
 ) -> Words | None:
-    """Take a step or an expectation apart; None if there is no telling what it is."""
+    """Take a step or an expectation apart; None if it is unclear what it is."""
     if isinstance(item.value, str):
         if item.value in words:
             return Words(item.value, Entry(item.place, Located(None, item.place)), {})
         nothing = Located(None, item.place)
-        meant = _unknown(item.value, item.place, nothing, words, kind, problems)
-        return None if meant is None else Words(meant, Entry(item.place, nothing), {})
+        keyword = _unknown(item.value, item.place, nothing, words, kind, problems)
+        return None if keyword is None else Words(keyword, Entry(item.place, nothing), {})
     if not isinstance(item.value, dict):
         message = f"{_a(whole)} is a {kind} with its content, not {describe(item.plain())}"
         problems.append(item.place.problem(message, _all(words, kind)))
         return None
-    keys = [key for key in item.value if key not in beside]
+    keys = [key for key in item.value if key not in siblings]
     said = [key for key in keys if key in words]
     others = [key for key in keys if key not in words]
-    rest = {key: entry for key, entry in item.value.items() if key in beside}
+    rest = {key: entry for key, entry in item.value.items() if key in siblings}
     if not said and others:
         wrong = max(others, key=lambda key: nearest(key, words) is not None)
-        meant = _unknown(wrong, *item.value[wrong], words, kind, problems)
-        return None if meant is None else Words(meant, item.value[wrong], rest)
+        keyword = _unknown(wrong, *item.value[wrong], words, kind, problems)
+        return None if keyword is None else Words(keyword, item.value[wrong], rest)
     if not said:
         message = f"{_a(whole)} has one {kind}; this one has none"
         hint = UNTIL_USAGE if UNTIL in rest else _all(words, kind)
@@ -85,7 +85,7 @@ def take_apart(
         hint = f"begin another one: `- {extra}:`"
         problems.append(item.value[extra].key.problem(message, hint))
     for other in others:
-        _misplaced(other, item.value[other], said[0], words[said[0]], beside, problems)
+        _misplaced(other, item.value[other], said[0], words[said[0]], siblings, problems)
     return Words(said[0], item.value[said[0]], rest)
 
 
@@ -136,7 +136,7 @@ def with_temporal_word(word: str) -> tuple[str, str] | None:
 
 
 def _with_content(predicate: str, content: Located) -> str:
-    """A predicate with its content, as it stands behind a temporal word."""
+    """A predicate with its content, as it stands after a temporal word."""
     value = content.plain()
     if value is None:
         model = PREDICATES[predicate]
@@ -153,7 +153,7 @@ def _with_content(predicate: str, content: Located) -> str:
 
 
 def wrong_way_round(word: str, content: Located) -> str | None:
-    """What `collision: never`, or `collision: false`, is meant to be; None of other content."""
+    """What `collision: never`, or `collision: false`, stands for; None for other content."""
     said = "no" if content.value is False else content.value
     if not isinstance(said, str) or said.lower() not in ALONE:
         return None
@@ -165,15 +165,15 @@ def _misplaced(
     entry: Entry,
     word: str,
     model: object,
-    beside: tuple[str, ...],
+    siblings: tuple[str, ...],
     problems: list[Problem],
 ) -> None:
     if is_model(model) and key in keys_of(model):
-        message = f"`{key}` stands inside `{word}`, not beside it"
+        message = f"`{key}` stands inside `{word}`, not next to it"
         hint = f"write it below `{word}:`, further right"
     else:
-        message = f"unknown key `{key}` beside `{word}`"
-        hint = did_you_mean(key, beside, "words that may stand there")
+        message = f"unknown key `{key}` next to `{word}`"
+        hint = did_you_mean(key, siblings, "words that may stand there")
     problems.append(entry.key.problem(message, hint))
 
 

@@ -12,7 +12,7 @@ from harness.language.expectation import ExpectationFields, PredicateFields
 from harness.language.files.mistakes import describe, did_you_mean
 from harness.language.files.source import Entry, Located, Place, Source, located
 from harness.language.files.yaml_file import parse_value
-from harness.language.language import BESIDE_CHECK, EXPECTATIONS, TEMPORAL, UNTIL
+from harness.language.language import EXPECTATIONS, KEYS_BY_PREDICATE, TEMPORAL, UNTIL
 from harness.language.reading.params import PARAMS
 from harness.language.reading.short_forms import expanded
 from harness.language.reading.written import written
@@ -31,7 +31,7 @@ class Override(NamedTuple):
     Attributes:
         path: Keys, indices from 0 and names of list items (objects, cameras, ids of steps), joined
             by dots.
-        value: The new value.
+        value: The value that replaces it.
         place: Where mistakes in the path are reported.
     """
 
@@ -184,7 +184,7 @@ def _field(kind: Any, key: str) -> tuple[Any, Any]:
     if kind in (ExpectationFields, PredicateFields):
         if key in TEMPORAL or key == UNTIL:
             return PredicateFields, None
-        return EXPECTATIONS.get(key), ({} if key not in BESIDE_CHECK else None)
+        return EXPECTATIONS.get(key), ({} if key not in KEYS_BY_PREDICATE else None)
     if get_origin(kind) is dict:
         return get_args(kind)[1], None
     if not is_model(kind):

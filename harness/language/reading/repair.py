@@ -27,12 +27,12 @@ KEPT = {"steps": ("id", "planning", "expect"), "expect": (), "objects": ("name",
 
 
 @dataclass
-class Mended:
+class Repaired:
     """A scenario without what is broken.
 
     Attributes:
         data: What may be valid; items of lists keep their places.
-        words: Every word of what was taken out: problems that speak of one may follow from it.
+        words: Every word of what was taken out: problems that name one may follow from it.
         missing: `robot` or `world`, where something else stands in for it.
     """
 
@@ -41,16 +41,16 @@ class Mended:
     missing: set[Literal["robot", "world"]] = field(default_factory=set[Literal["robot", "world"]])
 
 
-def mended(data: dict[str, Any], places: Iterable[tuple[str | int, ...]]) -> Mended:
+def repair(data: dict[str, Any], places: Iterable[tuple[str | int, ...]]) -> Repaired:
     """The scenario without what is broken.
 
     Args:
         data: A scenario in the model's shape.
         places: Where pydantic found mistakes.
     """
-    found = Mended(deepcopy(data))
+    found = Repaired(deepcopy(data))
     for place in places:
-        _mend(found, place)
+        _remove_mistake(found, place)
     found.data.setdefault("scenario", "untitled")
     found.data.setdefault("steps", [STAND_INS["steps"]])
     if "robot" not in found.data:
@@ -59,7 +59,7 @@ def mended(data: dict[str, Any], places: Iterable[tuple[str | int, ...]]) -> Men
     return found
 
 
-def _mend(found: Mended, place: tuple[str | int, ...]) -> None:
+def _remove_mistake(found: Repaired, place: tuple[str | int, ...]) -> None:
     data = found.data
     key = str(place[0]) if place else ""
     if not key:  # the whole contradicts itself: how many samples there are

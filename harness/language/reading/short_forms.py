@@ -20,9 +20,9 @@ from harness.language.expectation import CHECK, ExpectationFields, PredicateFiel
 from harness.language.files.mistakes import describe, did_you_mean, nearest
 from harness.language.files.source import Entry, Located
 from harness.language.language import (
-    BESIDE_CHECK,
-    BESIDE_VERB,
     EXPECTATIONS,
+    KEYS_BY_PREDICATE,
+    KEYS_BY_VERB,
     PREDICATES,
     TEMPORAL,
     UNTIL,
@@ -43,9 +43,9 @@ def models_shape(
     """A file's values in the shape of its model.
 
     Args:
-        item: The file.
-        model: Its model.
-        problems: Gets the mistakes.
+        item: The content of the file.
+        model: The model of the content.
+        problems: The list that collects mistakes.
         notes: Gets what is allowed and probably not intended.
     """
     return _Shaper(problems, [] if notes is None else notes).model(item, model)
@@ -98,19 +98,19 @@ class _Shaper:
             self.notes.append(item.place.problem(message, hint))
 
     def model(self, item: Located, model: type[SpecModel], **names: str) -> Located:
-        """A mapping with the model's keys; `names` says how to speak of it."""
+        """A mapping with the model's keys; `names` holds the words for its messages."""
         item = expanded(item, model)
         if not isinstance(item.value, dict):
             return item
         keys = keys_of(model)
-        inside = [key for key in keys if not (issubclass(model, Step) and key in BESIDE_VERB)]
+        inside = [key for key in keys if not (issubclass(model, Step) and key in KEYS_BY_VERB)]
         entries: dict[str, Entry] = {}
         for key, entry in item.value.items():
             if key in inside:
                 shaped = self.field(entry.value, keys[key])
                 entries[key] = Entry(entry.key, shaped)
             elif key in keys and "verb" in names:
-                message = f"`{key}` stands beside `{names['verb']}`, not inside it"
+                message = f"`{key}` stands next to `{names['verb']}`, not inside it"
                 hint = f"write it in the column of `{names['verb']}:`"
                 self.problems.append(entry.key.problem(message, hint))
             else:
@@ -118,14 +118,14 @@ class _Shaper:
                 message = f"unknown key `{key}`" + (f" in `{where}`" if where else "")
                 hint = did_you_mean(key, inside, "keys") if inside else "it has no keys"
                 self.problems.append(entry.key.problem(message, hint))
-                meant = nearest(key, inside)
-                if meant is not None and meant not in item.value:  # go on as if it said so
-                    shaped = self.field(entry.value, keys[meant])
-                    entries[meant] = Entry(entry.key, shaped)
+                near = nearest(key, inside)
+                if near is not None and near not in item.value:  # go on as if it said so
+                    shaped = self.field(entry.value, keys[near])
+                    entries[near] = Entry(entry.key, shaped)
         return Located(entries, item.place)
 
     def step(self, item: Located) -> Located:
-        found = take_apart(item, STEPS, BESIDE_VERB, "step", "verb", self.problems)
+        found = take_apart(item, STEPS, KEYS_BY_VERB, "step", "verb", self.problems)
         if found is None:
             return _stand_in(item, TAG, "settle", {})
         model = STEPS[found.word]
@@ -133,18 +133,18 @@ class _Shaper:
         if not isinstance(content.value, dict):
             self._not_content(found, content, model)
             content = Located({}, content.place)
-        beside = {
+        siblings = {
             key: Entry(entry.key, self.field(entry.value, keys_of(model)[key]))
-            for key, entry in found.beside.items()
+            for key, entry in found.siblings.items()
         }
-        return _tagged(TAG, found, content.mapping() | beside)
+        return _tagged(TAG, found, content.mapping() | siblings)
 
     def expectation(self, item: Located) -> Located:
-        words = (*BESIDE_CHECK, UNTIL)
+        words = (*KEYS_BY_PREDICATE, UNTIL)
         found = take_apart(item, EXPECTATIONS, words, "expectation", "predicate", self.problems)
         if found is None:
             return _stand_in(item, CHECK, "within_limits", {})
-        until = found.beside.pop(UNTIL, None)
+        until = found.siblings.pop(UNTIL, None)
         if until is not None and found.word != "always":
             message = f"`until` goes with `always`, not with `{found.word}`"
             self.problems.append(until.key.problem(message, UNTIL_USAGE))
@@ -155,7 +155,7 @@ class _Shaper:
 
     def predicate(self, item: Located) -> Located:
         found = take_apart(
-            item, PREDICATES, BESIDE_CHECK, "expectation", "predicate", self.problems
+            item, PREDICATES, KEYS_BY_PREDICATE, "expectation", "predicate", self.problems
         )
         if found is None:
             return _stand_in(item, CHECK, "within_limits", {})
@@ -163,11 +163,11 @@ class _Shaper:
 
     def _predicate(self, found: Words) -> Located:
         model = EXPECTATIONS[found.word]
-        meant = wrong_way_round(found.word, found.entry.value) if found.word in PREDICATES else None
-        if meant is not None:
+        near = wrong_way_round(found.word, found.entry.value) if found.word in PREDICATES else None
+        if near is not None:
             place = found.entry.value.place
             message = f"a temporal word stands before its predicate, not in `{found.word}`"
-            self.problems.append(place.problem(message, f"write `{meant}`"))
+            self.problems.append(place.problem(message, f"write `{near}`"))
             return _stand_in(found.entry.value, CHECK, "within_limits", {})
         content = self.model(_content(found.entry), model, word=found.word)
         if not isinstance(content.value, dict):
@@ -175,9 +175,9 @@ class _Shaper:
             content = Located({}, content.place)
         allowed = keys_of(model)
         entries = dict(content.mapping())
-        for key, entry in found.beside.items():
+        for key, entry in found.siblings.items():
             if key not in allowed:
-                message = f"`{key}` has no meaning beside `{found.word}`"
+                message = f"`{key}` has no meaning next to `{found.word}`"
                 self.problems.append(entry.key.problem(message))
             else:
                 self._put(entries, key, entry)
@@ -186,12 +186,12 @@ class _Shaper:
     def _temporal(self, found: Words, until: Entry | None) -> Located:
         """`never: {collision: {...}, for: 1 s}`: the words inside belong to `never`."""
         inner = take_apart(
-            found.entry.value, PREDICATES, BESIDE_CHECK, found.word, "predicate", self.problems
+            found.entry.value, PREDICATES, KEYS_BY_PREDICATE, found.word, "predicate", self.problems
         )
-        entries = dict(found.beside)
+        entries = dict(found.siblings)
         if inner is None:
             return _stand_in(found.entry.value, CHECK, "within_limits", {})
-        for key, entry in inner.beside.items():
+        for key, entry in inner.siblings.items():
             self._put(entries, key, entry)
         predicate = self._predicate(Words(inner.word, inner.entry, {}))
         entries["predicate"] = Entry(found.entry.key, predicate)
@@ -202,7 +202,7 @@ class _Shaper:
 
     def _not_content(self, found: Words, content: Located, model: type[SpecModel]) -> None:
         message = f"`{found.word}` takes a mapping, not {describe(content.plain())}"
-        keys = [key for key in keys_of(model) if key not in (*BESIDE_VERB, *BESIDE_CHECK)]
+        keys = [key for key in keys_of(model) if key not in (*KEYS_BY_VERB, *KEYS_BY_PREDICATE)]
         hint = f"keys: {', '.join(keys)}" if keys else f"write `- {found.word}` alone"
         self.problems.append(content.place.problem(message, hint))
 
@@ -255,7 +255,7 @@ def _fits(item: Located, annotation: Any) -> bool:
 
 
 def _content(entry: Entry) -> Located:
-    """What stands behind a word; nothing is an empty mapping, standing at the word."""
+    """The content of a word; nothing is an empty mapping, standing at the word."""
     if entry.value.value is None:
         return Located({}, entry.key)
     return entry.value
@@ -267,6 +267,6 @@ def _tagged(tag: str, found: Words, entries: dict[str, Entry]) -> Located:
     return Located({tag: word, **entries}, place, found.word)
 
 
-def _stand_in(item: Located, tag: str, word: str, beside: dict[str, Entry]) -> Located:
+def _stand_in(item: Located, tag: str, word: str, siblings: dict[str, Entry]) -> Located:
     """Holds the place of what could not be read, so that indices stay."""
-    return _tagged(tag, Words(word, Entry(item.place, item), {}), beside)
+    return _tagged(tag, Words(word, Entry(item.place, item), {}), siblings)

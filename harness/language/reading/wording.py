@@ -87,7 +87,7 @@ def _literal(error: ErrorDetails, context: dict[str, Any], value: str) -> tuple[
     return f"cannot be {value}", hint
 
 
-def _wants(what: str, hint: str = "") -> Wording:
+def _not_a(what: str, hint: str = "") -> Wording:
     return lambda _error, _context, value: (f"is {what}, not {value}", hint)
 
 
@@ -186,20 +186,20 @@ def _flow(value: object) -> str:
 
 
 BOOLEAN = "YAML 1.2: `yes`, `no`, `on`, `off` are text"
-NUMBER = _wants("a number")
+NUMBER = _not_a("a number")
 
 WORDINGS: dict[str, Wording] = {
     "value_error": _value_error,
     "literal_error": _literal,
     "float_type": NUMBER,
     "float_parsing": NUMBER,
-    "finite_number": _wants("a finite number"),
-    "int_type": _wants("a whole number"),
-    "int_from_float": _wants("a whole number"),
-    "int_parsing": _wants("a whole number"),
-    "int_parsing_size": _wants("a whole number of sensible size"),
-    "bool_type": _wants("true or false", BOOLEAN),
-    "bool_parsing": _wants("true or false", BOOLEAN),
+    "finite_number": _not_a("a finite number"),
+    "int_type": _not_a("a whole number"),
+    "int_from_float": _not_a("a whole number"),
+    "int_parsing": _not_a("a whole number"),
+    "int_parsing_size": _not_a("a whole number of sensible size"),
+    "bool_type": _not_a("true or false", BOOLEAN),
+    "bool_parsing": _not_a("true or false", BOOLEAN),
     "string_type": _text,
     "string_too_short": _characters("at least", "min_length"),
     "string_too_long": _characters("at most", "max_length"),

@@ -9,7 +9,7 @@ from harness.language.base import SpecModel
 from harness.language.expectation import ExpectationFields, TemporalFields
 from harness.language.files.source import Place, Source, located
 from harness.language.files.yaml_text import yaml_text
-from harness.language.language import BESIDE_CHECK, BESIDE_VERB, UNTIL
+from harness.language.language import KEYS_BY_PREDICATE, KEYS_BY_VERB, UNTIL
 from harness.language.reading.params import escaped
 from harness.language.scenario import Scenario
 from harness.language.step import Step
@@ -26,12 +26,12 @@ def written(value: object) -> Any:
     if isinstance(value, SpecModel):
         entries = _entries(value)
         if isinstance(value, Step):
-            return _one_word(value.verb, entries, BESIDE_VERB)
+            return _one_word(value.verb, entries, KEYS_BY_VERB)
         if isinstance(value, TemporalFields):
             word = "always" if value.word == UNTIL else value.word
             return {word: entries.pop("predicate"), **entries}
         if isinstance(value, ExpectationFields):
-            return _one_word(value.word, entries, BESIDE_CHECK)
+            return _one_word(value.word, entries, KEYS_BY_PREDICATE)
         return entries
     if isinstance(value, Mapping):
         items = cast("Mapping[str, object]", value).items()

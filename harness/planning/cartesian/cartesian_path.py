@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
+from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
@@ -18,6 +20,7 @@ from harness.planning.cartesian.link_motion import LinkMotions
 from harness.planning.cartesian.link_timing import LinkRates
 from harness.planning.cartesian.tracing import STEP_ANGLE, STEP_LENGTH, Trace, trace
 from harness.ports import CartesianPathOptions, Goal, MotionPlan
+from harness.recording.explanation import CartesianPathResult, StraightResult
 
 CORNER_SHARE = 0.45
 """Largest part of the shorter adjacent line that the rounding of a corner may use."""
@@ -40,10 +43,7 @@ def plan_waypoints(
     whole = sum(_amount(line) for line in lines)
     done = sum(_amount(leg.path) for leg in legs if isinstance(leg.path, Line))
     fraction = 1.0 if stopped is None else done / whole
-    result = {
-        "fraction": fraction,
-        "largest_joint_step": max(steps, default=0.0),
-    }
+    result = CartesianPathResult(fraction, max(steps, default=0.0))
     if fraction < path_options.min_fraction or not legs:
         why = "" if stopped is None else f": {stopped.stop}"
         least = f"{100 * path_options.min_fraction:.0f} %"
@@ -51,30 +51,30 @@ def plan_waypoints(
             "PLANNING_FAILED",
             f"{lines[0].link} can follow {100 * fraction:.1f} % of its path, at least {least} is "
             f"required{why}",
-            {**result, "min_fraction": path_options.min_fraction}
-            | ({} if stopped is None else {"reason": stopped.reason, **stopped.facts}),
+            replace(result, min_fraction=path_options.min_fraction),
+            *Details.of(None if stopped is None else stopped.failure),
         )
     runs = runs_of(legs, _radii(legs, path_options.precision), motions)
-    explanation = {
-        "lowered_margins": list(task.checker.lowered),
-        "stopped_by": "" if stopped is None else stopped.stop,
-    }
+    explanation = task.lowered_margins + Details.of(
+        StraightResult("" if stopped is None else stopped.stop)
+    )
     end = legs[-1].positions[-1]
     if task.options.path_only:
-        return task.jump(end, explanation, result)
+        return task.jump(end, explanation, Details.of(result))
     trajectory = time_runs(runs, motions)
     task.accept(trajectory, end, "the Cartesian path")
-    result["deviation"] = _deviation(legs, trajectory, motions)
-    if result["deviation"] > path_options.precision:
+    deviation = _deviation(legs, trajectory, motions)
+    result = replace(result, deviation=deviation)
+    if deviation > path_options.precision:
         raise PlanningFailed(
             "INVALID_MOTION_PLAN",
-            f"{lines[0].link} would deviate from its lines by {1000 * result['deviation']:.2f} mm, "
+            f"{lines[0].link} would deviate from its lines by {1000 * deviation:.2f} mm, "
             f"more than the precision of {1000 * path_options.precision:.2f} mm",
             result,
         )
     waypoints = np.concatenate([leg.positions for leg in legs])
     statistics = task.statistics("cartesian_path", trajectory, waypoints)
-    return MotionPlan(trajectory, statistics, explanation, result)
+    return MotionPlan(trajectory, statistics, explanation, Details.of(result))
 
 
 def _follow(

@@ -10,6 +10,7 @@ import pinocchio as pin
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.recording.motion_failures import CircleFailure
 
 LARGEST_RADIUS_DIFFERENCE = 1e-2
 """Largest difference of the radii of start and goal [m], as in Pilz; the centre is corrected."""
@@ -81,7 +82,7 @@ class Arc:
                 "INVALID_MOTION_PLAN",
                 f"no circle: the start is {1000 * radii[0]:.1f} mm from the centre, the goal "
                 f"{1000 * radii[1]:.1f} mm",
-                {"start_radius": radii[0], "goal_radius": radii[1]},
+                CircleFailure(radii[0], radii[1]),
             )
         normal = np.cross(first, last)
         size = float(np.linalg.norm(normal))

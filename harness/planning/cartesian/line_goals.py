@@ -25,10 +25,10 @@ def end_pose(
     follows from the position.
 
     Args:
-        kinematics: The robot's kinematics.
-        task: The planning call.
+        kinematics: The kinematics of the robot.
+        task: The planning call with its options.
         start: Group positions at the start.
-        goal: The requested goal.
+        goal: The goal that was requested.
     """
     if isinstance(goal, PoseGoal):
         return goal

@@ -20,7 +20,7 @@ class Line:
         start: T_world_link at parameter 0.
         shift: Translation from 0 to 1, world axes [m].
         turn: Rotation vector from 0 to 1, world axes [rad].
-        radius: Of its curvature: a line has none [m].
+        radius: The radius of its curvature: a line has none [m].
     """
 
     name = "line"

@@ -49,10 +49,10 @@ class LinkRates:
     """Cartesian limits with every number known.
 
     Attributes:
-        velocity: [m/s]
-        acceleration: [m/s^2]
-        turning: [rad/s]
-        turning_acceleration: [rad/s^2]
+        velocity: The largest speed of the link [m/s].
+        acceleration: The largest acceleration of the link [m/s^2].
+        turning: The largest turning speed of the link [rad/s].
+        turning_acceleration: The largest turning acceleration of the link [rad/s^2].
     """
 
     velocity: float
@@ -97,10 +97,10 @@ def time_on_path(
 
     Args:
         path: What was traced, to its end.
-        traced: The joint positions.
-        joint_names: Of the columns.
-        limits: Of the joints, scaled.
-        rates: Of the link.
+        traced: The joint positions along the path.
+        joint_names: The joint names of the columns.
+        limits: The limits of the joints, scaled.
+        rates: The rates of the link.
 
     Raises:
         TimingError: The limits cannot be kept.

@@ -108,7 +108,7 @@ class MovingJoints:
         columns: Their indices in description order, shape (M,).
         parent: The moving joint before each, or -1, shape (M,).
         chain: Pose on the parent at zero (12), axis (3), 1 if prismatic, shape (M, 16).
-        above: For each Pinocchio joint, the moving joint that carries it, or -1.
+        above: The moving joint that carries each Pinocchio joint, or -1.
     """
 
     def __init__(self, space: GroupSpace) -> None:
@@ -178,14 +178,14 @@ class _Layout:
     Attributes:
         nodes: The spheres of all bodies.
         skip: The ends of their subtrees.
-        body_rows: For each body, the joint that carries it and its range of spheres.
-        parts: For each shape that spheres are checked against: body, kind, first sphere.
+        body_rows: The joint that carries each body, and the body's range of spheres.
+        parts: The body, kind and first sphere of each shape that spheres are checked against.
         part_data: The poses and sizes of the parts.
         keys: The joints that move two bodies relative to each other, as ranges of `joints`.
         joints: The joints of all keys.
-        checks: For each check, the body with the spheres, the other body's part, and the key.
-        pairs: For each check, the index of its pair in the scene.
-        rows: For each check, the indices of Coal's collision pairs.
+        checks: The body with the spheres, the other body's part and the key of each check.
+        pairs: The index of each check's pair in the scene.
+        rows: The indices of Coal's collision pairs of each check.
     """
 
     def __init__(self, model: CollisionModel, moving: MovingJoints) -> None:

@@ -222,12 +222,12 @@ def certify(  # noqa: ANN201
         parent: The moving joint before each moving joint, or -1, shape (M,).
         chain: Each joint's pose on its parent at 0 (12), axis (3), 1 if prismatic, shape (M, 16).
         body_poses: The bodies' poses on their joints or in the world, shape (B, 12).
-        bodies: For each body its joint or -1, first sphere and end, shape (B, 3).
-        part_data: For each part its pose on the body (12) and size (3), shape (P, 15).
-        parts: For each part its body, kind and first sphere, shape (P, 3).
+        bodies: The joint or -1, first sphere and end of each body, shape (B, 3).
+        part_data: The pose on the body (12) and the size (3) of each part, shape (P, 15).
+        parts: The body, kind and first sphere of each part, shape (P, 3).
         margins: The distances above which a check is free and below which it is blocked, (C, 2).
-        checks: For each check its body, part and key, shape (C, 3).
-        keys: For each key the two bodies (-1: static), and the joints that move them relative to
+        checks: The body, part and key of each check, shape (C, 3).
+        keys: The two bodies of each key (-1: static), and the joints that move them relative to
             each other, as ranges of `joints`, shape (R, 6).
         joints: Moving joints, tip first.
         found: Output: the undecided states and their checks, shape (F, 2).

@@ -28,7 +28,7 @@ def nearing_rates(model: CollisionModel, space: GroupSpace) -> FloatArray:
     sum of squares (Cauchy and Schwarz).
 
     Args:
-        model: The scene.
+        model: The model of the scene.
         space: The group that moves; its metric measures joint-space distances.
     """
     moving = MovingJoints(space)
@@ -99,9 +99,9 @@ class _Joints:
 
         Args:
             near: The joints that move the body, from it towards what carries both.
-            body: What they move.
+            body: The body that the joints move.
             far: The joints that move the other.
-            other: The other body.
+            other: The body that it approaches.
         """
         ways = zip(near, self._to_body(near, body), self._to_other(near, far, other), strict=True)
         return [1.0 if self._slides[joint] else min(each) for joint, *each in ways]

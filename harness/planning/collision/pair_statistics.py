@@ -35,10 +35,10 @@ class SelfTouches:
     """Which links touched at which configurations.
 
     Attributes:
-        description: The robot.
+        description: The description of the robot.
         pairs: Links that move against each other, sorted names; allowed pairs included.
-        touched: Shape (N, P): whether a pair touched in a sample.
-        at_start: Shape (P,): whether it touches where the robot starts.
+        touched: Whether a pair touched in a sample, shape (N, P).
+        at_start: Whether a pair touches where the robot starts, shape (P,).
     """
 
     description: RobotDescription

@@ -18,6 +18,7 @@ from harness.core.world import WorldObject
 from harness.planning.collision.geometry import geometry_object
 from harness.planning.model.robot_model import RobotModel
 from harness.ports import Touch
+from harness.recording.execution_failures import ObjectFailure
 from harness.robot.description import RobotDescription
 from harness.robot.solids import box_corners, coal_geometry, distance_to_point
 
@@ -30,13 +31,13 @@ class SceneObject:
     """An object of the scene.
 
     Attributes:
-        shapes: On the body.
+        shapes: The shapes on the body.
         pose: T_world_object, or T_link_object while attached.
         link: What it is attached to; None while it stands in the world.
         touch_links: Links it may touch while attached.
-        mass: [kg]
-        center_of_mass: In the object [m], shape (3,).
-        inertia: About the centre of mass, object axes, shape (3, 3).
+        mass: The mass of the object [kg].
+        center_of_mass: The centre of mass in the object [m], shape (3,).
+        inertia: The inertia about the centre of mass, object axes, shape (3, 3).
     """
 
     shapes: tuple[Shape, ...]
@@ -65,12 +66,12 @@ class Body:
     """A link or an object as a set of geometries that move together.
 
     Attributes:
-        name: Of the link or the object.
+        name: The name of the link or the object.
         joint: Pinocchio's joint it moves with; 0 stands still.
         geometries: Indices into the geometry model.
         shapes: The same, placed on the joint.
         is_link: A link of the robot.
-        is_held: An attached object.
+        is_held: Whether this is an attached object.
     """
 
     name: str
@@ -87,7 +88,7 @@ class BodyPair:
 
     Attributes:
         first: Name; the robot's link or the held object where there is one.
-        second: Name.
+        second: The name of the second body.
         keeps_padding: Between the robot (or what it holds) and an object of the world that it is
             not about to grasp.
         pairs: Rows of the geometry model's collision pairs.
@@ -336,7 +337,7 @@ class CoalScene:
             raise StepFailed(
                 "INVALID_OBJECT_NAME",
                 f"the planning scene has no object '{name}' (it has: {known})",
-                {"object": name, "known": list(self._objects)},
+                ObjectFailure(name, tuple(self._objects)),
             )
         return self._objects[name]
 

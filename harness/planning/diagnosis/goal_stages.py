@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.planning.collision.checker import touch_facts
+from harness.planning.collision.checker import touch_records
 from harness.planning.collision.wording import count, joint_value, touches
 from harness.planning.diagnosis.branch_stage import branches_finding
 from harness.planning.diagnosis.reach_stage import reach_finding
@@ -13,7 +13,7 @@ from harness.planning.diagnosis.stage_request import Finding, StageRequest
 from harness.planning.goals.goal_study import GoalStudy, broken_limits, limit_sentence, study_goal
 from harness.planning.ik.numeric import LinkGoal
 from harness.ports import JointGoal
-from harness.recording.explanation import Stage
+from harness.recording.explanation import NearestState, Stage
 
 
 def goal_findings(request: StageRequest) -> list[Finding]:
@@ -49,8 +49,8 @@ def _joint_findings(request: StageRequest, positions: FloatArray) -> list[Findin
     given = "not needed: the goal gives joint positions"
     if broken:
         first = broken[0]
-        below = first["value"] < first["lower"]
-        limit = joint_value(space, first["joint"], first["lower" if below else "upper"])
+        below = first.value < first.lower
+        limit = joint_value(space, first.joint, first.lower if below else first.upper)
         stage = Stage(
             "reach",
             "failed",
@@ -58,11 +58,11 @@ def _joint_findings(request: StageRequest, positions: FloatArray) -> list[Findin
             "GOAL_STATE_INVALID",
             tuple(limit_sentence(space, each) for each in broken),
         )
-        nearest = {
-            "shows": "nearest joint positions inside the limits",
-            "joint_positions": request.joints(np.clip(positions, space.lower, space.upper)),
-        }
-        advice = f"give {first['joint']} at {'least' if below else 'most'} {limit}"
+        nearest = NearestState(
+            "nearest joint positions inside the limits",
+            request.joints(np.clip(positions, space.lower, space.upper)),
+        )
+        advice = f"give {first.joint} at {'least' if below else 'most'} {limit}"
         unknown = Stage("inverse kinematics", "not reached", given)
         return [Finding(stage, nearest, advice), Finding(unknown)]
     reach = Finding(Stage("reach", "passed", "every joint is inside its limits"))
@@ -78,11 +78,9 @@ def _joint_findings(request: StageRequest, positions: FloatArray) -> list[Findin
         f"{given}; there {touches(found)}",
         "GOAL_IN_COLLISION",
     )
-    nearest = {
-        "shows": "goal in collision",
-        "joint_positions": request.joints(positions),
-        "touches": touch_facts(list(found)),
-    }
+    nearest = NearestState(
+        "goal in collision", request.joints(positions), touches=touch_records(found)
+    )
     advice = (
         f"choose other joint positions, or move {found[0].second} out of the way; with a `pose` "
         "the planner chooses among all branches"

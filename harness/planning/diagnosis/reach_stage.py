@@ -10,7 +10,7 @@ import numpy as np
 from harness.core.spatial import SE3, xyzw_from_wxyz
 from harness.core.types import FloatArray
 from harness.planning.collision.wording import angle, length, point
-from harness.planning.diagnosis.stage_request import Finding, StageRequest, nearest_facts
+from harness.planning.diagnosis.stage_request import Finding, StageRequest, nearest_state
 from harness.planning.goals.goal_study import GoalStudy
 from harness.planning.ik.nearest_pose import (
     KEEP_POINT,
@@ -52,7 +52,7 @@ def reach_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> Fi
         tuple(f"{how}: {_describe(how, other)}" for how, other in others.items()),
     )
     advice = _reached_goal(request, goal, others.get(_SAME_ORIENTATION, nearest))
-    return Finding(stage, nearest_facts(request, goal, nearest), advice)
+    return Finding(stage, nearest_state(request, goal, nearest), advice)
 
 
 def _too_few_joints(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> Finding:
@@ -70,7 +70,7 @@ def _too_few_joints(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> 
     advice = (
         f"give {keys} instead of `pose`, or allow `tolerance: {{orientation: {tolerance:.3f}}}`"
     )
-    return Finding(stage, nearest_facts(request, goal, nearest), advice)
+    return Finding(stage, nearest_state(request, goal, nearest), advice)
 
 
 _SAME_ORIENTATION = "with the requested orientation"

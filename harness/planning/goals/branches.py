@@ -24,10 +24,10 @@ def branch_name(kinematics: _Poses, space: GroupSpace, method: str, positions: F
     require a turntable (joint 1) followed by two links (joints 2 and 3), as for analytic solvers.
 
     Args:
-        kinematics: The robot's kinematics.
-        space: The planning group.
+        kinematics: The kinematics of the robot.
+        space: The space of the planning group.
         method: The solver's name; a numeric solver has no branches, so the name is empty.
-        positions: Group positions.
+        positions: The positions of the group's joints.
     """
     if method == "numeric":
         return ""

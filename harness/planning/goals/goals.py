@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
-from harness.planning.collision.checker import MotionChecker, touch_facts
+from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.collision.wording import angle, count, joint_value, length, point, touches
 from harness.planning.goals.goal_study import GoalStudy, broken_limits, limit_sentence, study_goal
 from harness.planning.ik.answer import LimitedSolution, MissedSolution
@@ -18,6 +18,7 @@ from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.nearest_pose import nearest_pose, target_of
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports import Goal, JointGoal, PoseGoal, PositionGoal, Touch
+from harness.recording.goal_failures import CollisionFailure, IkFailure, LimitFailure
 
 _REACHED = 1e-6  # [m, rad] the point is reached within this distance
 
@@ -27,7 +28,7 @@ class GoalCandidates:
     """Free joint positions that reach a goal, nearest first, with the explanation."""
 
     positions: tuple[FloatArray, ...]
-    explanation: dict[str, Any]
+    explanation: Details
 
 
 def find_goals(
@@ -40,10 +41,10 @@ def find_goals(
     """Find free joint positions that reach a goal.
 
     Args:
-        kinematics: The robot's kinematics.
+        kinematics: The kinematics of the robot.
         checker: The checker of the planned motion.
         start: The start positions in description order.
-        goal: The requested goal.
+        goal: The goal that was requested.
         seed: The seed of numeric restarts.
 
     Raises:
@@ -68,9 +69,9 @@ def find_goals(
             "GOAL_IN_COLLISION",
             f"{goal.link} reaches {point(target_of(goal))} in {ways}, {each} in collision; "
             f"the nearest: {touches(study.branches[0].touches)}",
-            study.facts(),
+            study.record,
         )
-    return GoalCandidates(free, study.facts())
+    return GoalCandidates(free, Details.of(study.record))
 
 
 def _joint_goal(checker: MotionChecker, goal: JointGoal) -> GoalCandidates:
@@ -83,7 +84,7 @@ def _joint_goal(checker: MotionChecker, goal: JointGoal) -> GoalCandidates:
             "GOAL_STATE_INVALID",
             limit_sentence(space, broken[0])
             + (f"; {count(more, 'more joint')} outside limits" if more else ""),
-            {"outside_limits": broken},
+            LimitFailure(broken),
         )
     positions = np.clip(positions, space.lower, space.upper)
     if not checker.state_free(positions):
@@ -91,9 +92,9 @@ def _joint_goal(checker: MotionChecker, goal: JointGoal) -> GoalCandidates:
         raise PlanningFailed(
             "GOAL_IN_COLLISION",
             f"at the goal's joint positions these are in collision: {touches(found)}",
-            {"touches": touch_facts(found)},
+            CollisionFailure(touch_records(found)),
         )
-    return GoalCandidates((positions,), {})
+    return GoalCandidates((positions,), Details())
 
 
 def _no_solution(
@@ -109,13 +110,13 @@ def _no_solution(
     nearest_point = nearest_pose(space, alone, reference, seed)
     too_far = 0.0 if nearest_point.shift < _REACHED else nearest_point.shift
     nearest = nearest_pose(space, goal, nearest_point.positions, seed)
-    facts = study.facts() | {
-        "point_out_of_reach_by": too_far,
-        "wrist_out_of_reach_by": study.answer.excess,
-        "nearest_position": nearest_point.pose.translation.tolist(),
-        "position_error": nearest.shift,
-        "orientation_error": nearest.turn,
-    }
+    failure = IkFailure(
+        position_error=nearest.shift,
+        orientation_error=nearest.turn,
+        point_out_of_reach_by=too_far,
+        wrist_out_of_reach_by=study.answer.excess,
+        nearest_position=tuple(nearest_point.pose.translation.tolist()),
+    )
     if too_far:
         message = (
             f"{goal.link} cannot reach {point(target)}: the nearest point it reaches, "
@@ -133,7 +134,7 @@ def _no_solution(
             f"{goal.link} reaches {point(target)}, but not with the requested {what}: the nearest "
             f"pose is {length(nearest.shift)} and {angle(nearest.turn)} away"
         )
-    return PlanningFailed("NO_IK_SOLUTION", message, facts)
+    return PlanningFailed("NO_IK_SOLUTION", message, study.record, failure)
 
 
 def _constraints_violated(
@@ -147,7 +148,8 @@ def _constraints_violated(
         f"with {space.dof} joints {goal.link} reaches the {study.answer.task} of the pose, but is "
         f"then turned {turned_by} away from it, and {_allowed_turn(goal)} are allowed: "
         f"give {write} instead of `pose`, or a wider `tolerance`",
-        study.facts() | {"position_error": missed.shift, "orientation_error": missed.turn},
+        study.record,
+        IkFailure(missed.shift, missed.turn),
     )
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.recording.goal_failures import LimitedIkSolution
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,15 +25,16 @@ class LimitedSolution:
     value: float
     limit: float
 
-    def facts(self) -> dict[str, Any]:
-        """The facts as plain data."""
-        return {
-            "joint_positions": [float(value) for value in self.positions],
-            "joint": self.joint,
-            "value": self.value,
-            "limit": self.limit,
-            "excess": abs(self.value - self.limit),
-        }
+    def record(self, branch: str) -> LimitedIkSolution:
+        """The solution as a step's record has it, with the name of its branch."""
+        return LimitedIkSolution(
+            joint_positions=tuple(map(float, self.positions)),
+            joint=self.joint,
+            value=self.value,
+            limit=self.limit,
+            excess=abs(self.value - self.limit),
+            branch=branch,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +42,7 @@ class MissedSolution:
     """A solution inside the limits of the part of a pose that the arm can choose.
 
     Attributes:
-        positions: Group positions.
+        positions: The positions of the group's joints.
         pose: T_world_link at these positions.
         shift: The position error [m].
         turn: The orientation error [rad], which exceeds the tolerance.

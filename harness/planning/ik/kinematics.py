@@ -21,11 +21,12 @@ from harness.planning.ik.open_manipulator import (
     solve_planar,
 )
 from harness.planning.ik.ur import UrGeometry, is_ur_like, solve_ur
-from harness.planning.model.forward_kinematics import LinkPoses, quats_wxyz
 from harness.planning.model.robot_model import GroupSpace, RobotModel
 from harness.planning.model.turns import is_within, turn_from
 from harness.ports import PoseGoal, PositionGoal
+from harness.recording.goal_failures import LinkFailure
 from harness.robot.description import Joint, RobotDescription
+from harness.robot.forward_kinematics import LinkPoses, quats_wxyz
 
 WHOLE_POSE_JOINTS, PITCH_JOINTS = 6, 4
 """Joints that an arm needs for an arbitrary pose, and for an arbitrary position and pitch."""
@@ -201,7 +202,7 @@ class PinocchioKinematics:
             raise PlanningFailed(
                 "INVALID_LINK_NAME",
                 f"link '{link}' is not moved by the joints of group '{space.group}'",
-                {"link": link, "group": space.group},
+                LinkFailure(link, space.group),
             )
 
     def _fixed_offset(self, joint: Joint, link: str) -> SE3:

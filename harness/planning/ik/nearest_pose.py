@@ -34,9 +34,9 @@ class NearestPose:
 
     Attributes:
         positions: Group positions, inside the limits.
-        pose: T_world_link there.
+        pose: The pose T_world_link at these positions.
         shift: Distance to the goal's point [m].
-        turn: From the goal's orientation, or its pitch [rad]; 0 for a point alone.
+        turn: The rotation from the goal's orientation, or its pitch [rad]; 0 for a point alone.
     """
 
     positions: FloatArray
@@ -84,7 +84,7 @@ def nearest_pose(
         space: The group, the rest of the robot at rest.
         goal: What the link should do.
         seed_positions: Where the first search starts, shape (dof,).
-        seed: Of the restarts; the same seed gives the same answer.
+        seed: The seed of the restarts; the same seed gives the same answer.
         metres_per_radian: What a turn counts: `EVEN`, `KEEP_TURN` or `KEEP_POINT`.
     """
     task = LinkTask(space, goal, metres_per_radian=metres_per_radian)
@@ -104,7 +104,7 @@ def nearest_free_shift(
     """The shortest move of a goal, along a world axis or away, that frees it.
 
     Args:
-        goal: In collision in each of its solutions.
+        goal: The goal, in collision in each of its solutions.
         solve: Inverse kinematics of a goal.
         is_free: Whether group positions are free.
 

@@ -16,7 +16,7 @@ LinkGoal = PoseGoal | PositionGoal
 
 RESTARTS, MOST_RESTARTS = 24, 64
 """Searches from random positions after the one from the seed, and the limit while none succeeds.
-Success rates of every bundled arm are in robots/INVERSE_KINEMATICS.md."""
+Success rates of every bundled arm are in docs/reference/inverse_kinematics.md."""
 
 _CONVERGED = 1e-9  # [m, rad] error at which least squares stop
 _FOUND = 1e-8  # [m, rad] largest error of a solution

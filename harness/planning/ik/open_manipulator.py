@@ -115,7 +115,7 @@ def solve_planar(
     """Solve both elbow branches for a point, a heading and a pitch in the plane.
 
     Args:
-        arm: The arm's lengths.
+        arm: The lengths of the arm.
         position: The target in the base frame [m], shape (3,).
         heading: The angle of joint 1 [rad]; one of `headings`.
         pitch: The sum of joints 2, 3 and 4 [rad], downwards.

@@ -87,8 +87,8 @@ def solve_ur(geometry: UrGeometry, T_base_wrist3: SE3, wrist_3_seed: float) -> U
     returned nevertheless; the refinement decides whether it is valid.
 
     Args:
-        geometry: The arm's lengths.
-        T_base_wrist3: The target pose.
+        geometry: The lengths of the arm.
+        T_base_wrist3: The target pose of the last wrist frame.
         wrist_3_seed: The preferred angle of joint 6 where joints 4 and 6 are parallel.
 
     References:

@@ -90,14 +90,14 @@ class GroupSpace:
     joints follow, all others stay at `reference`.
 
     Attributes:
-        joint_names: Of the group, in its order.
+        joint_names: The joint names of the group, in its order.
         lower: Position limits, shape (dof,); -inf for continuous joints.
-        upper: Shape (dof,).
-        velocity: Limits, shape (dof,).
-        acceleration: Limits, shape (dof,).
+        upper: The upper position limits, shape (dof,).
+        velocity: The velocity limits, shape (dof,).
+        acceleration: The acceleration limits, shape (dof,).
         metric: Weights of joint-space distances, shape (dof,).
         leverage: Share of the arm's reach that each joint moves, 0.1 to 1, shape (dof,).
-        wraps: Which joints turn, so that a whole turn more is the same place, shape (dof,).
+        wraps: Whether a whole turn brings each joint to the same place, shape (dof,).
     """
 
     def __init__(self, robot: RobotModel, group: str, reference: FloatArray) -> None:

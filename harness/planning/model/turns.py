@@ -20,9 +20,9 @@ def turn_from(middle: FloatArray, rotation: FloatArray, tolerance: Sequence[floa
     about that axis is taken out, so that a cone about it stays a cone however far it is turned.
 
     Args:
-        middle: Shape (3, 3).
-        rotation: Shape (3, 3).
-        tolerance: About x, y, z [rad]: says which are free.
+        middle: The rotation from which the turn is measured, shape (3, 3).
+        rotation: The rotation at the end of the turn, shape (3, 3).
+        tolerance: The tolerance about x, y, z [rad], which says which axes are free.
     """
     quat = quat_wxyz_from_rotation(middle.T @ rotation)
     free = [axis for axis in range(3) if tolerance[axis] >= FREE]

@@ -75,13 +75,13 @@ def search_ompl(
 
     Args:
         planner_id: A name that `resolve_planner_id` knows.
-        checker: Of states and edges.
-        start: Group positions, free.
+        checker: The checker of states and edges.
+        start: The start positions of the group, free of collisions.
         goals: Group positions, each free.
-        resolution: Of the edge checks [rad].
+        resolution: The resolution of the edge checks [rad].
         max_state_checks: Budget of this search.
-        seed: Of OMPL's random numbers.
-        parameters: Of the planner, by OMPL's names: `range`, `goal_bias` ...
+        seed: The seed of OMPL's random numbers.
+        parameters: The parameters of the planner, by OMPL's names: `range`, `goal_bias` ...
 
     Raises:
         ValueError: A planner or a parameter is unknown; says which there are.

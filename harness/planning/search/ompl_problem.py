@@ -19,7 +19,7 @@ _BEYOND = np.pi  # [rad] how far a continuous joint may leave the range of start
 class FreeStates:
     """Says which states are free, and counts them; only the ends are when the budget has ended.
 
-    So planners that draw whole batches come to their end, and none lacks a start or a goal.
+    So planners that draw whole batches terminate, and none lacks a start or a goal.
     """
 
     def __init__(self, checker: MotionChecker, ends: FloatArray, end: int) -> None:
@@ -80,10 +80,10 @@ def make_problem(
     """The problem of getting from the start to any of the goals.
 
     Args:
-        checker: Of states and edges.
-        start: Group positions, free.
+        checker: The checker of states and edges.
+        start: The start positions of the group, free of collisions.
         goals: Group positions, each free.
-        resolution: Of the edge checks [rad].
+        resolution: The resolution of the edge checks [rad].
         end: The checker's count at which the budget ends.
     """
     ends = np.vstack([start, *goals])

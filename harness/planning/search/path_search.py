@@ -36,11 +36,11 @@ class FoundPath:
     """A path that is free at `FINAL_RESOLUTION`, and how it was found.
 
     Attributes:
-        result: Of the planner.
-        waypoints: Shape (N, dof), not shortened.
-        attempt: From 0.
-        resolution: At which it was searched [rad].
-        seed: Of that search, and of what is made of the path.
+        result: The result of the planner.
+        waypoints: The waypoints, not shortened, shape (N, dof).
+        attempt: The number of the attempt, from 0.
+        resolution: The resolution of the search [rad].
+        seed: The seed of that search, and of what is made of the path.
     """
 
     result: Search

@@ -47,9 +47,10 @@ def set_parameters(planner: ob.Planner, kind: str, parameters: Mapping[str, floa
     """Give a planner its parameters through its setters; the wheel does not bind OMPL's ParamSet.
 
     Args:
-        planner: Before its setup.
+        planner: The planner before its setup.
         kind: Its name in messages.
-        parameters: By OMPL's names: `range`, `goal_bias` ...; 0 and 1 are no and yes.
+        parameters: The parameters by OMPL's names: `range`, `goal_bias` ...; 0 and 1 are no and
+            yes.
 
     Raises:
         ValueError: A parameter is unknown, or OMPL takes no such value; says which there are.

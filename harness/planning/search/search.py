@@ -22,7 +22,7 @@ class Search:
         checks: The number of state checks.
         vertices: The number of vertices of its trees or graph.
         gap: The remaining joint-space distance between its trees or to the goal [rad]; 0 if solved.
-        planner_id: The planner's name.
+        planner_id: The name of the planner.
     """
 
     waypoints: FloatArray | None
@@ -50,13 +50,13 @@ def search(
     Args:
         planner_id: A name that `resolve_planner_id` knows; `auto` is the fast planner, then the
             patient one.
-        checker: Of states and edges.
-        start: Group positions, free.
+        checker: The checker of states and edges.
+        start: The start positions of the group, free of collisions.
         goals: Group positions, each free.
-        resolution: Of the edge checks [rad].
+        resolution: The resolution of the edge checks [rad].
         max_state_checks: Budget of this search.
-        seed: Of samples.
-        parameters: Of the planner, by OMPL's names: `range`, `goal_bias` ...
+        seed: The seed of samples.
+        parameters: The parameters of the planner, by OMPL's names: `range`, `goal_bias` ...
 
     Raises:
         ValueError: A planner or a parameter is unknown; says which there are.

@@ -20,10 +20,10 @@ def shorten(
     """Cut corners of a free path: waypoints dropped first, then random points on it joined.
 
     Args:
-        waypoints: Shape (N, dof), free along its edges.
-        checker: Of the edges; margins are kept as they were on the path.
-        resolution: Of the edge checks [rad].
-        seed: Of the random points; the same seed gives the same path.
+        waypoints: The waypoints, free along the edges, shape (N, dof).
+        checker: The checker of the edges; margins are kept as they were on the path.
+        resolution: The resolution of the edge checks [rad].
+        seed: The seed of the random points; the same seed gives the same path.
 
     Returns:
         Waypoints, shape (M, dof), M <= N mostly; the ends are the same.

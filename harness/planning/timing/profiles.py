@@ -27,9 +27,9 @@ class Trapezoid:
     """From 0 to `length` at rest on both ends, under a velocity and an acceleration limit.
 
     Attributes:
-        length: Of the parameter.
+        length: The length of the parameter.
         velocity: Reached in the middle part.
-        acceleration: At both ends.
+        acceleration: The acceleration at both ends.
         duration: A whole multiple of `GRID` [s].
     """
 
@@ -147,9 +147,9 @@ def smoothed(curve: Curve, duration: float, window: float) -> Curve:
     velocities and accelerations stay within what the curve's keep to.
 
     Args:
-        curve: At rest on both ends.
-        duration: Of the curve [s].
-        window: Of the mean [s].
+        curve: The curve, at rest on both ends.
+        duration: The duration of the curve [s].
+        window: The window of the mean [s].
 
     References:
         L. Biagiotti, C. Melchiorri, "FIR filters for online trajectory planning with time- and

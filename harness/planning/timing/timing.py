@@ -83,8 +83,8 @@ def time_blended(
     """Move along a polyline as fast as the limits let, its corners rounded, timed by TOPP-RA.
 
     Args:
-        joint_names: Of the columns.
-        waypoints: Shape (N, dof), N > 2.
+        joint_names: The joint names of the columns.
+        waypoints: The waypoints, shape (N, dof), N > 2.
         limits: Kept on every 2 ms sample: the times are stretched where TOPP-RA exceeds them.
         deviation: Largest joint-space distance from a corner [rad].
 

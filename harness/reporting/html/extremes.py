@@ -19,8 +19,9 @@ class Thinned:
 
     Attributes:
         bin: Samples in a stretch.
-        offsets: Of each kept sample from its stretch's start, shape (series, 2 * stretches).
-        values: Shape (series, 2 * stretches); NaN where a stretch has none.
+        offsets: The offsets of each kept sample from its stretch's start, shape (series, 2 *
+            stretches).
+        values: The values, shape (series, 2 * stretches); NaN where a stretch has none.
     """
 
     bin: int
@@ -32,8 +33,8 @@ def thin(columns: FloatArray, stretches: int) -> Thinned:
     """Keep two samples of every stretch.
 
     Args:
-        columns: Shape (series, samples).
-        stretches: About how many there may be.
+        columns: The series as rows, shape (series, samples).
+        stretches: The approximate number of stretches.
     """
     series, samples = columns.shape
     size = max(2, -(-samples // stretches))

@@ -15,7 +15,7 @@ class Limit:
     """A dashed line.
 
     Attributes:
-        series: Whose limit it is; None for everybody's.
+        series: The series that the limit belongs to; None for all.
     """
 
     value: float

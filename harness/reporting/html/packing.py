@@ -18,7 +18,7 @@ LEVEL = 7
 
 
 class Packer:
-    """Named buffers behind a JSON head."""
+    """Named buffers after a JSON head."""
 
     def __init__(self) -> None:
         self._places: dict[str, tuple[int, int]] = {}

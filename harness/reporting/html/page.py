@@ -31,8 +31,8 @@ def page_html(stored: StoredRun, pictures: Sequence[Picture] = ()) -> str:
     """One self-contained page; equal text for equal runs but for their wall times.
 
     Args:
-        stored: The run, judged.
-        pictures: For the summary.
+        stored: The run with its verdicts.
+        pictures: The pictures for the summary.
     """
     skeleton, style, script = bundle.skeleton(), bundle.style(), bundle.script()
     text = Template(skeleton).substitute(

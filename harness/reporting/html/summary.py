@@ -61,7 +61,7 @@ def outcome_pill(stored: StoredRun) -> str:
 
 
 def header_facts(stored: StoredRun) -> list[tuple[str, str]]:
-    """What stands beside the title."""
+    """What stands next to the title."""
     run = stored.run
     return [
         ("robot", run.robot.name),
@@ -127,7 +127,7 @@ def _used(measures: Iterable[Measure]) -> str:
 def _steps(stored: StoredRun) -> str:
     run = stored.run
 
-    def tell(step: StepRecord) -> str:
+    def step_text(step: StepRecord) -> str:
         why = "" if step.status == "passed" else step.message
         code = "" if why.startswith(step.error_code) else step.error_code
         return ": ".join(part for part in (code, why) if part)
@@ -136,7 +136,7 @@ def _steps(stored: StoredRun) -> str:
         _row(
             {"failed": "bad", "not_reached": "open"}.get(step.status, "good"),
             str(number), "\u2003" * depth_of(step, run) + step.summary, STATUS[step.status],
-            _duration(step), str(step.line or ""), tell(step),
+            _duration(step), str(step.line or ""), step_text(step),
         )
         for number, step in enumerate(ordered_steps(run), start=1)
     ]  # fmt: skip

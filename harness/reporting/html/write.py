@@ -8,6 +8,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from harness.recording.explanation import recorded_explanation
 from harness.recording.store import PAGE, StoredRun, blames_changes, read_run
 from harness.reporting.html.page import page_html
 from harness.reporting.html.summary import Picture
@@ -52,14 +53,19 @@ def _pictures(folder: Path, stored: StoredRun) -> list[Picture]:
         {*failed[:PICTURES], *_spread(rest, PICTURES - len(failed))},
         key=lambda number: (executed[number].end_time, number),
     )
-    told = [(stills[n], f"{executed[n].summary}, t = {executed[n].end_time:.2f} s") for n in chosen]
-    told += [
-        (folder / step.explanation["picture"], f"why: {step.summary}")
+    captioned = [
+        (stills[n], f"{executed[n].summary}, t = {executed[n].end_time:.2f} s") for n in chosen
+    ]
+    captioned += [
+        (folder / picture, f"why: {step.summary}")
         for step in executed
-        if step.status == "failed" and "picture" in step.explanation
+        if step.status == "failed"
+        and (picture := recorded_explanation(step.explanation).picture) is not None
     ]
     return [
-        Picture(caption, small) for file, caption in told if (small := _small(file)) is not None
+        Picture(caption, small)
+        for file, caption in captioned
+        if (small := _small(file)) is not None
     ]
 
 

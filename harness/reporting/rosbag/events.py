@@ -24,9 +24,9 @@ class Event:
     """Something that happened.
 
     Attributes:
-        time: In simulation [s].
+        time: The time in simulation [s].
         said: One line for the log.
-        level: Of the log.
+        level: The level in the log.
         content: Plain data for programs; its `event` says which it is.
     """
 
@@ -37,7 +37,7 @@ class Event:
 
 
 def event_messages(stored: StoredRun) -> Iterator[Message]:
-    """Every event twice: as JSON on a topic of ours, and in the log that every tool shows."""
+    """Every event twice: as JSON on the harness' own topic, and in the log of every tool."""
     file = PurePath(stored.run.file).name  # where it was is no part of what happened
     for event in events(stored):
         text = json.dumps(event.content, ensure_ascii=False, allow_nan=False)
@@ -58,34 +58,34 @@ def events(stored: StoredRun) -> list[Event]:
     first, last = float(run.signals.times[0]), float(run.signals.times[-1])
     head = {"event": "run_started", "scenario": run.scenario, "case": run.case, "seed": run.seed}
     tail = {"event": "run_finished", "outcome": stored.outcome, "digest": stored.digest}
-    told = [*_steps(run), *_presence(run), *_attachments(run), *_findings(run, last)]
-    told += [_verdict(verdict, last) for verdict in stored.verdicts]
+    events = [*_steps(run), *_presence(run), *_attachments(run), *_findings(run, last)]
+    events += [_verdict(verdict, last) for verdict in stored.verdicts]
     return [
         Event(first, f"run: {run.scenario}", Log.INFO, head),
-        *sorted(told, key=lambda event: event.time),
+        *sorted(events, key=lambda event: event.time),
         Event(last, f"outcome: {stored.outcome}", _level(stored.outcome == "passed"), tail),
     ]
 
 
 def _steps(run: Run) -> list[Event]:
     """Begin and end of every step; nested ones end before the block they stand in."""
-    told: list[Event] = []
+    events: list[Event] = []
     begun: list[StepRecord] = []
 
     def finish_but(path: str) -> None:
         while begun and not path.startswith(f"{begun[-1].path}."):
-            told.append(_finished(begun.pop()))
+            events.append(_finished(begun.pop()))
 
     for step in run.steps:
         finish_but(step.path)
         if step.status == "not_reached":
             continue
-        told.append(_started(step))
+        events.append(_started(step))
         begun.append(step)
     finish_but("")
     end = float(run.signals.times[-1])
-    told += [_not_reached(step, end) for step in run.steps if step.status == "not_reached"]
-    return told
+    events += [_not_reached(step, end) for step in run.steps if step.status == "not_reached"]
+    return events
 
 
 def _step(event: str, step: StepRecord) -> dict[str, Any]:
@@ -115,41 +115,43 @@ def _not_reached(step: StepRecord, end: float) -> Event:
 def _presence(run: Run) -> list[Event]:
     """Objects that were added or removed during the run."""
     first, last = float(run.signals.times[0]), float(run.signals.times[-1])
-    told: list[Event] = []
+    events: list[Event] = []
     for record in run.objects:
         for number, (begin, end) in enumerate(record.present):
             if number or begin > first:
                 content = {"event": "object_added", "object": record.name}
-                told.append(Event(begin, f"{record.name} added", Log.INFO, content))
+                events.append(Event(begin, f"{record.name} added", Log.INFO, content))
             if end < last:
                 content = {"event": "object_removed", "object": record.name}
-                told.append(Event(end, f"{record.name} removed", Log.INFO, content))
-    return told
+                events.append(Event(end, f"{record.name} removed", Log.INFO, content))
+    return events
 
 
 def _attachments(run: Run) -> list[Event]:
     """What the planning scene fixed to a link, and let go."""
-    told: list[Event] = []
+    events: list[Event] = []
     for record in run.attachments:
         content = {"object": record.object, "link": record.link, "represents": record.represents}
         pose = {"pose_in_link": list(record.pose_in_link)}
         begin = {"event": "attached", **content, **pose}
         said = f"{record.object} attached to {record.link}"
-        told.append(Event(record.start_time, said, Log.INFO, begin))
+        events.append(Event(record.start_time, said, Log.INFO, begin))
         if math.isfinite(record.end_time):
             end = {"event": "detached", **content}
             said = f"{record.object} detached from {record.link}"
-            told.append(Event(record.end_time, said, Log.INFO, end))
-    return told
+            events.append(Event(record.end_time, said, Log.INFO, end))
+    return events
 
 
 def _findings(run: Run, last: float) -> list[Event]:
-    told: list[Event] = []
+    events: list[Event] = []
     for finding in run.findings:
         time = finding.time if math.isfinite(finding.time) else last
         content = {"event": "finding", "kind": finding.kind, "step": finding.step}
-        told.append(Event(time, finding.message, Log.WARN, content | {"message": finding.message}))
-    return told
+        events.append(
+            Event(time, finding.message, Log.WARN, content | {"message": finding.message})
+        )
+    return events
 
 
 def _verdict(verdict: Verdict, last: float) -> Event:

@@ -45,7 +45,7 @@ def foxglove_layout(run: Run) -> str:
 
 
 def _stack(panels: list[str], direction: str, share: int) -> Any:
-    """Panels beside each other: the first takes its share of the room, the others the rest."""
+    """Panels side by side: the first takes its share of the room, the others the rest."""
     if len(panels) == 1:
         return panels[0]
     rest = _stack(panels[1:], direction, round(100 / max(len(panels) - 1, 2)))

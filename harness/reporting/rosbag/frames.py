@@ -1,4 +1,4 @@
-"""The tree of frames: one parent each, links along the URDF, objects and cameras beside them."""
+"""The tree of frames: one parent each, links along the URDF, objects and cameras next to them."""
 
 from __future__ import annotations
 
@@ -58,8 +58,8 @@ def optical_frames(run: Run) -> dict[str, str]:
     taken = {WORLD, *run.signals.object_poses}
     frames: dict[str, str] = {}
     for camera in run.cameras:
-        wanted = camera.optical_frame_id or f"{camera.name}_optical_frame"
-        frames[camera.name] = wanted if wanted not in taken else f"{camera.name}/{wanted}"
+        frame = camera.optical_frame_id or f"{camera.name}_optical_frame"
+        frames[camera.name] = frame if frame not in taken else f"{camera.name}/{frame}"
         taken.add(frames[camera.name])
     return frames
 

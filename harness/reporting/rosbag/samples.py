@@ -20,7 +20,7 @@ class Message:
     """Something published.
 
     Attributes:
-        time: In simulation [s].
+        time: The time in simulation [s].
         content: A message of the topic's type.
     """
 
@@ -34,8 +34,8 @@ def samples_at(times: FloatArray, rate: float) -> IntArray:
     last = len(times) - 1
     if (times[-1] - times[0]) * rate >= last:
         return np.arange(last + 1)
-    wanted = times[0] + np.arange(int((times[-1] - times[0]) * rate + 1e-6) + 1) / rate
-    found = np.searchsorted(times, np.asarray(wanted, dtype=np.float64) - 1e-9)
+    due = times[0] + np.arange(int((times[-1] - times[0]) * rate + 1e-6) + 1) / rate
+    found = np.searchsorted(times, np.asarray(due, dtype=np.float64) - 1e-9)
     return np.unique(np.concatenate([np.minimum(found, last), np.array([0, last])]))
 
 

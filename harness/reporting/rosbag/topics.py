@@ -24,9 +24,9 @@ class Topic:
     """Where messages of one type go.
 
     Attributes:
-        name: `/joint_states`.
-        msgtype: `sensor_msgs/msg/JointState`.
-        depth: Of the publisher's history.
+        name: The name, such as `/joint_states`.
+        msgtype: The message type, such as `sensor_msgs/msg/JointState`.
+        depth: The depth of the publisher's history.
         is_latched: Late subscribers get the last message too (transient local).
         is_reliable: Else best effort, as sensors publish.
     """

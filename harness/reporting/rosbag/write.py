@@ -43,8 +43,8 @@ class BagOptions:
 
     Attributes:
         storage: `mcap` is compressed (zstd chunks); `sqlite3` is what Humble writes by default.
-        rate: Of joints, frames and clock [Hz].
-        has_raw_images: Videos uncompressed too.
+        rate: The rate of joints, frames and clock [Hz].
+        has_raw_images: Whether videos are written uncompressed too.
         meshes: How the URDF names mesh files.
     """
 
@@ -57,7 +57,7 @@ class BagOptions:
 def write_bag(folder: Path, stored: StoredRun, options: BagOptions | None = None) -> None:
     """Write a run as a rosbag2; equal runs and options give equal bytes.
 
-    The bag's files are called as the folder is. Beside them lie the URDF, a layout for Foxglove
+    The bag's files are called as the folder is. Next to them lie the URDF, a layout for Foxglove
     and a configuration for RViz.
 
     Args:

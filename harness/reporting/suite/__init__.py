@@ -1,1 +1,1 @@
-"""What many runs came to: results for machines, JUnit XML, GitHub's words, a page for people."""
+"""The results of many runs: JSON for machines, JUnit XML, GitHub annotations, a page for people."""

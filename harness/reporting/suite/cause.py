@@ -17,8 +17,8 @@ class Cause:
     Attributes:
         group: The same for cases that failed alike: `NO_IK_SOLUTION in move_to`.
         said: Everything that is known of this one, in a line.
-        line: In the scenario file, from 1; 0 if unknown.
-        column: From 1; 0 if unknown.
+        line: The line in the scenario file, from 1; 0 if unknown.
+        column: The column from 1; 0 if unknown.
     """
 
     group: str
@@ -32,7 +32,7 @@ def cause_of(result: CaseResult) -> Cause | None:
     if result.outcome == "passed":
         return None
     if result.outcome == "error":
-        last = (result.message.strip().splitlines() or ["no cause was told"])[-1]
+        last = (result.message.strip().splitlines() or ["no cause was reported"])[-1]
         return Cause(f"error: {_short(last)}", last)
     if result.outcome == "invalid":
         for problem in result.problems:
@@ -47,7 +47,7 @@ def cause_of(result: CaseResult) -> Cause | None:
             said = f"{verdict.expectation}: {verdict.status}"
             said += f": {verdict.reason}" if verdict.reason else ""
             return Cause(f"{verdict.status}: {verdict.expectation}", said, verdict.line)
-    return Cause("failed", result.message or "no cause was told")
+    return Cause("failed", result.message or "no cause was reported")
 
 
 def short_lines(results: Iterable[CaseResult]) -> Iterator[str]:

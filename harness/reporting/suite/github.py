@@ -80,8 +80,8 @@ def job_summary(record: SuiteRecord) -> str:
     """Markdown: the count, a table with the worst first, and the rates of samples."""
     results = [case.result for case in record.cases]
     passed = sum(result.outcome == "passed" for result in results)
-    told = "; ".join(filter(None, (f"{passed} of {len(results)} passed", missed(record.rates))))
-    lines = [f"## {SIGNS[record.outcome]} armharness: {told}", ""]
+    summary = "; ".join(filter(None, (f"{passed} of {len(results)} passed", missed(record.rates))))
+    lines = [f"## {SIGNS[record.outcome]} armharness: {summary}", ""]
     lines += [f"- {rate_text(_cell(f'{r.file} {r.group}'.strip()), r.rate)}" for r in record.rates]
     lines += ["", "| | case | nearest to failing | why |", "|---|---|---|---|"]
     order = sorted(results, key=_urgency)

@@ -32,7 +32,7 @@ SAMPLE = re.compile(r"(?:^|-)sample\d+$")
 def junit_xml(record: SuiteRecord) -> str:
     """A document with one `testsuite` a scenario file; times are of the wall clock.
 
-    Samples may fail where a success rate is asked for: the rate is a `testcase` of its own, with
+    Samples may fail where a success rate is required: the rate is a `testcase` of its own, with
     the `failure` when it is not confirmed.
     """
     suites = ET.Element("testsuites", name=NAME)
@@ -67,7 +67,7 @@ def _counts(cases: Sequence[SuiteCase], rates: Sequence[SampledRate]) -> dict[st
 
 
 def _may_fail(result: CaseResult, rates: Sequence[SampledRate]) -> bool:
-    """Whether a case failed as one of samples, of which a rate tells what it means."""
+    """Whether a case failed as one of samples, which are judged by their success rate."""
     return result.outcome == "failed" and any(
         result.file == rate.file
         and SAMPLE.sub("", result.case) == rate.group
@@ -119,7 +119,7 @@ def _seconds(result: CaseResult) -> float:
 
 
 def case_properties(case: SuiteCase) -> list[tuple[str, str]]:
-    """Name and value of everything that a later reader needs beside the outcome."""
+    """Name and value of everything that a later reader needs besides the outcome."""
     result = case.result
     found = [("seed", str(result.seed)), ("digest", result.digest)]
     found.append(("simulated", f"{result.sim_time:.3f} s"))

@@ -35,7 +35,7 @@ def suite_html(
     """One self-contained page; links to the cases' pages are relative to its folder.
 
     Args:
-        record: What the suite came to.
+        record: The record of the suite.
         folder: Where the page will stand.
         history: Worst margins of earlier runs.
     """
@@ -51,7 +51,10 @@ def suite_html(
         script=script,
         pill="good" if record.outcome == "passed" else "bad",
         outcome=escape(record.outcome),
-        interrupted=" · interrupted" if record.is_interrupted else "",
+        interrupted="".join(
+            f" · {escape(each)}"
+            for each in (*["interrupted"][: record.is_interrupted], *record.missing_parts)
+        ),
         outcomes=_outcomes(results),
         causes=_causes(results),
         rates=_rates(record.rates),
@@ -98,8 +101,8 @@ def _rates(rates: Sequence[SampledRate]) -> str:
 def _rate(sampled: SampledRate) -> str:
     rate, name = sampled.rate, f"{sampled.file} {sampled.group}".strip()
     share = rate.passed / rate.total if rate.total else 0.0
-    asked = "" if rate.at_least is None else (
-        f'<i class="asked" style="left:{100 * rate.at_least:.2f}%"></i>'
+    required = "" if rate.at_least is None else (
+        f'<i class="required" style="left:{100 * rate.at_least:.2f}%"></i>'
     )  # fmt: skip
     said = rate_text("", rate).partition(": ")[2]
     group = f' <span class="tag">{escape(sampled.group)}</span>' if sampled.group else ""
@@ -109,7 +112,7 @@ def _rate(sampled: SampledRate) -> str:
         f'<span class="interval" aria-hidden="true">'
         f'<i class="reach" style="left:{100 * rate.low:.2f}%;'
         f'width:{100 * (rate.high - rate.low):.2f}%"></i>'
-        f'<i class="share" style="left:{100 * share:.2f}%"></i>{asked}</span>'
+        f'<i class="share" style="left:{100 * share:.2f}%"></i>{required}</span>'
         f"<span><b>{escape(Path(sampled.file).name)}</b>{group}"
         f'<span class="quiet"> {escape(said)}</span></span></button>'
     )
@@ -117,13 +120,13 @@ def _rate(sampled: SampledRate) -> str:
 
 def _varied(cases: Sequence[SuiteCase]) -> str:
     """A block for each quantity that varies; they flow side by side."""
-    told = [
+    rates = [
         (each.values, each.result.outcome == "passed")
         for each in cases
         if each.values and each.result.outcome != "invalid"
     ]
     blocks: list[str] = []
-    for line in table_lines(told, SIGNS):
+    for line in table_lines(rates, SIGNS):
         if line.startswith(" "):
             blocks[-1] += f"\n{escape(line)}"
         else:
@@ -192,14 +195,14 @@ def _sparkline(shares: Sequence[float | None]) -> str:
 
     Heights are square roots: what happens near the middle is what matters.
     """
-    told = [(index, share) for index, share in enumerate(shares) if share is not None]
-    if len(told) < 2:
+    known = [(index, share) for index, share in enumerate(shares) if share is not None]
+    if len(known) < 2:
         return ""
     step = SPARK_WIDTH / (len(shares) - 1)
     points = " ".join(
-        f"{index * step:.1f},{SPARK_HEIGHT * (1 - _root(share)) / 2:.1f}" for index, share in told
+        f"{index * step:.1f},{SPARK_HEIGHT * (1 - _root(share)) / 2:.1f}" for index, share in known
     )
-    said = f"worst margin in {len(told)} runs, now {told[-1][1]:.0%} of its limit"
+    said = f"worst margin in {len(known)} runs, now {known[-1][1]:.0%} of its limit"
     middle = SPARK_HEIGHT / 2
     return (
         f'<svg class="spark" role="img" aria-label="{said}" viewBox="-2 -2 {SPARK_WIDTH + 4} '

@@ -19,9 +19,9 @@ class SuiteCase:
     """A case with what its file says of it.
 
     Attributes:
-        result: What it came to.
+        result: The result of the case.
         values: What varies, path -> value.
-        tags: Of the file.
+        tags: The tags of the file.
         verifies: Requirements that the file names.
     """
 
@@ -36,16 +36,18 @@ class SuiteRecord:
     """Everything that a suite's files are written from.
 
     Attributes:
-        outcome: The gravest one.
-        cases: In file order; of samples those that count.
-        rates: Of samples.
+        outcome: The gravest outcome of all.
+        cases: The cases in file order; of samples those that count.
+        rates: The rates of samples.
         is_interrupted: Whether Ctrl-C ended it early.
+        missing_parts: Why a suite that was merged from parts is incomplete, one sentence each.
     """
 
     outcome: Outcome
     cases: Sequence[SuiteCase]
     rates: Sequence[SampledRate] = ()
     is_interrupted: bool = False
+    missing_parts: Sequence[str] = ()
 
 
 def results_document(record: SuiteRecord, exit_code: int) -> dict[str, object]:
@@ -55,6 +57,7 @@ def results_document(record: SuiteRecord, exit_code: int) -> dict[str, object]:
         "exit_code": exit_code,
         "outcome": record.outcome,
         "interrupted": record.is_interrupted,
+        "missing_parts": list(record.missing_parts),
         "cases": [_case(each) for each in record.cases],
         "rates": list(record.rates),
     }

@@ -27,7 +27,7 @@ def write_suite(
     """Write page, JUnit XML and results; each is whole or as it was.
 
     Returns:
-        The page.
+        The page's path in the folder.
 
     Raises:
         HarnessError: A file cannot be written.

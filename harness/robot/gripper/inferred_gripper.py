@@ -15,7 +15,7 @@ from harness.core.types import FloatArray
 from harness.robot.description import Joint, Link, Mimic, PlanningGroup
 from harness.robot.robot_yaml import FingerSide, GripperFacts
 from harness.robot.solids import box_corners, coal_geometry
-from harness.robot.srdf.default_pairs import coal_transform, link_poses
+from harness.robot.srdf.default_pairs import coal_transform, urdf_poses
 from harness.robot.srdf.srdf import Srdf, link_pair
 from harness.robot.urdf.urdf import Urdf
 
@@ -45,7 +45,7 @@ class OwnGripper:
         srdf: Its SRDF, with the group of the hand.
         center: Halfway between the pads, in palm axes [m], shape (3,).
         pairs: Links of the hand that may touch each other.
-        notes: Assumptions.
+        notes: The assumptions, to which more are added.
     """
 
     facts: GripperFacts
@@ -160,7 +160,7 @@ class _Hand:
     def pose(self, link: str, position: float) -> SE3:
         """T_palm_link."""
         if position not in self._poses:
-            self._poses[position] = link_poses(self.urdf, {self.joint.name: position})
+            self._poses[position] = urdf_poses(self.urdf, {self.joint.name: position})
         poses = self._poses[position]
         return poses[self.palm].inverse() @ poses[link]
 

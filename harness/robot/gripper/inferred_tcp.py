@@ -11,7 +11,7 @@ import numpy as np
 from harness.core.spatial import SE3
 from harness.robot.description import Joint, Link, PlanningGroup
 from harness.robot.gripper.inferred_gripper import OwnGripper
-from harness.robot.srdf.default_pairs import link_poses
+from harness.robot.srdf.default_pairs import urdf_poses
 from harness.robot.srdf.srdf import Srdf, SrdfGroup
 from harness.robot.tree import carriers
 from harness.robot.urdf.urdf import Urdf
@@ -40,7 +40,7 @@ def with_own_gripper(
         return urdf, _ending_at(srdf, arm, tip, tcp_link, carrier), tcp_link
     if carrier.get(own.facts.palm_link) != carrier.get(tip):
         return urdf, srdf, tip
-    poses = link_poses(urdf, {})
+    poses = urdf_poses(urdf, {})
     palm = poses[own.facts.palm_link]
     center = palm.apply(own.center)
     ranked = sorted(

@@ -33,7 +33,7 @@ class Mjcf:
     """An MJCF robot.
 
     Attributes:
-        urdf: Its tree.
+        urdf: The tree of the robot.
         states: Keyframes as states of the driven joints; their group is empty.
         disabled: Pairs that the file excludes from contact.
     """

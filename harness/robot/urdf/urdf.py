@@ -51,7 +51,7 @@ def parse_urdf(
     In addition to URDF, `<capsule radius length>` is supported.
 
     Args:
-        text: The document.
+        text: The text of the document.
         folder: The folder to which mesh file names are relative.
         source: Name of the document in messages.
         packages: Search path for other mesh file names; by default around `folder`.

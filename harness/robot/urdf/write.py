@@ -27,8 +27,8 @@ def write_urdf(
 
     Args:
         name: Name of the robot.
-        links: The robot's links.
-        joints: The robot's joints.
+        links: The links of the robot.
+        joints: The joints of the robot.
         folder: The folder to which mesh files outside Python packages are relative; None for
             absolute paths.
     """

@@ -12,7 +12,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from harness.core.errors import Problem, RobotError, SpecError
+from harness.core.errors import Problem, RobotError, RobotOptionError, SpecError
 from harness.language.files.source import Source
 from harness.language.files.xml_file import XmlElement, read_bounded, read_xml
 from harness.robot.packages import PackagePath
@@ -45,15 +45,16 @@ def refuse_unknown_arguments(args: Mapping[str, Any], paths: Sequence[Path]) -> 
     """
     roots = {path: root for path in paths if args and is_xacro(root := read_xml(path))}
     if args and not roots:
-        raise RobotError("robot.args: only a xacro file takes arguments, and none is given")
+        raise RobotOptionError("args", "only a xacro file takes arguments, and none is given")
     declared = {name for root in roots.values() for name in arguments_of(root)}
     includes = any(item.tag == "xacro:include" for root in roots.values() for item in root.walk())
     unknown = [key for key in args if key not in declared]
     if unknown and not includes:
         names = " and ".join(path.name for path in roots)
-        raise RobotError(
-            f"robot.args: {names} takes no argument '{unknown[0]}'; "
-            f"known are {', '.join(sorted(declared)) or 'none'}"
+        raise RobotOptionError(
+            "args",
+            f"{names} takes no argument '{unknown[0]}'; "
+            f"known are {', '.join(sorted(declared)) or 'none'}",
         )
 
 
@@ -91,7 +92,7 @@ def render(path: Path, args: Mapping[str, Any], packages: PackagePath) -> str:
         "given": [str(each) for each in packages.given],
         "processor_time": PROCESSOR_TIME,
     }
-    answer = _ask(order, path)
+    answer = _request(order, path)
     if "text" in answer:
         return str(answer["text"])
     raise SpecError([_problem(answer, path, packages)])
@@ -101,7 +102,7 @@ def _text(value: object) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def _ask(order: Mapping[str, Any], path: Path) -> dict[str, Any]:
+def _request(order: Mapping[str, Any], path: Path) -> dict[str, Any]:
     environment = {"PYTHONPATH": os.pathsep.join(each for each in sys.path if each)}
     command = [sys.executable, "-X", "utf8", "-m", "harness.robot.xacro.process"]
     try:

@@ -77,7 +77,7 @@ class Words:
 
         Args:
             what: The counted things, for messages.
-            most: Largest number.
+            most: The largest number that is accepted.
 
         Raises:
             SpecError: It is not a whole number, or larger.

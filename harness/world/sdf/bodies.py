@@ -21,9 +21,9 @@ class Link:
 
     Attributes:
         name: Name with the enclosing models: `table::top`.
-        element: The link's element.
-        scope: The enclosing model.
-        pose: T_world_link.
+        element: The element of the link.
+        scope: The scope of the enclosing model.
+        pose: The pose T_world_link of the link.
     """
 
     name: str
@@ -38,7 +38,7 @@ class Body:
 
     Attributes:
         name: Name of the object.
-        pose: T_world_object.
+        pose: The pose T_world_object of the object.
         links: The links in file order.
         is_static: Whether the object is fixed in the world.
     """

@@ -300,9 +300,9 @@ def note_what_is_left(element: XmlElement, kind: str, notes: Notes) -> None:
     """Note every child of an element that is not read.
 
     Args:
-        element: The element.
+        element: The element of the file.
         kind: Its kind in `WORDS`.
-        notes: Collects the notes.
+        notes: The list that collects the notes.
     """
     words = WORDS[kind]
     for child in element.children:

@@ -26,7 +26,7 @@ class MassProperties:
     """Mass properties of a rigid body.
 
     Attributes:
-        mass: Mass [kg].
+        mass: The mass in kilograms [kg].
         center: Centre of mass in the object's frame [m], shape (3,).
         inertia: Inertia about the centre of mass, in the object's axes [kg m^2], shape (3, 3).
     """
@@ -62,7 +62,7 @@ def link_masses(
     """Mass properties of a link, in the object's frame.
 
     Args:
-        link: The `<link>`.
+        link: The element of the `<link>`.
         shapes: Its collisions with their shapes on the object, for automatic inertia.
         T_object_link: Pose of the link on the object.
         notes: Collects notes on a link without inertial or inertia.

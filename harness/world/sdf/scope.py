@@ -23,8 +23,8 @@ class Named:
 
     Attributes:
         kind: Kind of the element: `link`, `joint`, `frame`, `model`.
-        element: The element.
-        pose: The element's pose.
+        element: The element of the file.
+        pose: The pose of the element.
         base: Default frame of the pose; empty for the scope's frame.
     """
 
@@ -40,9 +40,9 @@ class Scope:
 
     Attributes:
         name: Name of the model; empty for the world.
-        element: The element.
+        element: The element of the file.
         folder: Folder of its file; relative paths start there.
-        parent: The enclosing scope.
+        parent: The scope that encloses it.
         is_static: Whether it or an enclosing scope is static.
         placement_frame: The frame that its pose places; empty for its own frame.
         canonical_link: The link that represents the model in joints; empty for the first link.

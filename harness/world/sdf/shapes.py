@@ -53,9 +53,9 @@ class ShapeReader:
         """A collision shape; None for an empty geometry.
 
         Args:
-            element: A `<collision>`.
+            element: The `<collision>` element of the shape.
             folder: Folder of its file.
-            pose: T_object_collision.
+            pose: The pose T_object_collision of the shape.
 
         Raises:
             SpecError: Its geometry is invalid or not supported.

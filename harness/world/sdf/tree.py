@@ -32,7 +32,7 @@ class SdfTree:
 
     Attributes:
         root: The `<world>`, or the `<sdf>` of a file that has models alone.
-        world: The world's scope.
+        world: The scope of the world.
         lights: Lights in file order, those of included files last.
         notes: Notes on elements that are left out.
     """

@@ -39,7 +39,7 @@ def arm(model: str) -> RobotDescription:
             link = replace(link, collisions=meshes_of(link.visuals, model))
         links.append(link)
     touching = {("tool0", "wrist_2_link"), ("tool0", "wrist_3_link")}
-    allowed = {**description.allowed_collisions, **dict.fromkeys(touching, "mounted behind it")}
+    allowed = {**description.allowed_collisions, **dict.fromkeys(touching, "mounted on it")}
     return replace(description, links=tuple(links), allowed_collisions=allowed)
 
 

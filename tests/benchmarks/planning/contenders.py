@@ -27,7 +27,7 @@ PATIENCE = 20.0
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What a contender came to.
+    """The result of a contender.
 
     Attributes:
         scene: Time of the process to take the problem's things and pairs up, the robot known [s].

@@ -64,7 +64,7 @@ def shelf(gaps: tuple[float, ...], width: float, depth: float):
 
 
 def open_box(rng: np.random.Generator, s: float) -> Layout:
-    """A box that is open at the top, with things in it; down into it from beside it."""
+    """A box that is open at the top, with things in it; down into it from one side."""
     x, y, turn = s * rng.uniform(0.5, 0.6), s * rng.uniform(-0.2, 0.2), rng.uniform(-0.5, 0.5)
     length, width, height, wall = (s * v for v in (0.4, 0.3, 0.28, 0.015))
     place = at((x, y, 0.02), (0, 0, turn))
@@ -74,8 +74,8 @@ def open_box(rng: np.random.Generator, s: float) -> Layout:
         shapes.append(box((length, wall, height), (0, side * width / 2, height / 2)))
     shapes.append(can(0.03 * s, 0.1 * s, (0.12 * s, 0.06 * s, 0.06 * s)))
     goal = place @ at((s * rng.uniform(-0.08, 0.0), 0, 0.24 * s + 0.1), DOWN)
-    beside = at((x * 0.3, y + s * 0.55, 0.3 * s + 0.1), DOWN)
-    return Layout([Shape(p.geometry, place @ p.pose) for p in shapes], [goal, beside])
+    at_the_side = at((x * 0.3, y + s * 0.55, 0.3 * s + 0.1), DOWN)
+    return Layout([Shape(p.geometry, place @ p.pose) for p in shapes], [goal, at_the_side])
 
 
 def cage(rng: np.random.Generator, s: float) -> Layout:
@@ -122,7 +122,7 @@ def table_pick(rng: np.random.Generator, s: float) -> Layout:
 
 
 def under_table(rng: np.random.Generator, s: float) -> Layout:
-    """A table top beside the arm, on legs; from above it to below it."""
+    """A table top next to the arm, on legs; from above it to below it."""
     x, y = s * rng.uniform(0.62, 0.7) + 0.2 * (1 - s), s * rng.uniform(-0.1, 0.1)
     high = max(s * rng.uniform(0.4, 0.5), 0.3)
     shapes = [box((0.5 * s, 0.9 * s, 0.03 * s), (x, y, high))]

@@ -53,7 +53,7 @@ class Problem:
         return MotionChecker(self.scene, self.space, self.start, 0.0)
 
     def forget(self) -> None:
-        """Let the scene be taken up anew, as after a change."""
+        """Load the scene anew, as after a change."""
         self.scene.set_allowed((), allowed=True)
 
 

@@ -43,7 +43,7 @@ def _planned(
 ) -> Outcome:
     scene = _robot(problem)
     before = time.process_time()
-    _take_up(scene, problem)
+    _load_scene(scene, problem)
     begin, planned = time.process_time(), None
     for spacing, fine in levels:
         path = _plan(scene, problem, spacing, seed)
@@ -93,7 +93,7 @@ def _robot(problem: Problem) -> core.Scene:
     return scene
 
 
-def _take_up(scene: core.Scene, problem: Problem) -> None:
+def _load_scene(scene: core.Scene, problem: Problem) -> None:
     """Add things and ground; the same pairs are checked as by the others."""
     description = arm(problem.model)
     solid = {link.name for link in description.links if link.collisions}

@@ -24,17 +24,17 @@ OPTIONS = PlanningOptions(seed=1, padding=0.002)
 """As scenarios have it when they say nothing."""
 
 FEW = GOALS // 4
-"""Of them may not be found within the budget: nobody made them to be solvable."""
+"""This share may not be solved within the budget: the problems are random."""
 
 WHEN = ("never", "always")
 LONGEST = {"never": 0.15, "always": 0.03}
-"""Medians that would be a step back [s], twice those on a busy machine; 10 ms are wanted."""
+"""Medians that would be a step back [s], twice those on a busy machine; the goal is 10 ms."""
 
 
 @pytest.mark.benchmark
 @pytest.mark.parametrize("when", WHEN)
 @pytest.mark.parametrize("model", list(HOMES))
-def test_bundled_arms_plan_and_shorten_in_milliseconds(model, when, tell):
+def test_bundled_arms_plan_and_shorten_in_milliseconds(model, when, print_row):
     use_compiled(when)
     cell = Cell(description_of(model))
     cell.add(boxes(*FIRST_BOXES))
@@ -50,8 +50,8 @@ def test_bundled_arms_plan_and_shorten_in_milliseconds(model, when, tell):
         "bundled arms on the lesson's tables: number of motions, median ms to plan and shorten"
     )
     if (model, when) == (next(iter(HOMES)), WHEN[0]):
-        tell(heading, "arm", "compiled", "all", *spent)
-    tell(heading, model, when, *(_cell(part) for part in (every, *spent.values())))
+        print_row(heading, "arm", "compiled", "all", *spent)
+    print_row(heading, model, when, *(_cell(part) for part in (every, *spent.values())))
     assert len(spent["not solved"]) <= FEW
     assert statistics.median(every) <= LONGEST[when]
 

@@ -12,7 +12,7 @@ FREE_SHARE = 0.995
 
 
 @pytest.mark.benchmark
-def test_final_paths_are_free_on_the_exact_shapes(tell):
+def test_final_paths_are_free_on_the_exact_shapes(print_row):
     solved, touching = 0, []
     problems = list(make_problems(EACH))
     for problem in problems:
@@ -23,9 +23,9 @@ def test_final_paths_are_free_on_the_exact_shapes(tell):
         if not is_free(problem, outcome.waypoints):
             touching.append(problem.name)
     heading = "final paths, by Coal alone at 1/128 rad"
-    tell(heading, "problems", "solved", "free", "touching")
+    print_row(heading, "problems", "solved", "free", "touching")
     free = solved - len(touching)
-    tell(
+    print_row(
         heading,
         *(f"{count}" for count in (len(problems), solved, free)),
         ", ".join(touching) or "none",

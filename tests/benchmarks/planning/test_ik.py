@@ -23,7 +23,7 @@ LONGEST = 15e-6  # [s], median
 
 @pytest.mark.benchmark
 @pytest.mark.parametrize("model", list(SCALE))
-def test_all_branches_of_a_ur_in_microseconds(model, tell):
+def test_all_branches_of_a_ur_in_microseconds(model, print_row):
     description = load_robot(RobotSpec.model_validate({"model": model}))
     kinematics = PinocchioKinematics(description)
     joints = [description.joint_by_name[n] for n in description.groups[GROUP].joint_names]
@@ -54,9 +54,9 @@ def test_all_branches_of_a_ur_in_microseconds(model, tell):
         ),
     }
     heading = f"inverse kinematics of a {model}, us of CPU time, median"
-    tell(heading, "solver", "us", "branches")
+    print_row(heading, "solver", "us", "branches")
     for name, (median, branches) in rows.items():
-        tell(heading, name, f"{1e6 * median:.1f}", f"{branches:.2f}")
+        print_row(heading, name, f"{1e6 * median:.1f}", f"{branches:.2f}")
     assert min(counts) >= 1
     assert ours <= LONGEST
 

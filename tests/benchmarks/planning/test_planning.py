@@ -36,7 +36,7 @@ contender on the same problems."""
 
 @pytest.fixture(scope="module")
 def outcomes() -> dict[str, list[tuple[Problem, Outcome]]]:
-    """What every contender came to on every problem, in turns; warm-up left out."""
+    """The result of every contender on every problem, in turns; warm-up left out."""
     for model in SCALE:
         for name in ("plain", "compiled"):
             CONTENDERS[name](make_problem(model, "box", 0))
@@ -53,17 +53,17 @@ def outcomes() -> dict[str, list[tuple[Problem, Outcome]]]:
 
 
 @pytest.mark.benchmark
-def test_planning_on_meshes_against_naive_ompl(outcomes, tell):
+def test_planning_on_meshes_against_naive_ompl(outcomes, print_row):
     heading = f"{len(outcomes['plain'])} problems on meshes, ms of CPU time"
-    tell(heading, *HEADS)
+    print_row(heading, *HEADS)
     for name, results in outcomes.items():
-        tell(heading, name, *_cells(results, outcomes["naive"]))
+        print_row(heading, name, *_cells(results, outcomes["naive"]))
     for family in FAMILIES:
         heading = f"{family}, ms of CPU time"
-        tell(heading, *HEADS)
+        print_row(heading, *HEADS)
         base = [pair for pair in outcomes["naive"] if pair[0].family == family]
         for name, results in outcomes.items():
-            tell(heading, name, *_cells([r for r in results if r[0].family == family], base))
+            print_row(heading, name, *_cells([r for r in results if r[0].family == family], base))
     plain, compiled = outcomes["plain"], outcomes["compiled"]
     for (problem, first), (_, second) in zip(plain, compiled, strict=True):
         assert (first.waypoints is None) == (second.waypoints is None), problem.name

@@ -40,19 +40,19 @@ export class Clock {
     if (this.time >= this.duration - 1e-6) this.#set(0);
     this.isPlaying = true;
     this.last = performance.now();
-    this.#tellPlay();
+    this.#reportPlaying();
   }
 
   pause() {
     if (!this.isPlaying) return;
     this.isPlaying = false;
-    this.#tellPlay();
+    this.#reportPlaying();
   }
 
   /** @param {number} speed 1 is real time */
   setSpeed(speed) {
     this.speed = speed;
-    this.#tellPlay();
+    this.#reportPlaying();
   }
 
   /** Move on by the time that has passed. @param {number} now [ms] */
@@ -68,7 +68,7 @@ export class Clock {
     for (const listener of this.timeListeners) listener(this.time);
   }
 
-  #tellPlay() {
+  #reportPlaying() {
     for (const listener of this.playListeners) listener(this.isPlaying);
   }
 }

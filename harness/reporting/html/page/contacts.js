@@ -40,14 +40,14 @@ export class Contacts {
       .sort((a, b) => b.size - a.size);
   }
 
-  /** Draw the arrows of a time. @param {number} time @param {boolean} isWanted */
-  show(time, isWanted) {
-    const frame = isWanted ? Math.round(time / this.step) : -1;
+  /** Draw the arrows of a time. @param {number} time @param {boolean} isEnabled */
+  show(time, isEnabled) {
+    const frame = isEnabled ? Math.round(time / this.step) : -1;
     if (frame === this.shown) return;
     this.shown = frame;
     for (const pair of this.pairs) {
       const index = frame - pair.first;
-      const press = isWanted && index >= 0 && index < pair.count ? this.#pressOf(pair, index) : null;
+      const press = isEnabled && index >= 0 && index < pair.count ? this.#pressOf(pair, index) : null;
       pair.line.visible = Boolean(press && press.size > 0);
       if (pair.line.visible) this.viewer.setPoints(pair.line, this.#arrow(press));
     }

@@ -23,11 +23,11 @@ export function makeControls({ clock, scene, plots, drawFilm, hasPictures }) {
 
   const again = () => clock.timeListeners.forEach((listener) => listener(clock.time));
   const tools = !scene ? [] : [
-    ["path", "TCP path", true, (is) => (scene.marks.wanted.path = is)],
-    ["plan", "plan", true, (is) => (scene.marks.wanted.plan = is)],
-    ["raw", "unshortened", false, (is) => (scene.marks.wanted.raw = is)],
-    ["frame", "tool frame", true, (is) => (scene.marks.wanted.frame = is)],
-    ["goal", "goal", true, (is) => (scene.marks.wanted.goal = is)],
+    ["path", "TCP path", true, (is) => (scene.marks.enabled.path = is)],
+    ["plan", "plan", true, (is) => (scene.marks.enabled.plan = is)],
+    ["raw", "unshortened", false, (is) => (scene.marks.enabled.raw = is)],
+    ["frame", "tool frame", true, (is) => (scene.marks.enabled.frame = is)],
+    ["goal", "goal", true, (is) => (scene.marks.enabled.goal = is)],
     ["contacts", "contacts", true, (is) => (scene.showsContacts = is)],
     ["ghosts", "planner's objects", true, (is) => (scene.replay.hidesGhosts = !is)],
     ["follow", "follow", false, (is) => (scene.follows = is)],

@@ -31,7 +31,7 @@ export function lineVertices(points) {
   return vertices;
 }
 
-/** Tell a vertex array where the parts of its vertices are. @param {WebGL2RenderingContext} gl */
+/** Describe the vertex layout to a vertex array. @param {WebGL2RenderingContext} gl */
 export function lineAttributes(gl) {
   const parts = [[0, 3, 0], [1, 3, 12], [2, 2, 24], [3, 1, 32]];
   for (const [location, size, offset] of parts) {

@@ -18,7 +18,7 @@ import { makeTimeline, stepAt } from "./timeline.js";
 import { verdictList } from "./verdicts.js";
 
 const ROUNDING = 0.0051; // of times in an address [s]
-const PRESSES_TOLD = 3;
+const MOST_PRESSES_SHOWN = 3;
 
 async function start() {
   const payload = await unpack(byId("data"));
@@ -71,7 +71,7 @@ async function start() {
       return [`${id} ${worst.toFixed(1)} %`];
     });
     const name = run.steps[step]?.summary ?? "";
-    const presses = scene?.showsContacts ? scene.arrows.at(time).slice(0, PRESSES_TOLD) : [];
+    const presses = scene?.showsContacts ? scene.arrows.at(time).slice(0, MOST_PRESSES_SHOWN) : [];
     const touches = presses.map(({ link, body, size }) => `${link} presses ${body} ${size.toFixed(1)} N`);
     byId("readout").textContent = [`t ${time.toFixed(3)} s  ${name}`, place, loads.join("   "), ...touches].filter(Boolean).join("\n");
   }
@@ -130,7 +130,7 @@ async function start() {
     selectVerdict(failures.find((index) => index > shown) ?? failures[0]);
   }
 
-  /** Without a place in the address: where something went wrong, or where it was meant to. */
+  /** Without a place in the address: open at the failure, or at the failure that was expected. */
   function openAtFailure() {
     const failed = run.steps.findIndex(({ status, hasChildren }) => status === "failed" && !hasChildren);
     if (failed >= 0) selectStep(failed);
@@ -166,7 +166,7 @@ async function start() {
     requestAnimationFrame(loop);
   };
   requestAnimationFrame(loop);
-  window.readyAfter = performance.now(); // [ms] since the page was asked for
+  window.readyAfter = performance.now(); // [ms] since the page was requested
   document.documentElement.dataset.ready = "yes";
 }
 

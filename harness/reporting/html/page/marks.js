@@ -1,4 +1,4 @@
-// What is drawn into the 3D view beside bodies: TCP paths, frames of goals, points of a verdict.
+// What is drawn into the 3D view besides bodies: TCP paths, frames of goals, points of a verdict.
 
 import { rgba, themeColor } from "./dom.js";
 import { indexAt } from "./payload.js";
@@ -41,26 +41,26 @@ export class Marks {
     this.expected = this.#cross("--good");
     this.actual = this.#cross("--bad");
     this.between = viewer.addLine([], { color: rgba(themeColor("--bad")), width: 3, onTop: true });
-    /** @type {Record<string, boolean>} what a person wants to see */
-    this.wanted = { path: true, plan: true, frame: true, goal: true };
+    /** @type {Record<string, boolean>} what the viewer has switched on */
+    this.enabled = { path: true, plan: true, frame: true, goal: true };
     this.verdict = null;
   }
 
   /** Draw what belongs to a time. @param {number} time @param {number} step index, -1 if none @param {number[]} toolPose */
   show(time, step, toolPose) {
-    const { wanted } = this;
+    const { enabled } = this;
     const seen = indexAt(this.tcp.times, time);
     const { start } = this.run.steps[step] ?? { start: 0 };
     this.walked.first = Math.max(0, indexAt(this.tcp.times, start) - 1);
     this.walked.segments = Math.max(0, seen - this.walked.first);
-    this.walked.visible = this.whole.visible = wanted.path && this.tcp.times.length > 1;
-    for (const [index, line] of this.planned.entries()) if (line) line.visible = wanted.plan && index === step;
-    for (const [index, line] of this.raw.entries()) if (line) line.visible = wanted.raw && index === step;
-    this.#place(this.tool, wanted.frame ? toolPose : null);
+    this.walked.visible = this.whole.visible = enabled.path && this.tcp.times.length > 1;
+    for (const [index, line] of this.planned.entries()) if (line) line.visible = enabled.plan && index === step;
+    for (const [index, line] of this.raw.entries()) if (line) line.visible = enabled.raw && index === step;
+    this.#place(this.tool, enabled.frame ? toolPose : null);
     const { goal, nearest } = this.run.steps[step] ?? {};
-    this.#place(this.goal, wanted.goal ? goal : null);
-    this.#place(this.nearest, wanted.goal ? nearest?.place : null);
-    const isMissed = wanted.goal && nearest?.place && nearest.target;
+    this.#place(this.goal, enabled.goal ? goal : null);
+    this.#place(this.nearest, enabled.goal ? nearest?.place : null);
+    const isMissed = enabled.goal && nearest?.place && nearest.target;
     this.missed.visible = Boolean(isMissed);
     if (isMissed && this.missedBy !== step) {
       this.missedBy = step;

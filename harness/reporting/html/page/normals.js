@@ -1,6 +1,6 @@
 // Normals that are smooth on curved surfaces and sharp at edges.
 
-const SAME = 1e-3; // difference of normals that nobody sees
+const SAME = 1e-3; // difference of normals that is not visible
 
 /**
  * The normal at a corner of a triangle is the mean, weighted by area, of the faces around its vertex

@@ -51,8 +51,8 @@ function followVideo(payload, clock, { buffer, type, start }, canvas) {
     video.requestVideoFrameCallback(again);
   }
   const follow = () => {
-    const wanted = Math.max(0, clock.time - start);
-    if (Math.abs(video.currentTime - wanted) > (clock.isPlaying ? 0.25 : 0.02)) video.currentTime = wanted;
+    const videoTime = Math.max(0, clock.time - start);
+    if (Math.abs(video.currentTime - videoTime) > (clock.isPlaying ? 0.25 : 0.02)) video.currentTime = videoTime;
   };
   clock.onTime(follow);
   clock.onPlay((isPlaying) => {

@@ -1,4 +1,4 @@
-// What the planner was asked and what it found, step by step.
+// The planner's requests and results, step by step.
 
 import { element } from "./dom.js";
 import { amount, degrees, number, seconds, tone } from "./units.js";
@@ -18,11 +18,11 @@ const DRAWN = ["path", "raw_path", "raw_waypoints", "waypoint_positions"];
  * @returns {HTMLElement}
  */
 export function plannerView({ run }, select) {
-  const asked = run.steps
+  const requests = run.steps
     .map((step, index) => ({ step, index }))
     .filter(({ step }) => Object.keys(step.planner).length || Object.keys(step.explanation).length);
-  if (!asked.length) return element("p.empty", {}, "No step asked the planner for anything.");
-  return element("div.planner", {}, ...asked.map(({ step, index }) => planned(step, index, select)));
+  if (!requests.length) return element("p.empty", {}, "No step used the planner.");
+  return element("div.planner", {}, ...requests.map(({ step, index }) => planned(step, index, select)));
 }
 
 function planned(step, index, select) {
@@ -74,9 +74,9 @@ function stageList(stages) {
   );
 }
 
-/** @param {string[]} told keys that are shown in another way */
-function facts(planner, told) {
-  const shown = Object.entries(planner).filter(([key]) => !told.includes(key));
+/** @param {string[]} hidden keys that are shown in another way */
+function facts(planner, hidden) {
+  const shown = Object.entries(planner).filter(([key]) => !hidden.includes(key));
   if (!shown.length) return null;
   return element(
     "dl", {},

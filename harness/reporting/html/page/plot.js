@@ -132,7 +132,7 @@ export class Plot {
     return this.from + ((pixel - MARGIN.left) / this.width) * (this.to - this.from);
   }
 
-  /** Heights shown: all values in sight, and the limits that ask for it. */
+  /** Heights shown: all values in sight, and the limits that need it. */
   #setRange() {
     let [low, high] = [Infinity, -Infinity];
     const take = (value) => {
@@ -304,7 +304,7 @@ export class Plot {
   }
 }
 
-/** Round numbers between two values, about as many as asked for. */
+/** Round numbers between two values, approximately as many as requested. */
 export function ticks(low, high, count) {
   const rough = (high - low) / Math.max(1, count);
   const power = 10 ** Math.floor(Math.log10(rough));

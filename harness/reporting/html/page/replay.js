@@ -39,7 +39,7 @@ export class Replay {
     this.viewer.moved();
   }
 
-  /** Which bodies a person wants to see. */
+  /** Which bodies are switched on. */
   isShown(body) {
     return !(body.ghost && this.hidesGhosts);
   }
@@ -67,7 +67,7 @@ export class Replay {
     }
   }
 
-  /** A translucent robot in another state, beside the recorded one. @param {Record<string, number[]> | null} poses by body; null hides it */
+  /** A translucent robot in another state, next to the recorded one. @param {Record<string, number[]> | null} poses by body; null hides it */
   showState(poses) {
     this.state ??= this.#copies();
     for (const { name, copy, local } of this.state) {

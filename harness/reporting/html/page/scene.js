@@ -52,7 +52,7 @@ export function makeScene(payload) {
       replay.glow(this.showsContacts ? colliding : new Map());
       arrows.show(time, this.showsContacts);
       const tool = replay.byName.get(run.toolBody);
-      replay.showState(marks.wanted.goal ? run.steps[step]?.nearest?.bodies : null);
+      replay.showState(marks.enabled.goal ? run.steps[step]?.nearest?.bodies : null);
       marks.show(time, step, tool ? [...this.toolPosition(time), ...replay.poseOf(tool, time).slice(3)] : null);
       if (this.follows) {
         orbit.target = this.toolPosition(time);

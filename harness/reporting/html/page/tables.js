@@ -33,7 +33,7 @@ export function markLines(view, from, to) {
   }
 }
 
-/** YAML with its comments and keys told apart. */
+/** YAML with its comments and keys highlighted. */
 function highlighted(text) {
   const [, code, comment] = /^((?:[^#"']|"[^"]*"|'[^']*'|\S#)*)(#.*)?$/.exec(text) ?? [null, text, ""];
   const pieces = [];

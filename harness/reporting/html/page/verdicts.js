@@ -1,4 +1,4 @@
-// The expectations: what was measured against what was asked, and how much room was left.
+// The expectations: what was measured, the limit, and how much room was left.
 
 import { element } from "./dom.js";
 import { amount, seconds, tone } from "./units.js";
@@ -42,13 +42,13 @@ function verdict(run, each, index, select) {
 /** A bar of the allowance: how much of it was used. */
 function marginBar({ margin, unit, used, status }) {
   if (margin === null) return null;
-  const told = `${margin >= 0 ? "margin" : "missed by"} ${amount(Math.abs(margin), unit)}`;
-  if (used === null) return element("span.margin-text", {}, told);
+  const marginText = `${margin >= 0 ? "margin" : "missed by"} ${amount(Math.abs(margin), unit)}`;
+  if (used === null) return element("span.margin-text", {}, marginText);
   const percent = Math.round(100 * used);
   const bar = element("span.margin", { role: "img", "aria-label": `${percent} % of the allowance used` }, element("i"));
   bar.firstChild.style.width = `${Math.max(1, Math.min(100, percent))}%`;
-  const text = used > 10 ? told : `${percent} % of the allowance used · ${told}`;
-  return element("span.room", {}, bar, element("span.margin-text", {}, status === "passed" || margin < 0 ? text : told));
+  const text = used > 10 ? marginText : `${percent} % of the allowance used · ${marginText}`;
+  return element("span.room", {}, bar, element("span.margin-text", {}, status === "passed" || margin < 0 ? text : marginText));
 }
 
 function measured({ name, value, limit, comparison, unit, detail }) {

@@ -175,7 +175,7 @@ export class Viewer {
     target.getContext("2d").putImageData(upright, 0, 0);
   }
 
-  /** Where a point of the world is on the canvas, in CSS pixels; null behind the eye. @param {import("./orbit.js").Orbit} orbit @param {ArrayLike<number>} point */
+  /** Where a point of the world is on the canvas, in CSS pixels; null for points behind the camera. @param {import("./orbit.js").Orbit} orbit @param {ArrayLike<number>} point */
   project(orbit, point) {
     const [width, height] = [this.host.clientWidth, this.host.clientHeight];
     const view = orbit.matrix(width / height);

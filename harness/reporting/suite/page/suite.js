@@ -1,4 +1,4 @@
-// Filters, sorts and groups the rows that the page already has. The address keeps what is asked.
+// Filters, sorts and groups the rows that the page already has. The address keeps the query.
 
 (() => {
   const body = document.querySelector("tbody");
@@ -12,8 +12,8 @@
   const pressed = (buttons, key) =>
     buttons.filter((button) => button.getAttribute("aria-pressed") === "true").map((button) => button.dataset[key]);
 
-  /** @param {HTMLElement} row whether it is asked for */
-  function isWanted(row, words, kinds, groups) {
+  /** @param {HTMLElement} row whether it matches the query */
+  function isMatch(row, words, kinds, groups) {
     return (!kinds.length || kinds.includes(row.dataset.outcome))
       && (!groups.length || groups.includes(row.dataset.cause))
       && words.every((word) => row.dataset.words.includes(word));
@@ -41,36 +41,36 @@
     const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
     const kinds = pressed(outcomes, "outcome"), groups = pressed(causes, "cause");
     const key = compare[order.value] ? order.value : "index";
-    const wanted = rows.filter((row) => isWanted(row, words, kinds, groups));
-    wanted.sort((a, b) => compare[key](a, b) || compare.index(a, b));
+    const matches = rows.filter((row) => isMatch(row, words, kinds, groups));
+    matches.sort((a, b) => compare[key](a, b) || compare.index(a, b));
     const shown = [];
-    for (const row of wanted) {
+    for (const row of matches) {
       if (key === "cause" && row.dataset.cause !== shown.at(-1)?.dataset.cause) {
-        shown.push(heading(row.dataset.cause, wanted.filter((each) => each.dataset.cause === row.dataset.cause).length));
+        shown.push(heading(row.dataset.cause, matches.filter((each) => each.dataset.cause === row.dataset.cause).length));
       }
       shown.push(row);
     }
     body.replaceChildren(...shown);
-    count.textContent = wanted.length === rows.length ? `${rows.length}` : `${wanted.length} of ${rows.length}`;
+    count.textContent = matches.length === rows.length ? `${rows.length}` : `${matches.length} of ${rows.length}`;
     remember(words, kinds, groups, key);
   }
 
   function remember(words, kinds, groups, key) {
-    const asked = new URLSearchParams();
-    if (words.length) asked.set("search", words.join(" "));
-    kinds.forEach((kind) => asked.append("outcome", kind));
-    groups.forEach((group) => asked.append("cause", group));
-    if (key !== "index") asked.set("sort", key);
-    history.replaceState(null, "", asked.size ? `#${asked}` : location.pathname + location.search);
+    const query = new URLSearchParams();
+    if (words.length) query.set("search", words.join(" "));
+    kinds.forEach((kind) => query.append("outcome", kind));
+    groups.forEach((group) => query.append("cause", group));
+    if (key !== "index") query.set("sort", key);
+    history.replaceState(null, "", query.size ? `#${query}` : location.pathname + location.search);
   }
 
   function recall() {
-    const asked = new URLSearchParams(location.hash.slice(1));
-    search.value = asked.get("search") ?? "";
-    order.value = compare[asked.get("sort")] ? asked.get("sort") : "index";
+    const query = new URLSearchParams(location.hash.slice(1));
+    search.value = query.get("search") ?? "";
+    order.value = compare[query.get("sort")] ? query.get("sort") : "index";
     for (const [buttons, key] of [[outcomes, "outcome"], [causes, "cause"]]) {
-      const wanted = asked.getAll(key);
-      buttons.forEach((button) => button.setAttribute("aria-pressed", String(wanted.includes(button.dataset[key]))));
+      const chosen = query.getAll(key);
+      buttons.forEach((button) => button.setAttribute("aria-pressed", String(chosen.includes(button.dataset[key]))));
     }
   }
 

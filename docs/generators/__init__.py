@@ -1,0 +1,1 @@
+"""Generators of reference pages, samples and pictures: one module for each kind."""

@@ -1,0 +1,138 @@
+"""The reference of expectations as Markdown, made from the models."""
+
+from __future__ import annotations
+
+from docs.generators.reference import (
+    VALUES,
+    contents,
+    part_sections,
+    section,
+    table,
+    words,
+)
+from harness.core.registry import OWN_PACKAGE, Registry, registry
+from harness.language.annotations import description_of, keys_of
+from harness.language.expectation import KIND, ExpectationFields, PredicateFields, Quantity
+from harness.language.formula.formula import SIGNALS
+from harness.language.language import EXPECTATIONS, KEYS_BY_PREDICATE, PREDICATES, TEMPORAL
+
+JUDGED = {
+    "at_end": "Without a temporal word it must hold at the last sample of its window, which"
+    " decides.",
+    "always": "Without a temporal word it must hold at every sample of its window; the sample with"
+    " the smallest margin decides.",
+    "eventually": "Without a temporal word it must hold at some sample of its window; the sample"
+    " with the largest margin decides.",
+}
+EXPECTATIONS_HEAD = """\
+An expectation is a predicate, alone or inside a temporal word. Its window is the step if it is
+listed under the step's `expect`, and the whole run if it is listed under the file's.
+
+```yaml
+expect:
+  - lifted: {object: green_cylinder, above: 5 cm, for: 1 s}
+  - always: within_limits
+  - never: {collision: {between: [robot, Table]}}
+```
+
+Every verdict follows from the recording alone. It states its numbers, the sample that decided,
+and a margin: the distance from the limit, in the unit of the limit, positive where the predicate
+holds. A predicate of several quantities holds where all of them do. The quantities are compared
+as shares of their limits (a share that cannot exceed 1: as a part of the range between its limit
+and 1). The tightest one decides, and its margin is the margin of the verdict. What was not
+observed does not pass: the verdict is `not reached` if the step was not reached or the object was
+not in the scene, and `not observable` if the signal was not recorded.
+
+A step that fails unexpectedly ends the run. Expectations that could still have become true are
+then `not reached` and name that step: `lifted`, `eventually`, and everything that is judged at
+the end. An expectation that no continuation could have fulfilled has failed: an `always` that was
+violated, a deadline that has passed.
+
+The pictures show real runs: the measured quantity that decides, its limit, green areas where the
+predicate holds, and the sample that decides. The expectation on the left passes, the one on the
+right fails. [Verdicts that cannot lie](verdicts.md) compares expectations with naive checks."""
+PLAN_TEXT = """\
+Every report compares the plan with the physics and lists differences as findings. A scenario can
+also require that they agree:
+
+| in the plan | in the physics | expectation |
+| --- | --- | --- |
+| the pose of an attached object | its pose while the fingers hold it | [`slip`](#slip) |
+| an object is attached | both sides are in contact with it | `always: grasped` over the steps |
+| commanded joint positions | measured joint positions | [`tracking_error`](#tracking_error) |
+| planned clearance | remaining clearance | [`clearance`](#clearance): `max_below_plan` |
+| allowed collisions | pairs in contact | [`never: collision`](#collision): `count_allowed` |"""
+
+
+UNTIL_TEXT = """\
+- `{always: A, until: B}`: A holds at every sample before the first one at which B holds, and
+  there is such a sample. With `for`, B is held from there on; with `within`, B begins by then.
+
+The temporal words are formulas of signal temporal logic, with the hold T of `for` and the deadline
+W of `within`. With `during`, their window is that step.
+
+| in a file | formula |
+| --- | --- |
+| `eventually: A` | `eventually[0, W] always[0, T] A` |
+| `never: A` | `not eventually[0, W] always[0, T] A` |
+| `always: A` | `always A`; with a deadline `eventually[0, W] always A` |
+| `{always: A, until: B}` | `A until[0, W] always[0, T] B` |"""
+FORMULA_TEXT = """\
+```yaml
+expect:
+  - formula: always (z(red_box) > 5 cm implies force(gripper, red_box) > 0.1 N)
+  - formula: {formula: "eventually[0, 3] always[0, 500 ms] speed(tcp) < 0.005", during: lift}
+```
+
+Operators, from the weakest to the strongest binding: `implies`; `or`; `and`; `until[a, b]`;
+`not`, `always[a, b]`, `eventually[a, b]`; `<` `<=` `>` `>=`; `+` `-`; `*` `/`. Parentheses group.
+`->`, `|`, `&`, `!`, `U`, `G` and `F` are alternative spellings of implies, or, and, not, until,
+always and eventually. Numbers may carry units (`5 cm`, `90 deg`, `200 ms`, `2 N`), and `abs(a)`,
+`min(a, b)` and `max(a, b)` combine them. An interval is in seconds after the moment at which its
+operator is judged; without an interval an operator extends to the end of the window. Names with
+characters other than letters, digits and `_` are written in quotes.
+
+The margin is that of the comparison that decides, in its unit. If the window ends before a
+formula is decided, the verdict is `not reached`: `always[0, 5] A` in a window of 3 s may fail,
+and cannot pass. If a signal is missing, the verdict is `not observable`."""
+
+
+def expectations_reference() -> str:
+    """Every temporal word and predicate, and when a bare one is judged."""
+    registered: Registry[type[ExpectationFields]] = registry(KIND)
+    shared = table((key, keys_of(PredicateFields)[key]) for key in KEYS_BY_PREDICATE)
+    parts = ["# Expectations", EXPECTATIONS_HEAD, VALUES, contents(PREDICATES)]
+    parts += ["Every expectation also has these keys, inside the word or next to it:", shared]
+    parts += ["## Temporal words", words({w: description_of(m) for w, m in TEMPORAL.items()})]
+    parts += [UNTIL_TEXT, *_formula_section(), "## Plan against physics", PLAN_TEXT]
+    for word, model in PREDICATES.items():
+        assert issubclass(model, PredicateFields)  # as PREDICATES says
+        package = registered.package_of(word)
+        is_own = package == OWN_PACKAGE
+        notes = [] if is_own else [f"This expectation comes from the package `{package}`."]
+        parts += section(word, model, KEYS_BY_PREDICATE, (*notes, JUDGED[model.judged]))
+        parts += [_measured(model.quantities), *([_picture(word)] if is_own else [])]
+    parts += part_sections(PREDICATES.values())
+    return "\n\n".join(parts) + "\n"
+
+
+def _formula_section() -> list[str]:
+    rows = ["| signal | unit | meaning |", "| --- | --- | --- |"]
+    for name, (kinds, unit, meaning) in SIGNALS.items():
+        arguments = f"({', '.join(kinds)})" if kinds else ""
+        unit = unit or "the joint's"
+        rows.append(f"| `{name}{arguments}` | {unit} | {meaning} |")
+    formula = description_of(EXPECTATIONS["formula"])
+    return ["## `formula`", formula, FORMULA_TEXT, "\n".join(rows)]
+
+
+def _measured(quantities: tuple[Quantity, ...]) -> str:
+    rows = ["| measured | unit | holds |", "| --- | --- | --- |"]
+    return "\n".join(
+        rows + [f"| {each.name} | {each.unit} | {each.holds} |" for each in quantities]
+    )
+
+
+def _picture(word: str) -> str:
+    """A picture that is kept next to the page."""
+    return f"![Where `{word}` holds, and where it does not](../pictures/expectations/{word}.svg)"

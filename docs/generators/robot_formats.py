@@ -1,0 +1,46 @@
+"""The page on robot file formats, made from the rows that tests hold."""
+
+from __future__ import annotations
+
+from tests.robot.format_rows import Row
+from tests.robot.format_tables import TABLES
+
+HEAD = """\
+# Robot file formats
+
+A scenario names the files of a robot as they are:
+
+```yaml
+robot:
+  urdf: arm.urdf                  # or xacro: arm.xacro, args: {prefix: left_}; or mjcf: arm.xml
+  srdf: arm.srdf
+  packages: [../src]              # folders for package://, which may be read too
+  moveit: {joint_limits: joint_limits.yaml, kinematics: kinematics.yaml}
+  kinematics: calibration.yaml    # of a UR, as ur_calibration writes it
+```
+
+`package://name/path` is looked up in the robot's own package (the folder with its `package.xml`);
+in the folders of `packages`, of the option `--package-path` and of HARNESS_PACKAGE_PATH, and in
+their subfolders; next to the robot's package; and among installed Python packages. A robot
+without a `package.xml` may be in a folder with the package's name, at most three levels up. No
+file outside these folders is read.
+
+The tables list what is *read*, *ignored* or *refused* (an error at its line and column, exit code
+2) of each file. Where *reported* is added, `harness check` and every run print a note. Each row
+is a test (`tests/robot/test_formats.py`). SDF worlds and MoveIt's `.scene` files have a [page of
+their own](world_formats.md). Other files of a MoveIt configuration (`ompl_planning.yaml`,
+controllers, launch files) are not read; their settings belong into the scenario's `planning`.
+"""
+
+
+def robot_formats_page() -> str:
+    """The page as Markdown."""
+    parts = [HEAD]
+    for title, key, rows in TABLES.values():
+        parts.append(f"## {title}\n\n{key}\n\n| | here | |\n| --- | --- | --- |")
+        parts[-1] += "".join(f"\n{_line(row)}" for row in rows) + "\n"
+    return "\n".join(parts)
+
+
+def _line(row: Row) -> str:
+    return f"| {row.word} | {row.here} | {row.meaning} |"

@@ -1,0 +1,122 @@
+"""The page on worlds of other programs: elements that are read, ignored and refused."""
+
+from __future__ import annotations
+
+from harness.world.sdf.elements import WORDS
+from harness.world.sdf.model_path import VARIABLES
+
+HEAD = """# World file formats
+
+A scenario names an SDF file like a world file:
+
+```yaml
+world: cell.sdf
+```
+
+or, with folders to look models up in,
+
+```yaml
+world: {name: cell.sdf, model_path: [models, ../shared]}
+```
+
+The file is not converted but read each time. `harness check` and the findings of every run list
+the parts of it that have no effect."""
+
+MODELS = """## Where models and meshes are found
+
+`model://name/...` and `package://name/...` are looked up in the folders of `model_path`, the
+world file's folder, its subfolder `models`, and the folders of {variables}, in this order; a path
+is relative to the file that contains it. No file outside these folders is read, and nothing is
+downloaded: an address of Fuel is looked up in Gazebo's cache (`~/.gz/fuel`). `model://sun` and
+`model://ground_plane` work without Gazebo."""
+
+BECOMES = """## Models
+
+A model becomes one object with the model's name. An object is rigid: links that joints connect
+become one object, and a movable joint is held in its initial position, with a note. Links without
+a joint become separate objects named `model::link`. Collisions become the object's shapes, each
+with its friction. Visuals of the same shapes colour them; other visuals are drawn in their place.
+A link without an inertial has 1 kg and 1 kg m^2, as SDF specifies, with a note. An inertia that no
+rigid body can have and a mass of 0 are refused. A camera sensor becomes a camera of the world on
+that object with the sensor's name, or `model::sensor` when several sensors have the same name;
+`capture` and `sees` refer to it."""
+
+WORDS_HEAD = """## Elements of SDF
+
+SDF 1.4 to 1.11. *Read* elements have an effect. *Ignored* elements lead to a note, unless they
+state the default (`static` false, gravity on). *Refused* elements are errors. Any other element
+leads to a note that it is not known."""
+
+
+COMMAND = """## Conversion to world files
+
+`harness import sdf FILE` and `harness import scene FILE` write an equivalent
+[world file](scenario.md#world-file) that can be edited: `-o` names the output file,
+`--model-path` adds folders to search for models, and no file is overwritten without `--force`. A
+comment at the top lists the parts that are left out."""
+
+SCENES = """## MoveIt scenes
+
+`.scene` files have no masses and no moving objects, so they are imported and not run directly.
+Both formats are read: objects have poses since MoveIt 1.1; before, only their shapes had poses.
+
+| in | here | |
+| --- | --- | --- |
+| name of the scene | read | the world's title |
+| `*` and a name | read | a static object for planner and physics |
+| pose: position, quaternion xyzw | read | in MoveIt's planning frame, taken as the world |
+| `box`, `sphere`, `cylinder` | read | full size; radius; radius and length |
+| `mesh` | read | its triangles, written as an STL file next to the world file |
+| `plane` | read | solid below its surface, while MoveIt's is thin; with a note |
+| colour | read | four zeros are no colour |
+| subframes | ignored | with a note |
+| object without shapes | ignored | with a note |
+| `cone`, octrees | refused | |"""
+
+MESSAGES = """## MoveIt messages in YAML
+
+`harness import moveit FILES --robot ROBOT` reads PlanningScene and MotionPlanRequest messages, as
+robowflex and MotionBenchMaker store them: vectors as lists or with their names,
+`enabled` rows or plain ones, types by name or number. A scene becomes a world file, a request a
+scenario; a request belongs to the scene whose name ends in the same number, or to the only scene.
+Hundreds of files may be given at once; with a mistake in any of them nothing is written.
+
+| in | here | |
+| --- | --- | --- |
+| `box`, `sphere`, `cylinder` of objects | read | static, in the world or the robot's root |
+| `meshes` | read | of a `resource`, or of vertices and triangles, written as STL |
+| `allowed_collision_matrix` | read | pairs beyond the SRDF's may touch during the motion |
+| `robot_state`, `start_state` | read | the start state; the scene's where the request has none |
+| `goal_constraints` of joints | read | `joints`; several sets of constraints are `any_of` |
+| of a position, with an orientation | read | `position` or `pose` of the link, and tolerances |
+| `group_name`, scaling factors | read | the step's `group`, `planning` |
+| planner, time, attempts, colours, octomaps, padding | ignored | with a note |
+| planes, cones, attached objects, other frames | refused | |
+| path and trajectory constraints | refused | the motion would be another one |"""
+
+
+def formats_page() -> str:
+    """The page as Markdown."""
+    variables = ", ".join(f"`{name}`" for name in VARIABLES)
+    parts = [
+        HEAD,
+        MODELS.format(variables=variables),
+        BECOMES,
+        WORDS_HEAD,
+        sdf_table(),
+        SCENES,
+        MESSAGES,
+        COMMAND,
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def sdf_table() -> str:
+    """The elements of SDF as a Markdown table."""
+    rows = ["| in | element | here | |", "| --- | --- | --- | --- |"]
+    for kind, words in WORDS.items():
+        rows += [
+            f"| `{kind}` | `{tag}` | {word.treatment} | {word.meaning} |"
+            for tag, word in words.items()
+        ]
+    return "\n".join(rows)

@@ -1,0 +1,45 @@
+"""`harness merge`."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from pathlib import Path
+
+from harness.cli.output import complain, guarded, output
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Merge the parts of a suite into one page, JUnit file and results."""
+    return guarded(lambda: _run(arguments))
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    from harness.cli.run import show_lines, show_results, write_files
+    from harness.reporting.json_text import json_text
+    from harness.reporting.suite.record import results_document
+    from harness.suite.merge import merge_parts
+
+    start = time.monotonic()
+    suite, record = merge_parts([Path(each) for each in arguments.folders])
+    options = argparse.Namespace(
+        **vars(arguments),
+        repeat=1,
+        no_report=False,
+        bag=False,
+        package_folders=(),
+        plugins=(),
+        overrides=list(record.overrides.items()),
+        seed=record.seed,
+        samples=record.samples,
+    )
+    page = write_files(options, suite)
+    if arguments.format == "json":
+        output().document(json_text(results_document(suite.record, suite.exit_code)))
+    elif arguments.format == "full":
+        show_results(options, suite, time.monotonic() - start, page)
+    else:
+        show_lines(options, suite)
+    for line in suite.missing_parts:
+        complain(f"incomplete: {line}")
+    return suite.exit_code

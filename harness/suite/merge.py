@@ -1,0 +1,65 @@
+"""One suite from the parts that several machines ran, without its scenario files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from harness.reporting.result import CaseResult
+from harness.suite.plan import SuiteRequest, cases_of
+from harness.suite.shards import ShardRecord, read_shard_records
+from harness.suite.stream import FILE, read_results
+from harness.suite.suite_run import How, SuiteRun
+
+
+def merge_parts(folders: Sequence[Path]) -> tuple[SuiteRun, ShardRecord]:
+    """Merge report folders of `harness run --shard`.
+
+    Returns:
+        The whole suite, counted as one run would count it, and the description of the first part.
+
+    Raises:
+        UsageError: A folder holds no part, or the parts are not of one suite.
+    """
+    records = read_shard_records(folders)
+    first = records[0]
+    request = SuiteRequest(
+        first.expression, first.cases, dict(first.overrides), first.seed, first.samples
+    )
+    plan = cases_of([(Path(each.file), each.header) for each in first.files], request)
+    suite = SuiteRun(plan, How())
+    places = {(str(each.job.file), each.case.name): index for index, each in enumerate(plan)}
+    results: dict[int, CaseResult] = {}
+    missing: list[str] = []
+    for folder, record in zip(folders, records, strict=True):
+        found = {
+            places[result.file, result.case]: _moved(result, Path(record.root), folder)
+            for _, result in read_results(folder / FILE)
+            if (result.file, result.case) in places
+        }
+        results |= found
+        planned = [i for i, each in enumerate(plan) if record.shard.holds(each.identity)]
+        lacking = sum(index not in found for index in planned)
+        if lacking:
+            missing.append(
+                f"part {record.shard} in '{folder}' lacks {lacking} of {len(planned)} results;"
+                " run it again with --resume"
+            )
+    absent = sorted(set(range(1, first.shard.count + 1)) - {each.shard.number for each in records})
+    missing += [f"part {number}/{first.shard.count} is missing" for number in absent]
+    suite.take_all(results)
+    suite.missing_parts = tuple(missing)
+    return suite, first
+
+
+def _moved(result: CaseResult, root: Path, folder: Path) -> CaseResult:
+    """A result whose report is where the part's folder is now."""
+
+    def moved(path: str) -> str:
+        return str(folder / Path(path).relative_to(root)) if path else ""
+
+    try:
+        return replace(result, report_dir=moved(result.report_dir), page=moved(result.page))
+    except ValueError:  # the report was written elsewhere
+        return result

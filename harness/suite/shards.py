@@ -1,0 +1,222 @@
+"""A part of a suite for one of several machines, and the description that a merge needs."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from harness import __version__
+from harness.core.errors import HarnessError
+from harness.recording.plain import from_plain, to_plain
+from harness.suite.discovery import UsageError
+from harness.suite.header import Header
+from harness.suite.variation import Variation
+
+FORMAT = "armharness-shard/1"
+FILE = "shard.json"
+AUTO = "auto"
+SOURCES = (
+    "HARNESS_SHARD (such as 3/10), SLURM_ARRAY_TASK_ID with SLURM_ARRAY_TASK_COUNT,"
+    " CI_NODE_INDEX with CI_NODE_TOTAL (GitLab), or JOB_COMPLETION_INDEX (Kubernetes) with"
+    " HARNESS_SHARDS"
+)
+"""Environment variables that `--shard auto` reads, in this order."""
+
+
+@dataclass(frozen=True)
+class Shard:
+    """One of several parts of a suite.
+
+    Attributes:
+        number: Number of the part, from 1.
+        count: The number of parts that the suite has.
+    """
+
+    number: int
+    count: int
+
+    def __str__(self) -> str:
+        return f"{self.number}/{self.count}"
+
+    def holds(self, identity: str) -> bool:
+        """Whether a case belongs to this part; other cases have no influence on it."""
+        digest = hashlib.sha256(identity.encode()).digest()
+        return int.from_bytes(digest[:8], "big") % self.count == self.number - 1
+
+
+def shard_of(text: str, environment: Mapping[str, str] = os.environ) -> Shard:
+    """The part that `3/10` names, or with `auto` the part that a scheduler's variables name.
+
+    Raises:
+        UsageError: The text is no part, or `auto` finds no variables.
+    """
+    if text == AUTO:
+        return _scheduled_shard(environment)
+    match = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
+    if match is None or not 1 <= int(match[1]) <= int(match[2]):
+        raise UsageError(
+            f"--shard '{text}': write NUMBER/COUNT with NUMBER from 1 to COUNT, such as 3/10, or"
+            f" {AUTO}"
+        )
+    return Shard(int(match[1]), int(match[2]))
+
+
+def _scheduled_shard(environment: Mapping[str, str]) -> Shard:
+    def integer(name: str, default: int | None = None) -> int:
+        value = environment.get(name, "" if default is None else str(default))
+        try:
+            return int(value)
+        except ValueError:
+            what = f"is '{value}'" if value else "is not set"
+            raise UsageError(f"--shard {AUTO}: {name} {what}; it must be a number") from None
+
+    if "HARNESS_SHARD" in environment:
+        return shard_of(environment["HARNESS_SHARD"], {})
+    if "SLURM_ARRAY_TASK_ID" in environment:
+        first = integer("SLURM_ARRAY_TASK_MIN", 0)
+        place = (integer("SLURM_ARRAY_TASK_ID") - first) // integer("SLURM_ARRAY_TASK_STEP", 1)
+        return _checked(place + 1, integer("SLURM_ARRAY_TASK_COUNT"))
+    if "CI_NODE_INDEX" in environment:
+        return _checked(integer("CI_NODE_INDEX"), integer("CI_NODE_TOTAL"))
+    if "JOB_COMPLETION_INDEX" in environment:
+        return _checked(integer("JOB_COMPLETION_INDEX") + 1, integer("HARNESS_SHARDS"))
+    raise UsageError(f"--shard {AUTO} needs one of these environment variables: {SOURCES}")
+
+
+def _checked(number: int, count: int) -> Shard:
+    if not 1 <= number <= count:
+        raise UsageError(f"--shard {AUTO}: the environment names part {number} of {count}")
+    return Shard(number, count)
+
+
+@dataclass(frozen=True)
+class PlannedFile:
+    """A scenario file of a suite.
+
+    Attributes:
+        file: The path as the user named it.
+        title: The title that the file states.
+        tags: The tags that the file states.
+        verifies: Requirements that the file names.
+        varied: The values in the file that its cases follow from.
+        digest: Hash of the file and of the files that it names.
+    """
+
+    file: str
+    title: str
+    tags: tuple[str, ...]
+    verifies: tuple[str, ...]
+    varied: Mapping[str, Any]
+    digest: str
+
+    @property
+    def header(self) -> Header:
+        """The header that was read from the file."""
+        variation = Variation.of(self.varied)
+        return Header(self.title, self.tags, 1, variation, self.verifies, self.varied)
+
+
+@dataclass(frozen=True)
+class ShardRecord:
+    """What a part has to know of the whole suite so that parts can be merged without its files.
+
+    Attributes:
+        shard: The part of the suite that this describes.
+        root: The part's report folder, as the paths in its results begin.
+        files: Every scenario file of the suite, in order.
+        expression: The expression of `-k`.
+        cases: Patterns of case names.
+        overrides: Dotted path -> value as YAML.
+        seed: Seed that replaced the files' seeds.
+        samples: Number of samples that replaced the files' numbers.
+        version: The version of the program that ran the part.
+    """
+
+    shard: Shard
+    root: str
+    files: tuple[PlannedFile, ...]
+    expression: str = ""
+    cases: tuple[str, ...] = ()
+    overrides: Mapping[str, str] = field(default_factory=dict[str, str])
+    seed: int | None = None
+    samples: int | None = None
+    version: str = __version__
+
+    @property
+    def suite(self) -> dict[str, Any]:
+        """What all parts of one suite have in common."""
+        plain: dict[str, Any] = to_plain(self)
+        return {name: value for name, value in plain.items() if name not in ("shard", "root")} | {
+            "count": self.shard.count
+        }
+
+
+def write_shard_record(record: ShardRecord) -> None:
+    """Write the description of a part into its report folder.
+
+    Raises:
+        HarnessError: The file cannot be written.
+    """
+    path = Path(record.root) / FILE
+    text = json.dumps({"format": FORMAT, **to_plain(record)}, indent=1)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text + "\n", encoding="utf-8")
+    except OSError as error:
+        raise HarnessError(f"'{path}' cannot be written: {error.strerror}") from error
+
+
+def read_shard_records(folders: Sequence[Path]) -> list[ShardRecord]:
+    """The descriptions of parts of one suite, in the order of the folders.
+
+    Raises:
+        UsageError: A folder holds no part, or the parts are not of the same suite, or one part
+            stands in two folders.
+    """
+    records: list[ShardRecord] = []
+    for folder in folders:
+        record = _read(folder)
+        for other, place in zip(records, folders, strict=False):
+            _check_same_suite(record, folder, other, place)
+        records.append(record)
+    return records
+
+
+def _read(folder: Path) -> ShardRecord:
+    path = folder / FILE
+    try:
+        entry = json.loads(path.read_text(encoding="utf-8"))
+        if entry.pop("format") != FORMAT:
+            raise UsageError(f"'{path}' is not of the format {FORMAT}")
+        return from_plain(entry, ShardRecord)
+    except FileNotFoundError:
+        raise UsageError(
+            f"'{folder}' holds no {FILE}; name report folders of `harness run ... --shard N/COUNT`"
+        ) from None
+    except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+        raise UsageError(f"'{path}' cannot be read: {error}") from None
+
+
+def _check_same_suite(record: ShardRecord, folder: Path, other: ShardRecord, place: Path) -> None:
+    here, there = record.suite, other.suite
+    if here != there:
+        what = next(name for name in here if here[name] != there[name])
+        names = {
+            "files": "the scenario files or the files that they name",
+            "count": "the number of parts",
+            "version": f"the version of armharness ({record.version} and {other.version})",
+        }
+        raise UsageError(
+            f"'{folder}' and '{place}' are not parts of one suite: they differ in"
+            f" {names.get(what, what)}"
+        )
+    if record.shard == other.shard:
+        raise UsageError(
+            f"'{folder}' and '{place}' both hold part {record.shard}; name one of them"
+        )

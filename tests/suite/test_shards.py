@@ -1,0 +1,280 @@
+"""A suite in parts on several machines, merged: the same results, page and rates as one run."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections import Counter
+from pathlib import Path
+
+import pytest
+import yaml
+
+from harness.suite.discovery import UsageError
+from harness.suite.shards import Shard, shard_of
+
+GUIDE = (Path(__file__).parents[2] / "docs/guides/many_machines.md").read_text(encoding="utf-8")
+SAMPLED = """\
+scenario: Wait for a random time
+robot: open_manipulator_x
+seed: 5
+params: {time: 0.1 s}
+steps:
+  - wait: "${time}"
+expect:
+  - duration: {at_most: 0.15 s}
+randomize:
+  time: {uniform: [0.01 s, 0.2 s]}
+samples: 30
+expect_rate: {at_least: 30 %, stop_early: EARLY}
+"""
+GRID = """\
+scenario: Wait
+robot: open_manipulator_x
+tags: [grid]
+params: {time: 0.1 s}
+steps:
+  - wait: "${time}"
+expect:
+  - duration: {at_most: 0.15 s}
+parametrize:
+  time: [0.05 s, 0.1 s, 0.2 s]
+"""
+
+
+def harness(*words, cwd, **environment):
+    return subprocess.run(
+        [sys.executable, "-m", "harness.cli", *map(str, words)],
+        cwd=cwd, capture_output=True, text=True, check=False,
+        env={**os.environ, **environment},
+    )  # fmt: skip
+
+
+def document(folder):
+    return json.loads((folder / "results.json").read_text())
+
+
+def case_facts(results):
+    keys = ("file", "case", "outcome", "digest", "values", "tags", "worst_margin")
+    return [{key: case[key] for key in keys} for case in results["cases"]]
+
+
+@pytest.fixture(scope="module")
+def parts(tmp_path_factory):
+    """A folder with one whole run, and its three parts, each below a folder of its own."""
+    folder = tmp_path_factory.mktemp("parts")
+    (folder / "sampled.scenario.yaml").write_text(SAMPLED.replace("EARLY", "true"))
+    (folder / "grid.scenario.yaml").write_text(GRID)
+    whole = harness("run", ".", "--report-dir", "whole", "--no-page", cwd=folder)
+    codes = []
+    for number in (1, 2, 3):
+        part = harness(
+            "run", ".", "--shard", f"{number}/3", "--report-dir", f"at{number}", "--no-page",
+            cwd=folder,
+        )  # fmt: skip
+        codes.append(part.returncode)
+    assert whole.returncode == 1  # one case of the grid waits too long
+    assert sorted(codes) == [0, 0, 1]  # in the part that holds that case
+    return folder
+
+
+def test_merged_parts_are_what_one_run_is(parts, tmp_path):
+    merged = harness(
+        "merge", "at1", "at2", "at3", "--report-dir", tmp_path / "out", cwd=parts
+    )  # fmt: skip
+    whole, joined = document(parts / "whole"), document(tmp_path / "out")
+    assert merged.returncode == whole["exit_code"] == joined["exit_code"] == 1
+    assert case_facts(joined) == case_facts(whole)
+    assert joined["rates"] == whole["rates"]
+    assert whole["rates"][0]["rate"]["stopped_early"]
+    assert "is confirmed" in merged.stdout
+    assert (tmp_path / "out" / "junit.xml").is_file()
+
+
+def test_every_case_is_in_exactly_one_part(parts):
+    held = Counter(
+        (line["result"]["file"], line["result"]["case"])
+        for number in (1, 2, 3)
+        for line in map(
+            json.loads, (parts / f"at{number}" / "results.jsonl").read_text().splitlines()
+        )
+    )
+    assert len(held) == 33
+    assert set(held.values()) == {1}
+
+
+def test_a_part_runs_all_its_samples_and_decides_no_rate(parts):
+    for number in (1, 2, 3):
+        assert document(parts / f"at{number}")["rates"] == []
+
+
+def test_a_part_that_is_missing_is_named(parts, tmp_path):
+    merged = harness("merge", "at1", "at3", "--report-dir", tmp_path / "out", cwd=parts)
+    assert merged.returncode == 3
+    assert "incomplete: part 2/3 is missing" in merged.stderr
+    assert document(tmp_path / "out")["missing_parts"] == ["part 2/3 is missing"]
+    assert "part 2/3 is missing" in (tmp_path / "out" / "index.html").read_text()
+
+
+def test_a_part_that_was_cut_off_is_named_with_what_it_lacks(parts, tmp_path):
+    cut = tmp_path / "cut"
+    shutil.copytree(parts / "at2", cut)
+    lines = (cut / "results.jsonl").read_text().splitlines()
+    (cut / "results.jsonl").write_text("\n".join(lines[:-2]) + "\n" + lines[-1][:50])
+    merged = harness("merge", "at1", cut, "at3", "--report-dir", tmp_path / "out", cwd=parts)
+    assert merged.returncode == 3
+    assert f"part 2/3 in '{cut}' lacks 2 of {len(lines)} results" in merged.stderr
+
+
+def test_links_of_merged_results_lead_to_where_the_parts_are_now(parts, tmp_path):
+    moved = [shutil.copytree(parts / f"at{n}", tmp_path / f"download{n}") for n in (1, 2, 3)]
+    harness("merge", *moved, "--report-dir", tmp_path / "out", cwd=tmp_path)
+    folders = [case["report_dir"] for case in document(tmp_path / "out")["cases"]]
+    written = [folder for folder in folders if folder]
+    assert written
+    assert all((tmp_path / folder / "run.json").is_file() for folder in written)
+
+
+def test_parts_of_different_suites_are_refused(parts, tmp_path):
+    grid = tmp_path / "grid.scenario.yaml"
+    grid.write_text(GRID)
+    harness("run", grid, "--shard", "2/3", "--report-dir", "other", "--no-page", cwd=tmp_path)
+    refused = harness("merge", parts / "at1", "other", "--report-dir", "out", cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "they differ in the scenario files" in refused.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_parts_of_two_versions_are_refused(parts, tmp_path):
+    old = shutil.copytree(parts / "at2", tmp_path / "old")
+    text = (old / "shard.json").read_text()
+    version = json.loads(text)["version"]
+    (old / "shard.json").write_text(text.replace(f'"version": "{version}"', '"version": "0.0.1"'))
+    refused = harness("merge", parts / "at1", old, "--report-dir", "out", cwd=tmp_path)
+    assert refused.returncode == 2
+    assert f"the version of armharness (0.0.1 and {version})" in refused.stderr
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "null", '{"format": "armharness-shard/1"}'])
+def test_a_damaged_description_is_refused(parts, tmp_path, text):
+    broken = shutil.copytree(parts / "at2", tmp_path / "broken")
+    (broken / "shard.json").write_text(text)
+    refused = harness("merge", parts / "at1", broken, "--report-dir", "out", cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "shard.json" in refused.stderr
+    assert "Traceback" not in refused.stderr
+
+
+def test_a_folder_without_a_part_and_a_part_twice_are_refused(parts, tmp_path):
+    nothing = harness("merge", parts / "at1", parts / "whole", cwd=tmp_path)
+    assert nothing.returncode == 2
+    assert "holds no shard.json" in nothing.stderr
+    twice = harness("merge", parts / "at1", parts / "at1", cwd=tmp_path)
+    assert twice.returncode == 2
+    assert "both hold part 1/3" in twice.stderr
+
+
+def test_cases_stay_in_their_parts_when_others_are_added():
+    few = {name: _part_of(name) for name in ("a", "b", "c")}
+    more = {name: _part_of(name) for name in ("a", "x", "b", "y", "c", "z")}
+    assert few.items() <= more.items()
+
+
+def test_cases_are_spread_evenly():
+    counts = Counter(_part_of(f"suite/{number}\0sample{number}") for number in range(10_000))
+    assert set(counts) == set(range(1, 11))
+    assert all(abs(count - 1000) < 150 for count in counts.values())  # five standard deviations
+
+
+def _part_of(identity):
+    [part] = [n for n in range(1, 11) if Shard(n, 10).holds(identity)]
+    return part
+
+
+@pytest.mark.parametrize(
+    ("environment", "part"),
+    [
+        ({"HARNESS_SHARD": "3/10"}, Shard(3, 10)),
+        ({"SLURM_ARRAY_TASK_ID": "0", "SLURM_ARRAY_TASK_COUNT": "4"}, Shard(1, 4)),
+        (
+            {
+                "SLURM_ARRAY_TASK_ID": "7",
+                "SLURM_ARRAY_TASK_MIN": "1",
+                "SLURM_ARRAY_TASK_STEP": "2",
+                "SLURM_ARRAY_TASK_COUNT": "4",
+            },
+            Shard(4, 4),
+        ),
+        ({"CI_NODE_INDEX": "2", "CI_NODE_TOTAL": "5"}, Shard(2, 5)),
+        ({"JOB_COMPLETION_INDEX": "0", "HARNESS_SHARDS": "5"}, Shard(1, 5)),
+    ],
+)
+def test_schedulers_name_the_part(environment, part):
+    assert shard_of("auto", environment) == part
+
+
+@pytest.mark.parametrize(
+    ("environment", "says"),
+    [
+        ({}, "needs one of these environment variables: HARNESS_SHARD"),
+        ({"JOB_COMPLETION_INDEX": "0"}, "HARNESS_SHARDS is not set"),
+        ({"CI_NODE_INDEX": "6", "CI_NODE_TOTAL": "5"}, "names part 6 of 5"),
+        ({"SLURM_ARRAY_TASK_ID": "x", "SLURM_ARRAY_TASK_COUNT": "4"}, "is 'x'"),
+        ({"HARNESS_SHARD": "auto"}, "needs one of these"),
+    ],
+)
+def test_what_schedulers_leave_out_is_named(environment, says):
+    with pytest.raises(UsageError, match=says):
+        shard_of("auto", environment)
+
+
+@pytest.mark.parametrize("text", ["0/3", "4/3", "3", "a/b", "1/0", "-1/3", "1/3/5", "1.0/3"])
+def test_a_part_that_is_none_is_refused(text):
+    with pytest.raises(UsageError, match="write NUMBER/COUNT"):
+        shard_of(text)
+
+
+def test_a_part_without_cases_passes_and_can_be_merged(tmp_path):
+    (tmp_path / "grid.scenario.yaml").write_text(GRID)
+    parts = [f"at{number}" for number in range(1, 9)]
+    for number, part in enumerate(parts, start=1):
+        ran = harness(
+            "run", ".", "--report-dir", part, "--no-page", "--shard", "auto",
+            cwd=tmp_path, CI_NODE_INDEX=str(number), CI_NODE_TOTAL="8",
+        )  # fmt: skip
+        assert ran.returncode in (0, 1), ran.stderr
+    merged = harness("merge", *parts, "--report-dir", "out", "--json", cwd=tmp_path)
+    assert [case["outcome"] for case in json.loads(merged.stdout)["cases"]] == [
+        "passed", "passed", "failed",
+    ]  # fmt: skip
+
+
+def test_the_recipes_are_valid_and_use_the_same_number_of_parts_throughout():
+    gitlab, github, kubernetes = (
+        yaml.safe_load(text) for text in re.findall(r"(?s)```yaml\n(.*?)```", GUIDE)
+    )
+    assert gitlab["arm"]["parallel"] == 4
+    shards = github["jobs"]["arm"]["strategy"]["matrix"]["shard"]
+    assert (
+        f"--shard ${{{{ matrix.shard }}}}/{len(shards)} "
+        in github["jobs"]["arm"]["steps"][1]["run"]
+    )
+    job = kubernetes["spec"]
+    [container] = job["template"]["spec"]["containers"]
+    assert container["env"] == [{"name": "HARNESS_SHARDS", "value": str(job["completions"])}]
+    assert job["completionMode"] == "Indexed"
+    slurm = re.search(r"(?s)```sh\n(#!/bin/bash.*?)```", GUIDE)[1]
+    assert subprocess.run(["bash", "-n"], input=slurm, text=True, check=False).returncode == 0
+
+
+def test_every_command_of_the_guide_is_accepted():
+    from harness.cli.main import _parser
+
+    guide = GUIDE.replace("${{ matrix.shard }}", "1").replace('"$SLURM_CPUS_PER_TASK"', "4")
+    lines = re.findall(r"harness ((?:run|merge) [^\n`\"]*)", guide)
+    assert len(lines) >= 10
+    for line in lines:
+        words = line.split()
+        _parser().parse_args([*words, *(["x"] if words[-1] == "--report-dir" else [])])
