@@ -25,7 +25,7 @@ def with_estimated_masses(urdf: Urdf, source: str) -> Urdf:
     """The robot with a mass for every rigid group of links that moves and has no <inertial>.
 
     Args:
-        urdf: The robot.
+        urdf: The links and joints of the robot.
         source: Its name in messages.
 
     Raises:

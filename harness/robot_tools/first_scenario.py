@@ -27,7 +27,7 @@ class FirstScenario:
     """A scenario that was checked and run.
 
     Attributes:
-        text: Of the file.
+        text: The text of the file.
         trouble: Why it does not pass; empty when it passes.
         no_pick: Why it is a motion and no pick; empty for a pick.
     """
