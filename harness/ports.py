@@ -338,6 +338,14 @@ class PlanningScene(Protocol):
         """Pairs closer than allowed at a state, nearest first."""
         ...
 
+    def link_corners(self, link: str) -> FloatArray:
+        """Corners of the boxes around a link's shapes, in its frame, shape (n, 3) [m]."""
+        ...
+
+    def distance_to_link(self, link: str, point: FloatArray) -> float:
+        """Distance between a point in a link's frame and the link's shapes, 0 inside [m]."""
+        ...
+
 
 class Kinematics(Protocol):
     """Where the robot's links are, and which joint positions put them somewhere."""

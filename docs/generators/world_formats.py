@@ -73,6 +73,27 @@ Both formats are read: objects have poses since MoveIt 1.1; before, only their s
 | object without shapes | ignored | with a note |
 | `cone`, octrees | refused | |"""
 
+MESSAGES = """## MoveIt messages in YAML
+
+`harness import moveit FILES --robot ROBOT` reads PlanningScene and MotionPlanRequest messages, as
+robowflex and MotionBenchMaker store them: vectors as lists or with their names,
+`enabled` rows or plain ones, types by name or number. A scene becomes a world file, a request a
+scenario; a request belongs to the scene whose name ends in the same number, or to the only scene.
+Hundreds of files may be given at once; with a mistake in any of them nothing is written.
+
+| in | here | |
+| --- | --- | --- |
+| `box`, `sphere`, `cylinder` of objects | read | static, in the world or the robot's root |
+| `meshes` | read | of a `resource`, or of vertices and triangles, written as STL |
+| `allowed_collision_matrix` | read | pairs beyond the SRDF's may touch during the motion |
+| `robot_state`, `start_state` | read | the start state; the scene's where the request has none |
+| `goal_constraints` of joints | read | `joints`; several sets of constraints are `any_of` |
+| of a position, with an orientation | read | `position` or `pose` of the link, and tolerances |
+| `group_name`, scaling factors | read | the step's `group`, `planning` |
+| planner, time, attempts, colours, octomaps, padding | ignored | with a note |
+| planes, cones, attached objects, other frames | refused | |
+| path and trajectory constraints | refused | the motion would be another one |"""
+
 
 def formats_page() -> str:
     """The page as Markdown."""
@@ -84,6 +105,7 @@ def formats_page() -> str:
         WORDS_HEAD,
         sdf_table(),
         SCENES,
+        MESSAGES,
         COMMAND,
     ]
     return "\n\n".join(parts) + "\n"

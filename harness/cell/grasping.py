@@ -18,6 +18,10 @@ from harness.recording.execution_failures import WidthFailure
 from harness.recording.explanation import Explanation
 
 GRASP_DEPTH = 0.02  # [m] below the top of a tall object
+CLEARANCE = 0.005
+"""Distance of the palm from a grasped object's top, and of the fingertips from its bottom [m]."""
+JAW_CLEARANCE = 0.002
+"""Distance between an object and the palm on which a single jaw closes, before it does [m]."""
 GAP_SLACK = 0.001
 """How much a gap between the pads may differ from what the robot's table says [m]."""
 MAX_LEAN = 10.0  # [degrees]
@@ -30,21 +34,69 @@ def gripper_axes(cell: Cell) -> tuple[FloatArray, FloatArray]:
     """Unit approach and closing axes in the TCP frame, shape (3,) each.
 
     The approach axis points from the palm to the TCP, the closing axis from one pad to the other
-    with the hand open: closed, the frames of the pads may be in one place.
+    with the hand open: closed, the frames of the pads may be in one place. A single jaw has the
+    closing axis in which it moves.
     """
-    gripper = cell.gripper
-    state = cell.planning_start()
-    state[cell.description.joint_index[gripper.joint]] = gripper.open_position
-    state = cell.description.with_mimics(state)
-    world_to_tcp = cell.kinematics.link_pose(state, cell.description.tcp_link).inverse()
-    palm = world_to_tcp @ cell.kinematics.link_pose(state, gripper.palm_link)
-    first, second = (
-        world_to_tcp @ cell.kinematics.link_pose(state, link) for link in gripper.pads.values()
-    )
+    palm, first, second = _in_tcp(cell, cell.gripper.open_position)
     approach = -palm.translation
     closing = second.translation - first.translation
+    if _has_single_jaw(cell):
+        closing = _jaw_travel(cell)
+        approach = approach - closing * float(closing @ approach) / float(closing @ closing)
     closing = closing - approach * float(closing @ approach) / float(approach @ approach)
     return approach / np.linalg.norm(approach), closing / np.linalg.norm(closing)
+
+
+def _jaw_travel(cell: Cell) -> FloatArray:
+    """How a single jaw opens: the displacement of its middle, TCP axes, shape (3,) [m]."""
+    pads = list(cell.gripper.pads.values())
+    number = next(n for n, pad in enumerate(pads) if pad != cell.gripper.palm_link)
+    middle = cell.scene.link_corners(pads[number]).mean(axis=0)
+    opened, closed = (
+        _in_tcp(cell, position)[1 + number].apply(middle)
+        for position in (cell.gripper.open_position, cell.gripper.closed_position)
+    )
+    return opened - closed
+
+
+def _has_single_jaw(cell: Cell) -> bool:
+    """Whether the gripper's palm is one of its pads."""
+    return cell.gripper.palm_link in cell.gripper.pads.values()
+
+
+def _in_tcp(cell: Cell, position: float) -> tuple[SE3, SE3, SE3]:
+    """The palm's and the pads' poses in the TCP frame at a position of the gripper's joint."""
+    gripper, state = cell.gripper, cell.planning_start()
+    state[cell.description.joint_index[gripper.joint]] = position
+    state = cell.description.with_mimics(state)
+    world_to_tcp = cell.kinematics.link_pose(state, cell.description.tcp_link).inverse()
+    palm, first, second = (
+        world_to_tcp @ cell.kinematics.link_pose(state, link)
+        for link in (gripper.palm_link, *gripper.pads.values())
+    )
+    return palm, first, second
+
+
+def grasp_depth(cell: Cell, height: float) -> float:
+    """How far below the top of an object of a height the TCP grasps it [m].
+
+    The palm stays above the top, and the fingertips above the bottom, where both are possible. A
+    palm that is a pad itself, next to a single jaw, touches the object anyway.
+    """
+    palm, first, second = _in_tcp(cell, cell.gripper.open_position)
+    approach = gripper_axes(cell)[0]
+    room, tips = (
+        max(
+            float((pose.apply(cell.scene.link_corners(link)) @ approach).max())
+            for link, pose in placed
+        )
+        for placed in (
+            [(cell.gripper.palm_link, palm)],
+            zip(cell.gripper.pads.values(), (first, second), strict=True),
+        )
+    )
+    depth = min(GRASP_DEPTH, height / 2, height - tips - CLEARANCE)
+    return depth if _has_single_jaw(cell) else min(depth, -room - CLEARANCE)
 
 
 def top_grasps(obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:
@@ -64,10 +116,30 @@ def top_grasps(obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:
     side[2] = 0.0
     side /= np.linalg.norm(side)
     height = size[vertical]
-    point = at.translation + np.array([0.0, 0.0, height / 2 - min(GRASP_DEPTH, height / 2)])
+    point = at.translation + np.array([0.0, 0.0, height / 2 - grasp_depth(cell, height)])
     fits = [_fits(size[axis], cell) for axis in level]
     turns = _equal_turns(shape.geometry, vertical, fits)
-    return _from_above(point, side, turns, cell)
+    width = max(size[axis] for axis, does_fit in zip(level, fits, strict=True) if does_fit)
+    shift = _room_for_width(cell, width)
+    return [
+        SE3(grasp.rotation, grasp.translation - grasp.rotation @ shift)
+        for grasp in _from_above(point, side, turns, cell)
+    ]
+
+
+def _room_for_width(cell: Cell, width: float) -> FloatArray:
+    """Displacement from the TCP to the middle of a grasped object, TCP axes, shape (3,) [m].
+
+    Zero between two fingers. A single jaw pushes the object against the palm, whose surface may
+    be nearer to the TCP than half of the object's width.
+    """
+    gripper = cell.gripper
+    if not _has_single_jaw(cell):
+        return np.zeros(3)
+    tcp = _in_tcp(cell, gripper.open_position)[0].inverse().translation
+    away = cell.scene.distance_to_link(gripper.palm_link, tcp)
+    missing = 0.5 * width + JAW_CLEARANCE - away
+    return max(missing, 0.0) * gripper_axes(cell)[1]
 
 
 def top_grasps_at(point: FloatArray, obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:

@@ -9,13 +9,46 @@ from pathlib import Path
 
 from harness.cli.output import guarded, say
 from harness.cli.robot_options import source_of
-from harness.suite.discovery import UsageError
+from harness.suite.discovery import SUFFIX, UsageError
+
+MOST_NOTES = 20
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Write a world file or a robot's folder; what is left out of the other file is reported."""
-    of_a_robot = arguments.kind == "srdf"
-    return guarded(lambda: _robot(arguments) if of_a_robot else _world(arguments))
+    return guarded(lambda: _import(arguments))
+
+
+def _import(arguments: argparse.Namespace) -> int:
+    if arguments.kind == "moveit":
+        return _moveit(arguments)
+    if arguments.srdf:
+        raise UsageError("--srdf goes with `import moveit`; `import srdf FILE` names it as FILE")
+    if len(arguments.files) > 1:
+        raise UsageError(f"`import {arguments.kind}` takes one FILE, not {len(arguments.files)}")
+    [arguments.file] = arguments.files
+    return _robot(arguments) if arguments.kind == "srdf" else _world(arguments)
+
+
+def _moveit(arguments: argparse.Namespace) -> int:
+    """Write a world for each scene, and a scenario for each request."""
+    if not arguments.robot:
+        raise UsageError("MoveIt's files are about a robot: --robot FILE or NAME")
+    files = [Path(name) for name in arguments.files]
+    folder = Path(arguments.output) if arguments.output else files[0].parent / "scenarios"
+    if folder.suffix:
+        raise UsageError(f"'{folder}' is no folder: a world and a scenario are written into one")
+    from harness.robot_tools.moveit_import import import_moveit
+
+    found = import_moveit(files, source_of(arguments), folder)
+    _write(found.files, is_forced=arguments.force)
+    for note in found.notes[:MOST_NOTES]:
+        say(f"note: {note}")
+    if len(found.notes) > MOST_NOTES:
+        say(f"note: {len(found.notes) - MOST_NOTES} more of the other files")
+    scenarios = sum(path.name.endswith(SUFFIX) for path in found.files)
+    say(f"wrote {scenarios} scenario{'s' if scenarios != 1 else ''} into {folder}")
+    return 0
 
 
 def _robot(arguments: argparse.Namespace) -> int:
@@ -35,7 +68,7 @@ def _robot(arguments: argparse.Namespace) -> int:
     from harness.robot.robot_folder import robot_folder
     from harness.robot_tools.robot_source import KINDS
 
-    robot = source_of(argparse.Namespace(**vars(arguments), srdf=arguments.file))
+    robot = source_of(argparse.Namespace(**{**vars(arguments), "srdf": arguments.file}))
     if robot.kind not in KINDS.values():
         raise UsageError(f"--robot is a URDF, xacro or MJCF file, not '{arguments.robot}'")
     found = robot_folder(RobotSpec.model_validate(robot.words()), Path(), folder)

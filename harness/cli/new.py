@@ -6,7 +6,7 @@ import argparse
 import shlex
 from pathlib import Path
 
-from harness.cli.output import guarded, say, say_text
+from harness.cli.output import guarded, output, say, say_text
 from harness.cli.robot_options import source_of
 from harness.suite.discovery import SUFFIX, UsageError
 
@@ -28,7 +28,7 @@ def _run(arguments: argparse.Namespace, file: Path) -> int:
     is_new_folder = not file.parent.exists()
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
-        text, trouble = _content(arguments, file)
+        text, lines = _content(arguments, file)
         with file.open("x", encoding="utf-8") as new:
             new.write(text)
     except OSError as error:
@@ -38,23 +38,26 @@ def _run(arguments: argparse.Namespace, file: Path) -> int:
             file.parent.rmdir()
     name = shlex.quote(str(file))
     say(f"wrote {file}")
-    if trouble:
-        say_text(f"no steps were found that pass; `harness check` says: {trouble}")
+    for line in lines:
+        say_text(line)
     say(f"check it: harness check {name}", f"run it:   harness run {name}")
     return 0
 
 
-def _content(arguments: argparse.Namespace, file: Path) -> tuple[str, str]:
-    """The scenario, and what is still wrong with it."""
+def _content(arguments: argparse.Namespace, file: Path) -> tuple[str, list[str]]:
+    """The scenario, and what to say about it."""
     if not arguments.robot:
         for option in ("srdf", "gripper", "group", "tcp_link", "package_path", "args"):
             if getattr(arguments, option):
                 raise UsageError(f"--{option.replace('_', '-')} goes with --robot")
-        return TEMPLATE.read_text(encoding="utf-8"), ""
+        return TEMPLATE.read_text(encoding="utf-8"), []
     from harness.robot_tools.first_scenario import first_scenario
 
     source = source_of(arguments)
     if source.kind == "scenario":
         raise UsageError(f"--robot is a robot, and '{arguments.robot}' a scenario")
-    found = first_scenario(source, file)
-    return found.text, found.trouble
+    found = first_scenario(source, file, lambda text: output().status(lambda: text))
+    lines = [f"it is a motion and no pick: {found.no_pick}"] if found.no_pick else []
+    if found.trouble:
+        return found.text, [*lines, f"no steps were found that pass; the last: {found.trouble}"]
+    return found.text, [*lines, "it was run once and passed"]

@@ -17,7 +17,7 @@ from harness.cli.arguments import (
 )
 from harness.cli.robot_options import ROBOT, add_robot_options
 
-IMPORTS = ("sdf", "scene", "srdf")
+IMPORTS = ("sdf", "scene", "srdf", "moveit")
 FORMATS = ("full", "short", "json", "github")
 BAGS = ("mcap", "sqlite3")
 LISTS = (
@@ -270,16 +270,20 @@ def for_export(export: argparse.ArgumentParser) -> None:
 def for_import(importing: argparse.ArgumentParser) -> None:
     """Of `harness import`."""
     importing.add_argument("kind", choices=IMPORTS, help="what FILE is")
-    importing.add_argument("file", metavar="FILE", help="an SDF world, a MoveIt scene or an SRDF")
+    importing.add_argument("files", metavar="FILE", nargs="+",
+                           help="an SDF world, a MoveIt .scene or an SRDF; for `moveit`, any number"
+                           " of PlanningScene and MotionPlanRequest files in YAML")  # fmt: skip
     importing.add_argument("-o", "--output", metavar="FILE",
                            help="what to write (default: FILE's name with .yaml; of an SRDF"
-                           " a folder of FILE's name)")  # fmt: skip
+                           " a folder of FILE's name; for `moveit` the folder `scenarios`"
+                           " next to the first FILE)")  # fmt: skip
     importing.add_argument("--model-path", metavar="DIR", action="append", default=[],
                            help="look models up here before GZ_SIM_RESOURCE_PATH")  # fmt: skip
     importing.add_argument("--force", action="store_true", help="overwrite what is there")
     importing.add_argument("--robot", metavar="FILE", default="",
-                           help="the URDF, xacro or MJCF that an SRDF is of")  # fmt: skip
-    add_robot_options(importing, has_srdf=False)
+                           help="the robot of an SRDF or of MoveIt's files: a URDF, xacro or"
+                           " MJCF; for `moveit` also a bundled name")  # fmt: skip
+    add_robot_options(importing)
 
 
 def for_ik_test(test: argparse.ArgumentParser) -> None:

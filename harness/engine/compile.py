@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -146,7 +146,7 @@ class _Compiler:
                     (*loc, "name"), "object of the world", spec.name, resolved, needs=("world",)
                 )
             here.add(spec.name)
-            obj = self._resolve(spec, loc, self._start_pose(spec, loc))
+            obj = self._resolve(spec, loc, self._start_pose(spec, loc, resolved))
             if obj is not None:
                 resolved[spec.name] = obj
         return tuple(resolved.values())
@@ -159,12 +159,17 @@ class _Compiler:
             self.object_locs[spec.name] = ("world",)
             if spec.name in resolved:
                 problems.append(f"two objects are called '{spec.name}'")
-            if spec.pose.frame != "world":
+            frame, base = spec.pose.frame, SE3.identity()
+            if frame in resolved:
+                base = resolved[frame].pose
+            elif frame != "world":
                 problems.append(
-                    f"'{spec.name}' has a pose in '{spec.pose.frame}', not in the world"
+                    f"'{spec.name}' has a pose in '{frame}', which is neither `world` nor an object"
+                    " before it"
                 )
+            pose = base @ spec.pose.se3()
             try:
-                resolved[spec.name] = self._object(spec, spec.pose.se3(), self.sources.world_dir)
+                resolved[spec.name] = self._object(spec, pose, self.sources.world_dir)
             except ObjectUnusableError as unusable:
                 problems.append(f"object '{spec.name}': {unusable}")
                 self.problems.add_unusable(spec.name)
@@ -174,9 +179,12 @@ class _Compiler:
             )
         return resolved
 
-    def _start_pose(self, spec: ObjectSpec, loc: Loc) -> SE3:
+    def _start_pose(self, spec: ObjectSpec, loc: Loc, objects: Mapping[str, WorldObject]) -> SE3:
+        """T_world_object of a pose in the world, a link, or an object that stands there before."""
         description = self.sources.description
         frame = spec.pose.frame
+        if frame in objects and frame != spec.name:
+            return objects[frame].pose @ spec.pose.se3()
         if frame in ("world", *description.link_names):
             start = description.start_positions()
             placed = SE3.identity()
@@ -184,7 +192,10 @@ class _Compiler:
                 placed = self.sources.kinematics.link_pose(start, frame)
             return placed @ spec.pose.se3()
         self.problems.unknown(
-            (*loc, "pose", "frame"), "frame", frame, ("world", *description.link_names)
+            (*loc, "pose", "frame"),
+            "frame",
+            frame,
+            ("world", *objects, *description.link_names),
         )
         return spec.pose.se3()
 

@@ -87,15 +87,15 @@ class RobotSpec(SpecModel):
     urdf: str | None = Field(
         default=None, description="The URDF file, by its path or as package://name/path."
     )
-    xacro: str | None = Field(default=None, description="The xacro file, rendered with `args`.")
+    xacro: str | None = Field(default=None, description="A xacro file, rendered with `args`.")
     args: dict[Name, Any] = Field(
-        default_factory=dict, description="The arguments of the xacro file, by name."
+        default_factory=dict, description="Arguments of the xacro files, `srdf` included."
     )
-    mjcf: str | None = Field(default=None, description="The MJCF file, as MuJoCo reads it.")
+    mjcf: str | None = Field(default=None, description="An MJCF file, as MuJoCo reads it.")
     srdf: str | None = Field(
         default=None,
-        description="The SRDF file with groups, states and allowed pairs, for `urdf`, `xacro` and "
-        "`mjcf`.",
+        description="SRDF file with groups, states and allowed pairs, for `urdf`, `xacro` or "
+        "`mjcf`; one with xacro elements is rendered with `args`.",
     )
     packages: tuple[str, ...] = Field(
         default=(), description="The folders where package:// is looked up and meshes may be read."
@@ -105,7 +105,8 @@ class RobotSpec(SpecModel):
     )
     tcp_link: Name | None = Field(
         default=None,
-        description="The link at the tool's centre; the default is the arm group's tip.",
+        description="The link at the tool's centre; default: a frame of the robot at its gripper's "
+        "pads (the end effector's parent or one named as a TCP first), else the arm group's tip.",
     )
     flange_link: Name | None = Field(
         default=None,
@@ -113,7 +114,8 @@ class RobotSpec(SpecModel):
     )
     gripper: str | None = Field(
         default=None,
-        description="A gripper mounted on the arm's flange; or the SRDF group of the arm's own.",
+        description="A gripper mounted on the arm's flange; or the SRDF group of the arm's own, "
+        "which is found by itself where one joint closes two sides.",
     )
     base: Pose = Field(default=Pose(), description="The pose of the base in the world.")
     kinematics: str | None = Field(

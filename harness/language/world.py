@@ -141,7 +141,9 @@ class ObjectSpec(SpecModel):
 
     name: Name = Field(description="The name of the object, unique in the scene.")
     pose: Pose = Field(
-        default=Pose(), description="The pose of the object at the start; its origin is its centre."
+        default=Pose(),
+        description="The pose of the object at the start; its origin is its centre. `frame` "
+        "may be an object that stands in the list before it.",
     )
     static: Flag = Field(default=False, description="Whether the object is fixed in the world.")
     box: BoxSpec | None = None

@@ -13,9 +13,11 @@ from harness.core.errors import RobotError, RobotOptionError
 from harness.language.scenario import RobotSpec, StartState
 from harness.robot.compose import RobotPart
 from harness.robot.description import Joint, Link, PlanningGroup
-from harness.robot.gripper.inferred_gripper import NoGripperError, recognise
-from harness.robot.gripper.inferred_tcp import with_integrated_gripper
+from harness.robot.gripper.find_hand import hand_candidates, named_hand
+from harness.robot.gripper.inferred_gripper import IntegratedGripper, NoGripperError, recognise
+from harness.robot.gripper.inferred_tcp import tcp_without_gripper, with_integrated_gripper
 from harness.robot.groups import planning_groups
+from harness.robot.mimic_friction import with_reflected_friction
 from harness.robot.robot_yaml import RobotYaml
 from harness.robot.srdf.default_pairs import touching_pairs
 from harness.robot.srdf.srdf import Srdf
@@ -32,6 +34,9 @@ VELOCITY = {"prismatic": 0.2}
 
 TURNING_VELOCITY = 1.5
 """Velocity limit of revolute joints without one in the file [rad/s]."""
+
+DAMPED_SHARE = 0.5
+"""Share of a joint's effort that its damping may take at the velocity limit."""
 
 START_STATES = ("home", "ready", "start", "default", "init", "rest")
 """Names of start states of an imported arm, in order of preference."""
@@ -51,7 +56,8 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
         RobotError: There is no arm, or an option refers to an unknown name.
     """
     notes = [*urdf.notes, *srdf.notes]
-    urdf = replace(urdf, joints=tuple(_limited(joint, notes) for joint in urdf.joints))
+    joints = with_reflected_friction(urdf.joints)
+    urdf = replace(urdf, joints=tuple(_limited(joint, notes) for joint in joints))
     groups = planning_groups(srdf, urdf.joints, source)
     arm = _arm_group(spec, srdf, groups, source)
     for key in ("tcp_link", "flange_link"):
@@ -66,20 +72,15 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
             notes.append(
                 f"no allowed pairs are given; those that touch at the start are: {_listed(pairs)}"
             )
-    tcp_link, gripper = spec.tcp_link or tip, None
-    hand = _hand(spec, srdf, groups, arm)
-    if hand is not None:
-        try:
-            own = recognise(urdf, srdf, hand)
-            urdf, srdf, tcp_link = with_integrated_gripper(own, urdf, srdf, arm, tip, spec.tcp_link)
-            gripper = own.facts
-            notes += own.notes
-        except NoGripperError as error:
-            if spec.gripper is not None:
-                raise RobotOptionError(
-                    "gripper", f"'{spec.gripper}' is not a gripper: {error}"
-                ) from error
-            notes.append(f"'{hand.name}' is not used as a gripper: {error}")
+    gripper = None
+    own = _own_gripper(spec, urdf, srdf, groups, arm, notes)
+    if own is not None:
+        urdf, srdf, tcp_link = with_integrated_gripper(own, arm, tip, spec.tcp_link, notes)
+        gripper = own.facts
+    elif spec.tcp_link is not None or spec.gripper is not None:
+        tcp_link = spec.tcp_link or tip
+    else:
+        tcp_link = tcp_without_gripper(urdf, srdf, arm, tip)
     facts = RobotYaml(
         robot=path.stem[:100],
         kind="arm",
@@ -102,22 +103,34 @@ def names_integrated_gripper(name: str | None, srdf: Srdf) -> bool:
     return name in {group.name for group in srdf.groups} | {t.name for t in srdf.end_effectors}
 
 
-def _hand(
-    spec: RobotSpec, srdf: Srdf, groups: Mapping[str, PlanningGroup], arm: PlanningGroup
-) -> PlanningGroup | None:
-    """The group of the hand: the named one, or that of the arm's end effector."""
+def _own_gripper(
+    spec: RobotSpec,
+    urdf: Urdf,
+    srdf: Srdf,
+    groups: Mapping[str, PlanningGroup],
+    arm: PlanningGroup,
+    notes: list[str],
+) -> IntegratedGripper | None:
+    """The arm's own gripper: the named group, else the first group that is a gripper.
+
+    Raises:
+        RobotError: The named group is not a gripper.
+    """
     if spec.gripper is not None:
-        if not names_integrated_gripper(spec.gripper, srdf):
-            return None
-        tools = {tool.name: tool.group for tool in srdf.end_effectors}
-        hand = groups[tools.get(spec.gripper, spec.gripper)]
-        own = tuple(name for name in hand.joint_names if name not in arm.joint_names)
-        return replace(hand, joint_names=own)
-    for tool in srdf.end_effectors:
-        hand = groups.get(tool.group)
-        is_arms = tool.parent_group in ("", arm.name)
-        if hand is not None and is_arms and not set(hand.joint_names) & set(arm.joint_names):
-            return hand if hand.joint_names else None
+        hand = named_hand(spec.gripper, srdf, groups, arm)
+        try:
+            return None if hand is None else recognise(urdf, srdf, hand)
+        except NoGripperError as error:
+            raise RobotOptionError(
+                "gripper", f"'{spec.gripper}' is not a gripper: {error}"
+            ) from error
+    reasons: list[str] = []
+    for hand, with_hand in hand_candidates(urdf, srdf, groups, arm):
+        try:
+            return recognise(urdf, with_hand, hand)
+        except NoGripperError as error:
+            reasons.append(f"'{hand.name}' is not used as a gripper: {error}")
+    notes += reasons
     return None
 
 
@@ -139,6 +152,13 @@ def _limited(joint: Joint, notes: list[str]) -> Joint:
         unit = "m/s" if joint.kind == "prismatic" else "rad/s"
         notes.append(f"joint '{joint.name}' has no velocity limit: {velocity} {unit} is assumed")
         joint = replace(joint, velocity=velocity)
+    most = DAMPED_SHARE * joint.effort / joint.damping if joint.damping > 0 else np.inf
+    if joint.velocity > most:
+        notes.append(
+            f"joint '{joint.name}': its damping takes {joint.damping * joint.velocity:.3g} of its "
+            f"effort of {joint.effort:.3g} at {joint.velocity:.3g}; at most {most:.3g} is planned"
+        )
+        joint = replace(joint, velocity=most)
     return joint
 
 

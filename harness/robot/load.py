@@ -29,7 +29,7 @@ from harness.robot.options import with_moveit_files, with_options
 from harness.robot.packages import PackagePath
 from harness.robot.robot_collection import collected_robots
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml, robot_yaml_error
-from harness.robot.srdf.srdf import parse_srdf
+from harness.robot.srdf.read import read_srdf
 from harness.robot.urdf.urdf import parse_urdf
 from harness.robot.xacro.file import arguments_of, render, render_bundled
 
@@ -103,6 +103,9 @@ def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
     if spec.kinematics is not None:
         main = _calibrated(main, find_file(spec.kinematics, "kinematics", base_dir, ()))
     description = compose_robot(main, tool, spec.base.se3())
+    if spec.kinematics is not None:
+        note = f"the joints' poses are those of the calibration {spec.kinematics}"
+        description = replace(description, notes=(*description.notes, note))
     description, known = with_moveit_files(description, spec.moveit, base_dir)
     if spec.model is None and main is not None:
         description = with_possible_accelerations(description, known)
@@ -182,7 +185,8 @@ def _read(
     urdf = parse_urdf(text, folder, str(path), packages)
     urdf = replace(urdf, joints=tuple(_with_facts(joint, facts) for joint in urdf.joints))
     srdf_path = folder / facts.srdf
-    srdf = parse_srdf(_text(srdf_path), str(srdf_path))
+    around = PackagePath.of_file(srdf_path, packages.given)
+    srdf = read_srdf(srdf_path, _text(srdf_path), args, around)
     unknown = [*unknown_names(facts, urdf, srdf)]
     if unknown:
         raise robot_yaml_error(folder, unknown)

@@ -23,7 +23,7 @@ FILE = "robot.yaml"
 class JointFacts(JointLimits):
     """Limits of a joint that its URDF lacks or has wrong, with the source of the effort limit."""
 
-    effort_source: str = ""
+    effort_source: str = Field(default="", description="Source of `max_effort`, for reports.")
 
 
 class XacroFile(SpecModel):
@@ -33,32 +33,51 @@ class XacroFile(SpecModel):
     installed and has the variant among `mesh_variants`.
     """
 
-    file: str
-    variant_arg: Name | None = None
-    mesh_arg: Name | None = None
-    mesh_package: Name | None = None
-    mesh_variants: tuple[Name, ...] = ()
+    file: str = Field(description="Path from the folder.")
+    variant_arg: Name | None = Field(
+        default=None, description="Argument that gets the name of the variant."
+    )
+    mesh_arg: Name | None = Field(
+        default=None,
+        description="Argument that gets `true` where the meshes of a variant are installed.",
+    )
+    mesh_package: Name | None = Field(default=None, description="Python package with the meshes.")
+    mesh_variants: tuple[Name, ...] = Field(
+        default=(), description="Variants that it has meshes of."
+    )
 
 
 class FingerSide(SpecModel):
     """Links of one side of a gripper; `pad` is the one that touches objects."""
 
-    links: Annotated[tuple[Name, ...], Field(min_length=1)]
-    pad: Name
+    links: Annotated[tuple[Name, ...], Field(min_length=1)] = Field(
+        description="Links of the side."
+    )
+    pad: Name = Field(description="The one of them that touches objects.")
 
 
 class GripperFacts(SpecModel):
     """Two finger sides closed by one joint; efforts in N m or N at that joint."""
 
-    group: Name
-    joint: Name
-    palm_link: Name
-    sides: Annotated[dict[Name, FingerSide], Field(min_length=2, max_length=2)]
-    open_position: float
-    closed_position: float
-    grip_effort: Annotated[float, Field(gt=0)]
-    max_effort: Annotated[float, Field(gt=0)]
-    friction: Annotated[float, Field(ge=0)] = 1.0
+    group: Name = Field(description="Its SRDF group.")
+    joint: Name = Field(description="The joint that is driven; the others mimic it.")
+    palm_link: Name = Field(
+        description="The link that carries the fingers; of a single jaw also the pad of a side."
+    )
+    sides: Annotated[dict[Name, FingerSide], Field(min_length=2, max_length=2)] = Field(
+        description="The two sides by name."
+    )
+    open_position: float = Field(description="Position of the joint with the pads widest apart.")
+    closed_position: float = Field(description="Position of the joint with the pads closest.")
+    grip_effort: Annotated[float, Field(gt=0)] = Field(
+        description="Effort of the joint where a step states none [N m or N]."
+    )
+    max_effort: Annotated[float, Field(gt=0)] = Field(
+        description="Largest effort of the joint [N m or N]."
+    )
+    friction: Annotated[float, Field(ge=0)] = Field(
+        default=1.0, description="Sliding friction coefficient of the pads."
+    )
     widths: Annotated[tuple[tuple[float, Length], ...], Field(min_length=2)] = Field(
         description="Rows of joint position and gap between the pads [m], with rising position."
     )
@@ -67,43 +86,49 @@ class GripperFacts(SpecModel):
 class Placement(SpecModel):
     """A pose as position and roll, pitch, yaw."""
 
-    xyz: Xyz = (0.0, 0.0, 0.0)
-    rpy: Rpy = (0.0, 0.0, 0.0)
+    xyz: Xyz = Field(default=(0.0, 0.0, 0.0), description="Position [m].")
+    rpy: Rpy = Field(default=(0.0, 0.0, 0.0), description="Fixed-axis roll, pitch, yaw [rad].")
 
 
 class ToolCenterPoint(Placement):
     """A frame that a gripper adds, in its root link's axes."""
 
-    link: Name
-    joint: Name
+    link: Name = Field(description="Name of the frame.")
+    joint: Name = Field(description="Name of the fixed joint that holds it.")
 
 
 class Mount(Placement):
     """Pose of a gripper's root link on an arm's flange, and the gripper's TCP."""
 
-    joint: Name
-    tcp: ToolCenterPoint
+    joint: Name = Field(description="Name of the fixed joint between flange and gripper.")
+    tcp: ToolCenterPoint = Field(description="The gripper's TCP.")
 
 
 class Flange(Placement):
     """Flange for a gripper that replaces the arm's own one; grippers point along its +z."""
 
-    link: Name
+    link: Name = Field(description="The link that carries it.")
 
 
 class CameraFacts(CameraFields):
     """A camera on a link, with the parameters of SDF's sensor; it looks along its +x axis."""
 
-    link: Name
-    pose: Placement = Placement()
+    link: Name = Field(description="The link that carries the camera.")
+    pose: Placement = Field(default=Placement(), description="Its pose on the link.")
 
 
 class Tracking(SpecModel):
     """Tolerances of the trajectory controller [rad or m], and its settling time [s]."""
 
-    trajectory: Annotated[float, Field(gt=0)] = 0.2
-    goal: Annotated[float, Field(gt=0)] = 0.01
-    goal_time: Annotated[float, Field(ge=0)] = 1.0
+    trajectory: Annotated[float, Field(gt=0)] = Field(
+        default=0.2, description="Largest deviation of a joint on the way [rad or m]."
+    )
+    goal: Annotated[float, Field(gt=0)] = Field(
+        default=0.01, description="Largest deviation of a joint at the goal [rad or m]."
+    )
+    goal_time: Annotated[float, Field(ge=0)] = Field(
+        default=1.0, description="Time after the end of a motion until the goal is kept [s]."
+    )
 
 
 class RobotYaml(SpecModel):
@@ -114,32 +139,61 @@ class RobotYaml(SpecModel):
     `mount`. Both may have a `gripper` section.
     """
 
-    robot: Name
-    kind: Literal["arm", "gripper"]
-    description: str = ""
-    urdf: str | None = None
-    xacro: XacroFile | None = None
-    srdf: str
+    robot: Name = Field(description="Its name, in lists and messages.")
+    kind: Literal["arm", "gripper"] = Field(description="What the folder holds.")
+    description: str = Field(default="", description="For people.")
+    urdf: str | None = Field(default=None, description="URDF file, by its path from the folder.")
+    xacro: XacroFile | None = Field(default=None, description="A xacro file instead of `urdf`.")
+    srdf: str = Field(description="SRDF file, by its path from the folder; xacro is rendered.")
     packages: tuple[str, ...] = Field(
         default=(),
         description="Folders that are searched for package:// and from which meshes may be read.",
     )
-    variants: tuple[Name, ...] = ()
-    arm_group: Name | None = None
-    tcp_link: Name | None = None
-    flange_link: Name | None = None
-    flange: Flange | None = None
-    ik_solver: IkSolverName = "numeric"
-    start_state: StartState = StartState()
-    max_acceleration: Annotated[float, Field(gt=0)] = Field(
-        5.0, description="Acceleration limit of joints without one in `joints` [rad/s^2 or m/s^2]."
+    variants: tuple[Name, ...] = Field(
+        default=(), description="Names of the models of a family; each is a name for `model`."
     )
-    effort_source: str = Field("", description="Source of effort limits without one in `joints`.")
-    joints: dict[Name, JointFacts] = Field(default_factory=dict[str, JointFacts])
-    gripper: GripperFacts | None = None
-    mount: Mount | None = None
-    cameras: dict[Name, CameraFacts] = Field(default_factory=dict[str, CameraFacts])
-    tracking: Tracking = Tracking()
+    arm_group: Name | None = Field(
+        default=None, description="The arm's SRDF group; required of an arm."
+    )
+    tcp_link: Name | None = Field(
+        default=None, description="The link at the tool's centre; required of an arm."
+    )
+    flange_link: Name | None = Field(
+        default=None, description="The link on which grippers are mounted."
+    )
+    flange: Flange | None = Field(
+        default=None, description="Where a gripper goes that replaces the arm's own one."
+    )
+    ik_solver: IkSolverName = Field(
+        default="numeric",
+        description="Inverse kinematics; `auto`: the first of the others that fits.",
+    )
+    start_state: StartState = Field(
+        default=StartState(), description="Where the robot stands at the start of a run."
+    )
+    max_acceleration: Annotated[float, Field(gt=0)] = Field(
+        default=5.0,
+        description="Acceleration limit of joints without one in `joints` [rad/s^2 or m/s^2].",
+    )
+    effort_source: str = Field(
+        default="", description="Source of effort limits without one in `joints`."
+    )
+    joints: dict[Name, JointFacts] = Field(
+        default_factory=dict[str, JointFacts],
+        description="Limits that the URDF lacks or has wrong, by joint.",
+    )
+    gripper: GripperFacts | None = Field(
+        default=None, description="The fingers, of an arm or a gripper."
+    )
+    mount: Mount | None = Field(
+        default=None, description="How a gripper is mounted; required of one."
+    )
+    cameras: dict[Name, CameraFacts] = Field(
+        default_factory=dict[str, CameraFacts], description="Cameras on links, by name."
+    )
+    tracking: Tracking = Field(
+        default=Tracking(), description="Tolerances of the trajectory controller."
+    )
 
     @model_validator(mode="after")
     def _whole(self) -> RobotYaml:

@@ -4,13 +4,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cache
 from typing import Any
 
 import numpy as np
 
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
+from harness.core.types import FloatArray
 from harness.robot.mesh_file import convex_hull, exact_surface
+
+DOT = 1e-6
+"""Radius of the sphere that stands for a point, since Coal has none [m]."""
 
 
 def coal_geometry(shape: Shape) -> Any:
@@ -37,6 +42,27 @@ def coal_geometry(shape: Shape) -> Any:
             return coal.Halfspace(np.array([0.0, 0.0, 1.0]), 0.0)
         case Mesh() as mesh:
             return exact_surface(mesh) if mesh.exact else convex_hull(mesh)
+
+
+def box_corners(solid: Any) -> FloatArray:
+    """Corners of the box around one of Coal's geometries, along its own axes, shape (8, 3) [m]."""
+    solid.computeLocalAABB()
+    low, high = np.array(solid.aabb_local.min_), np.array(solid.aabb_local.max_)
+    return np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
+
+
+def distance_to_point(shapes: Iterable[Shape], point: FloatArray) -> float:
+    """Distance between a point and the nearest of a body's shapes, 0 inside one [m]."""
+    import coal
+
+    dot, at = coal.Sphere(DOT), coal.Transform3s(np.eye(3), np.asarray(point, dtype=float))
+    nearest = np.inf
+    for shape in shapes:
+        placed = coal.Transform3s(np.asarray(shape.pose.rotation), shape.pose.translation)
+        result, request = coal.DistanceResult(), coal.DistanceRequest()
+        coal.distance(coal_geometry(shape), placed, dot, at, request, result)
+        nearest = min(nearest, float(result.min_distance))
+    return max(nearest, 0.0)
 
 
 @cache

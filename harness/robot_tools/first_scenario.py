@@ -3,85 +3,103 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from string import Template
 
-import numpy as np
-
-from harness.core.types import FloatArray
-from harness.planning.collision.pair_statistics import sample_robot_positions
-from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.description import RobotDescription
 from harness.robot_tools.robot_source import RobotSource, load_source
+from harness.robot_tools.scenario_candidates import Candidates
 from harness.session.check import check_file
+from harness.session.run_case import run_case
+from harness.session.run_request import RunRequest
 
 TEMPLATES = Path(__file__).parent / "templates"
-SAMPLES = 500
-"""Random configurations from which the reach is known."""
-
-DISTANCES, HEIGHTS = (0.5, 0.6, 0.4, 0.7), (0.2, 0.1, 0.35, 0.5)
-"""Where the box is tried: from the base and over the floor, in parts of the reach."""
-
-CLEAR = 0.25
-"""How far the box is from where the hand starts, in parts of the reach."""
-
-THICK = 0.1
-"""Half of what an arm is thick, in parts of its reach."""
-
-HEADINGS = (0.0, 0.5 * math.pi, -0.5 * math.pi)
-WIDEST_BOX, TALLEST_BOX = 0.05, 0.08  # [m]
-MOTIONS = 10
+MOST_RUNS = 3
+"""Scenarios of a kind that are run; each takes seconds."""
 
 
 @dataclass(frozen=True)
 class FirstScenario:
-    """A scenario that was checked.
+    """A scenario that was checked and run.
 
     Attributes:
         text: The text of the file.
-        trouble: What `harness check` still says of it; empty when nothing.
+        trouble: Why it does not pass; empty when it passes.
+        no_pick: Why it is a motion and no pick; empty for a pick.
     """
 
     text: str
     trouble: str = ""
+    no_pick: str = ""
 
 
-def first_scenario(source: RobotSource, file: Path) -> FirstScenario:
-    """A scenario that `harness check` finds nothing wrong with, if one can be found.
+def first_scenario(
+    source: RobotSource, file: Path, progress: Callable[[str], None] = lambda _: None
+) -> FirstScenario:
+    """A scenario that passes, if one can be found.
 
     Args:
         source: The source of the robot.
         file: Where it will be: robots' files are named from its folder, and candidates are
-            written next to it, and removed again.
+            written next to it and removed again.
+        progress: Called with a text whenever another candidate is tried.
 
     Raises:
-        SpecError: A file of the robot is invalid.
+        SpecError: A file of the robot has mistakes.
         RobotError: The robot is not known, or its files cannot be used.
     """
     description = load_source(source)
+    candidates = Candidates(description)
     words = {
         "name": description.name,
         "title": _text(f"First steps of {description.name}"),
-        "robot": _robot_words(source, file.parent),
+        "robot": _robot_words(source, file.parent) + candidates.start_state(),
     }
-    candidate = file.with_name(f".{file.name}")
+    no_pick = _why_no_gripper(description)
     trouble = text = ""
+    for template, numbers in (("pick", candidates.picks()), ("move", candidates.motions())):
+        tried = runs = 0
+        for each in numbers:
+            text = _filled(template, {**words, **each})
+            tried += 1
+            progress(f"  trying {'a pick' if template == 'pick' else 'a motion'}, number {tried}")
+            trouble, has_run = _trouble(text, file.with_name(f".{file.name}"))
+            if not trouble:
+                return FirstScenario(text, no_pick="" if template == "pick" else no_pick)
+            runs += has_run
+            if runs == MOST_RUNS:
+                break
+        if template == "pick" and tried:
+            no_pick = f"none of {tried} picks passes; the last: {trouble}"
+    return FirstScenario(text, trouble, no_pick)
+
+
+def _trouble(text: str, candidate: Path) -> tuple[str, bool]:
+    """Why a scenario does not pass, empty when it does; and whether it was run."""
     try:
-        for template, numbers in _candidates(description):
-            text = _filled(template, {**words, **numbers})
-            candidate.write_text(text, encoding="utf-8")
-            found = check_file(candidate)
-            if not found.problems and not found.predicted:
-                return FirstScenario(text)
-            trouble = (found.problems or found.predicted)[0].message
+        candidate.write_text(text, encoding="utf-8")
+        found = check_file(candidate)
+        if found.problems or found.predicted:
+            return (found.problems or found.predicted)[0].message, False
+        result = run_case(RunRequest(candidate, stills=False))
     finally:
         candidate.unlink(missing_ok=True)
-    return FirstScenario(text, trouble)
+    if result.outcome == "passed":
+        return "", True
+    failed = [step.message for step in result.steps if step.message]
+    judged = [f"{each.expectation}: {each.reason}" for each in result.verdicts]
+    return (failed or [*judged, result.message])[0], True
+
+
+def _why_no_gripper(description: RobotDescription) -> str:
+    if description.gripper is not None:
+        return ""
+    reasons = [note for note in description.notes if "is not used as a gripper" in note]
+    return (reasons or ["no joint that the arm carries closes two sides of a gripper"])[0]
 
 
 def _filled(template: str, words: Mapping[str, str]) -> str:
@@ -112,79 +130,3 @@ def _robot_words(source: RobotSource, folder: Path) -> str:
 def _text(value: str) -> str:
     """A text as YAML, in quotes where it needs them."""
     return value if re.fullmatch(r"[A-Za-z./~][\w ./:+()-]*", value) else json.dumps(value)
-
-
-def _candidates(description: RobotDescription) -> Iterator[tuple[str, dict[str, str]]]:
-    """Templates and what fills them, the likeliest first."""
-    positions = sample_robot_positions(description, SAMPLES, np.random.default_rng(0))
-    kinematics = PinocchioKinematics(description)
-    links = (description.base_link, description.tcp_link)
-    poses = kinematics.link_poses(positions, links)[:, :, :3]
-    reach = float(np.linalg.norm(poses[:, 1] - poses[:, 0], axis=1).max())
-    base = _base_height(description, kinematics, reach)
-    if description.gripper is not None and description.arm_group:
-        opening = float(description.gripper.widths[:, 1].max())
-        hand = kinematics.link_pose(description.start_positions(), description.tcp_link)
-        for place in _places(reach):
-            if np.linalg.norm(np.array(place) - hand.translation) > CLEAR * reach:
-                yield "pick", _pick(place, base, reach, opening)
-    for numbers in _motions(description, positions[:MOTIONS]):
-        yield "move", {"base": f"{base:g}", **numbers}
-
-
-def _base_height(
-    description: RobotDescription, kinematics: PinocchioKinematics, reach: float
-) -> float:
-    """How high the base stands so that the arm does not begin in the floor [m]."""
-    links = [joint.child for joint in description.movable_joints][2:]
-    poses = [kinematics.link_pose(description.start_positions(), link) for link in links]
-    lowest = min((float(pose.translation[2]) for pose in poses), default=reach) - THICK * reach
-    return 0.0 if lowest > 0 else math.ceil(10 * (0.1 - lowest)) / 10
-
-
-def _places(reach: float) -> Iterator[tuple[float, float, float]]:
-    """Middles of the stand's top, seen from the base, the likeliest first."""
-    for heading in HEADINGS:
-        for share in HEIGHTS:
-            for distance in DISTANCES:
-                x, y = (distance * reach * turn for turn in (math.cos(heading), math.sin(heading)))
-                yield round(x, 2), round(y, 2), round(share * reach, 2)
-
-
-def _pick(
-    place: tuple[float, float, float], base: float, reach: float, opening: float
-) -> dict[str, str]:
-    """What fills the template: a box on a stand, its size by the gripper's opening."""
-    x, y, top = place[0], place[1], base + place[2]
-    width = math.floor(1e3 * min(WIDEST_BOX, 0.6 * opening)) / 1e3
-    height = min(TALLEST_BOX, 2.0 * width)
-    travel = round(min(0.1, 0.1 * reach), 2)
-    numbers = {
-        "base": base,
-        "x": x,
-        "y": y,
-        "stand": round(min(0.2, 0.25 * reach), 2),
-        "stand_height": top,
-        "stand_middle": top / 2,
-        "box_middle": top + height / 2,
-        "width": width,
-        "height": height,
-        "travel": travel,
-        "above": travel / 2,
-    }
-    return {key: f"{value + 0.0:.4g}" for key, value in numbers.items()}
-
-
-def _motions(description: RobotDescription, positions: FloatArray) -> Iterator[dict[str, str]]:
-    """Goals of the arm between its start and random configurations."""
-    start = description.start_positions()
-    names = description.groups[description.arm_group].joint_names if description.arm_group else ()
-    places = [description.joint_index[name] for name in names]
-    for row in positions:
-        goal = start + 0.4 * (row - start)
-        yield {
-            word: "{"
-            + ", ".join(f"{n}: {values[i]:.3f}" for n, i in zip(names, places, strict=True))
-            + "}"
-            for word, values in (("goal", goal), ("start", start))
-        }

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.planning.collision.pair_statistics import (
     REASONS,
@@ -94,7 +95,13 @@ def _findings(
         free = positions[touches.is_free]
         yield look_at.reach(description, kinematics, free)
         if len(free):
-            yield look_at.inverse_kinematics(try_ik(kinematics, free[:IK_SAMPLES], seed))
+            try:
+                trial = try_ik(kinematics, free[:IK_SAMPLES], seed)
+            except PlanningFailed as error:  # joints outside the group move the TCP as well
+                text = f"not tried, there are no pose goals: {error.message}"
+                yield RobotFinding("inverse kinematics", text)
+            else:
+                yield look_at.inverse_kinematics(trial)
 
 
 def _groups(description: RobotDescription) -> tuple[GroupLine, ...]:

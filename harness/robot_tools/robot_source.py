@@ -19,10 +19,10 @@ from harness.language.scenario import RobotSpec
 from harness.robot.description import RobotDescription
 from harness.robot.find_file import find_file
 from harness.robot.load import load_robot
+from harness.robot.xacro.file import is_xacro
 
 ROBOT_YAML = "robot.yaml"
 KINDS = {".urdf": "urdf", ".xacro": "xacro", ".xml": "mjcf", ".mjcf": "mjcf"}
-XACRO_PREFIX = "xacro:"
 OPTIONS = {
     "srdf": "--srdf",
     "packages": "--package-path",
@@ -74,8 +74,7 @@ class RobotSource:
             return kind
         if root.tag == "mujoco":
             return "mjcf"
-        is_xacro = any(item.tag.startswith(XACRO_PREFIX) for item in root.walk())
-        return "xacro" if is_xacro else "urdf"
+        return "xacro" if is_xacro(root) else "urdf"
 
     @property
     def has_no_srdf(self) -> bool:
@@ -84,9 +83,11 @@ class RobotSource:
 
     @property
     def own_name(self) -> str:
-        """What a URDF file that can be read calls its robot; else empty."""
-        root = self._root() if self.kind == "urdf" else None
-        return "" if root is None else root.get("name")
+        """The robot's name in a file that can be read, unless xacro computes it; else empty."""
+        if self.kind not in KINDS.values() or (root := self._root()) is None:
+            return ""
+        name = root.get("model" if root.tag == "mujoco" else "name")
+        return "" if "$" in name else name
 
     def words(self) -> dict[str, Any]:
         """What a scenario's `robot:` would say, not of a scenario."""

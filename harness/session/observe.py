@@ -8,6 +8,7 @@ from harness.core.activity import Activity
 from harness.engine.execute import Execution
 from harness.observation.beliefs import believed_poses
 from harness.observation.contacts import contact_records
+from harness.observation.couplings import coupling_findings
 from harness.observation.tracking import as_commanded, plan_against_physics
 from harness.recording.run import Finding, MeshRecord, Run, Signals
 from harness.session.pictures import camera_pictures, with_picture_names
@@ -83,6 +84,7 @@ def _compared_with_plan(prepared: Prepared, run: Run) -> tuple[Signals, tuple[Fi
         planned,
         lambda signals: observer.distances(signals, run.objects, run.attachments, cutoff),
     )
+    findings = (*findings, *coupling_findings(run, prepared.program.description))
     if not prepared.observations.planned_clearances:
         return run.signals, findings
     observed = observer.observe(planned, run.objects, run.attachments, cutoff)

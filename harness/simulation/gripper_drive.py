@@ -18,6 +18,9 @@ from harness.simulation.set_points import SetPoints, ramp
 CLOSING_SPEED = 0.075
 """Rate at which the pad gap changes [m/s]; RH-P12-RN(A) specification table, ROBOTIS e-manual."""
 
+VELOCITY_SHARE = 0.95
+"""Share of the joint's velocity limit that is commanded at most, for what the servo overshoots."""
+
 GOAL_TOLERANCE = 0.004
 """Largest position error at which the joint has reached its goal, as a share of its range."""
 
@@ -170,7 +173,7 @@ class GripperDrive:
 
 def joint_speed(description: RobotDescription, gripper: Gripper) -> float:
     """Speed of the gripper's joint that changes the pad gap at CLOSING_SPEED, within its limit."""
-    limit = description.joint_by_name[gripper.joint].velocity
+    limit = VELOCITY_SHARE * description.joint_by_name[gripper.joint].velocity
     positions, gaps = gripper.widths[:, 0], gripper.widths[:, 1]
     if len(positions) < 2:
         return min(limit, abs(gripper.closed_position - gripper.open_position))

@@ -6,7 +6,8 @@ import pytest
 
 from harness.cli.main import main
 from harness.language.reading.load import load_scenario
-from tests.robot.arm_files import write_arm
+from tests.robot.arm_files import SRDF, URDF, write_arm
+from tests.robot.test_own_gripper import JAW, SIX, SIX_SRDF, SIX_WITH_JAW
 
 FILE = Path("sub/first.scenario.yaml")
 
@@ -31,7 +32,7 @@ def runs(capsys):
 def test_an_arm_with_a_gripper_gets_a_pick_that_passes(capsys):
     scenario = new("ur3e", "--gripper", "rh_p12_rn_a")
     assert scenario.steps[0].verb == "pick"
-    assert "no steps were found" not in capsys.readouterr().out
+    assert "it was run once and passed" in capsys.readouterr().out
     code, said = runs(capsys)
     assert code == 0, said
 
@@ -47,6 +48,62 @@ def test_an_arm_without_a_gripper_gets_a_motion_and_its_files_are_found_from_the
     assert (scenario.robot.urdf, scenario.robot.srdf) == ("../arm.urdf", "../arm.srdf")
     assert scenario.robot.packages == ("..",)
     assert [step.verb for step in scenario.steps] == ["move_to", "move_to"]
+    code, said = runs(capsys)
+    assert code == 0, said
+
+
+def test_a_motion_says_why_it_is_no_pick_and_that_it_passed(capsys):
+    new("arm.urdf", "--srdf", "arm.srdf")
+    said = capsys.readouterr().out
+    assert "it is a motion and no pick: no joint that the arm carries closes two sides" in said
+    assert "it was run once and passed" in said
+
+
+@pytest.mark.parametrize("urdf", [SIX, SIX_WITH_JAW], ids=["fingers", "jaw"])
+def test_a_gripper_without_an_srdf_gets_a_pick_that_passes(capsys, folder, urdf):
+    write_arm(folder, urdf)
+    assert new("arm.urdf").steps[0].verb == "pick"
+    code, said = runs(capsys)
+    assert code == 0, said
+
+
+def test_a_hand_that_does_not_close_is_named(capsys, folder):
+    still = JAW.replace("0 1 0", "0 0 1")
+    assert still != JAW
+    write_arm(folder, SIX_WITH_JAW.replace(JAW, still))
+    assert new("arm.urdf").steps[0].verb == "move_to"
+    assert "no pick: 'gripper' is not used as a gripper: the gap" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("start", ["1.23456789", "-1.23456789"])
+def test_goals_stay_inside_limits_that_rounding_would_exceed(capsys, folder, start):
+    """The robot starts on a limit of many digits."""
+    limits = 'lower="-1.23456789" upper="1.23456789"'
+    urdf = URDF.replace('lower="-2" upper="2"', limits)
+    assert urdf != URDF
+    write_arm(folder, urdf, SRDF.replace('"bend" value="0.7"', f'"bend" value="{start}"'))
+    scenario = new("arm.urdf", "--srdf", "arm.srdf")
+    assert all(abs(step.joints["bend"]) < 1.2345 for step in scenario.steps)
+    code, said = runs(capsys)
+    assert code == 0, said
+
+
+@pytest.mark.parametrize("bend", ["3.1", "2.9"])
+def test_a_robot_that_starts_in_collision_gets_a_start_that_is_free(capsys, folder, bend):
+    """All joints at zero, or the only named state, is in collision."""
+    srdf = SIX_SRDF.replace(
+        "</robot>",
+        '<group_state name="home" group="manipulator">'
+        f'<joint name="c_joint" value="{bend}"/></group_state>'
+        '<disable_collisions link1="left" link2="right" reason="Never"/></robot>',
+    )
+    box = '<collision><geometry><box size="0.08 0.08 0.1"/></geometry></collision>'
+    urdf = SIX
+    for link in ("b", "c", "d"):
+        urdf = urdf.replace(f'<link name="{link}">', f'<link name="{link}">{box}')
+    write_arm(folder, urdf, srdf)
+    scenario = new("arm.urdf", "--srdf", "arm.srdf")
+    assert scenario.robot.start_state is not None
     code, said = runs(capsys)
     assert code == 0, said
 

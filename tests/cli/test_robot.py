@@ -311,3 +311,45 @@ def test_a_scenario_and_a_folder_name_a_robot_too(folder, capsys):
         code, page = check(capsys, word)
         assert code == 0
         assert "manipulator (the arm): 3 joints, base_link to tool" in page
+
+
+def test_a_gripper_alone_is_checked_without_pose_goals(capsys, folder):
+    """Its longest chain ends at a finger that mimics the driven joint."""
+    joint = (
+        '<joint name="{0}_joint" type="revolute"><parent link="{1}"/><child link="{0}"/>'
+        f'<origin xyz="0 0 0.05"/><axis xyz="1 0 0"/>{LIMIT}{{2}}</joint>'
+        f'<link name="{{0}}">{INERTIAL}</link>'
+    )
+    first = joint.format("knuckle", "palm", "")
+    second = joint.format("tip", "knuckle", '<mimic joint="knuckle_joint"/>')
+    text = f'<robot name="hand"><link name="palm">{INERTIAL}</link>{first}{second}</robot>'
+    (folder / "hand.urdf").write_text(text)
+    code, page = check(capsys, "hand.urdf")
+    assert code == 0, page
+    assert "inverse kinematics: not tried, there are no pose goals: link 'tip'" in page
+
+
+XMLNS = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+BODY = """<body name="{0}" pos="0 0 0.2"><joint name="{0}_joint" axis="0 {1} 1" range="-1 1"/>
+  <geom type="box" size="0.02 0.02 0.05" pos="0 0 0.1"/>{2}</body>"""
+OWN_MJCF = f"""<mujoco model="two_links"><compiler angle="radian"/><worldbody>
+  {BODY.format("a", 0, BODY.format("b", 1, ""))}</worldbody></mujoco>"""
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "name"),
+    [
+        ("arm.urdf", URDF, "three"),
+        (
+            "arm.xacro",
+            URDF.replace("<robot ", '<robot xmlns:xacro="http://ros.org/xacro" '),
+            "three",
+        ),
+        ("own.xml", OWN_MJCF, "two_links"),
+    ],
+)
+def test_a_written_srdf_has_the_name_of_the_robot_in_its_file(capsys, folder, file, text, name):
+    (folder / file).write_text(text, encoding="utf-8")
+    code, page = check(capsys, file, "--write-srdf", "new.srdf")
+    assert code == 0, page
+    assert f'<robot name="{name}">' in (folder / "new.srdf").read_text(encoding="utf-8")

@@ -15,6 +15,7 @@ from harness.planning.timing.profiles import (
     straight_curve,
 )
 from harness.planning.timing.timing import Limits, time_blended, time_stopping, time_straight
+from harness.simulation.set_points import sample_trajectory
 
 NAMES = tuple("abcdef")
 LIMITS = Limits.scaled(np.full(6, np.pi), np.full(6, 5.0), 0.3, 0.3)
@@ -131,3 +132,32 @@ def test_a_smoothed_curve_is_its_running_mean():
     for time in (0.05, 0.3, 1.0, profile.duration + 0.1):
         window = (fine >= time - 0.2) & (fine <= time)
         assert mean(np.array([time]))[0][0, 0] == pytest.approx(values[window].mean(), abs=1e-5)
+
+
+@pytest.mark.parametrize("scaling", [1.0, 0.9, 0.3])
+@pytest.mark.parametrize("count", [2, 3, 6])
+def test_commands_between_set_points_keep_the_joints_accelerations(scaling, count):
+    """The simulator interpolates the set points by cubics at every physics step."""
+    rng = np.random.default_rng(count)
+    joints = np.array([5.0, 3.0, 5.0, 8.0, 5.0, 2.0])
+    limits = Limits.scaled(np.full(6, np.pi), joints, scaling, scaling)
+    for _ in range(5):
+        waypoints = rng.uniform(-1.0, 1.0, (count, 6))
+        if count == 2:
+            trajectory = time_straight(NAMES, *waypoints, limits)
+        else:
+            trajectory = time_blended(NAMES, waypoints, limits, 0.05)
+        commands = sample_trajectory(trajectory, 0.001)
+        assert (np.abs(commands.accelerations) <= joints * (1 + 1e-6)).all()
+        changes = np.abs(np.diff(commands.velocities, axis=0)) / 0.001
+        assert (changes <= joints * (1 + 1e-6)).all()
+
+
+def test_a_scaled_motion_whose_commands_keep_the_limits_is_not_slowed():
+    waypoints = np.array([np.zeros(6), np.full(6, 0.7), np.linspace(0, 1, 6)])
+    scaled = Limits.scaled(np.full(6, np.pi), np.full(6, 5.0), 0.3, 0.3)
+    free = replace(scaled, commanded=None)
+    for limits in (scaled, free):
+        assert time_blended(NAMES, waypoints, limits, 0.05).duration == pytest.approx(
+            time_blended(NAMES, waypoints, scaled, 0.05).duration, abs=0
+        )

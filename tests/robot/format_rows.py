@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from harness.robot.description import RobotDescription
+from tests.robot.arm_files import INERTIAL as MASS
 from tests.robot.arm_files import LIMIT, SHAPE
 
 Holds = Callable[[RobotDescription], object]
@@ -85,6 +86,7 @@ def shape(arm: RobotDescription):
     return type(link(arm, "upper").collisions[0].geometry).__name__
 
 
+LINK_UPPER = '<link name="upper">'
 CYLINDER = '<cylinder radius="0.03" length="0.14"/>'
 VISUAL = '<visual><geometry>{}</geometry><material name="red"/></visual>'
 RED = '<color rgba="1 0 0 1"/>'
@@ -109,6 +111,9 @@ URDF_ROWS = (
           'izz="0.002"', 'izz="0.9"',
           lambda arm: any("no body has the principal moments" in note for note in arm.notes)),
     refused("a mass below zero", "", '<mass value="1"/>', '<mass value="-1"/>', "weighs -1 kg"),
+    read("no `<inertial>`", "where a joint moves it: 1000 kg/m^3 of its shapes, reported",
+          LINK_UPPER + MASS, LINK_UPPER,
+          lambda arm: abs(link(arm, "upper").inertial.mass - 0.396) < 1e-3),
     refused("a mass of zero", "where a joint moves it", '<mass value="1"/>', '<mass value="0"/>',
              "moves and weighs nothing"),
     read("`<collision>`, `<visual>`", "each with its `<origin>`", SHAPE, SHAPE + SHAPE,
@@ -202,7 +207,14 @@ def joints(arm: RobotDescription, group: str = "manipulator") -> tuple[str, ...]
     return arm.groups[group].joint_names if group in arm.groups else ()
 
 
+XACRO_STATE = (
+    '<xacro:property xmlns:xacro="http://www.ros.org/wiki/xacro" name="angle" value="${pi / 8}"/>'
+    '<group_state name="home" group="manipulator"><joint name="turn" value="${angle}"/>'
+)
 SRDF_ROWS = (
+    read("xacro elements", "rendered with `args`, by the rules of xacro files",
+          '<group_state name="home" group="manipulator">\n    <joint name="turn" value="0.1"/>',
+          XACRO_STATE, lambda arm: abs(arm.start_state["turn"] - 0.392699) < 1e-6),
     read("`<group>` of a `<chain>`", "pose goals refer to its tip", GROUP,
           GROUP.replace("tool", "lower"), lambda arm: joints(arm) == ("turn", "bend")),
     read("of `<joint>`s", "", GROUP,
@@ -230,7 +242,7 @@ SRDF_ROWS = (
              BENT, BENT + '<joint name="held" value="0 0 1"/>'),
     read("`<end_effector>`", "a gripper, if one joint closes two sides; else reported", END,
           TOOL.format("hand") + '<group name="hand"><joint name="left_joint"/></group>' + END,
-          lambda arm: arm.gripper is not None),
+          lambda arm: arm.gripper.group == "hand"),
     read("`<virtual_joint>`", "fixed; floating and planar count as fixed, reported",
           '"held" type="fixed"',
           '"held" type="floating"',

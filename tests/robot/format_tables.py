@@ -63,7 +63,11 @@ TABLES: dict[str, tuple[str, str, tuple[Row, ...]]] = {
         " included files too.",
         XACRO_ROWS,
     ),
-    "arm.srdf": ("SRDF", "`robot: {srdf: ...}`, with any of the others", SRDF_ROWS),
+    "arm.srdf": (
+        "SRDF",
+        "`robot: {srdf: ...}` with a URDF, xacro or MJCF file; one in xacro takes `args:` too",
+        SRDF_ROWS,
+    ),
     "arm.xml": ("MJCF", "`robot: {mjcf: ...}`", MJCF_ROWS),
     "limits.yaml": (
         "MoveIt: joint_limits.yaml",

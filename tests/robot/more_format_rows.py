@@ -117,7 +117,12 @@ MJCF_ROWS = (
     ignored("`<sensor>`", "reported", EQUALITY,
             '<sensor><jointpos joint="pan"/></sensor>' + EQUALITY,
             "1 sensors are ignored"),
-    ignored("`<tendon>`", "reported", EQUALITY,
+    read("a fixed `<tendon>` of two joints, with an actuator", "the second follows the first",
+         "<actuator>", '<tendon><fixed name="t"><joint joint="pan" coef="1"/>'
+         '<joint joint="lift" coef="-2"/></fixed></tendon><actuator><motor tendon="t"/>',
+         lambda arm: arm.joint_by_name["lift"].mimic.multiplier == -2
+         if arm.joint_by_name["lift"].mimic else False),
+    ignored("`<tendon>` otherwise", "reported", EQUALITY,
             '<tendon><fixed><joint joint="pan" coef="1"/></fixed></tendon>' + EQUALITY,
             "1 tendons are ignored"),
     ignored("geoms of the world", "reported", WORLD, WORLD + '<geom size="1"/>',

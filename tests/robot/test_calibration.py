@@ -57,6 +57,11 @@ def test_the_flange_moves_by_the_right_amount(tmp_path):
     assert 0.001 < np.linalg.norm(here.translation - there.translation) < 0.02
 
 
+def test_the_calibration_is_named_in_the_notes(tmp_path):
+    write(tmp_path, SECTIONS)
+    assert "the joints' poses are those of the calibration arm.yaml" in load(tmp_path).notes
+
+
 def test_planner_and_physics_are_calibrated_alike(tmp_path):
     write(tmp_path, SECTIONS)
     arm = load(tmp_path)

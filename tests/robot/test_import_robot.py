@@ -91,6 +91,7 @@ def test_a_root_called_world_stands_in_the_harness_world(tmp_path):
     )
     arm = load_arm(tmp_path, base={"xyz": [0, 0, 1]})
     assert arm.link_names[:3] == ("world", "robot_world", "upper")
+    assert any("the link 'world' is called 'robot_world' here" in note for note in arm.notes)
     assert arm.joints[0].pose.translation[2] == 1
 
 
@@ -210,3 +211,16 @@ def test_an_imported_arm_is_carried_by_feed_forward(tmp_path):
     efforts = np.abs(saved.signals.joint_efforts).max(axis=0)
     assert efforts[1] > 5, "gravity pulls"
     assert np.nanmax(errors) < 1e-3
+
+
+@pytest.mark.parametrize(("damping", "velocity"), [("0", 2), ("5", 2), ("10", 1.5), ("100", 0.15)])
+def test_damping_leaves_half_of_the_effort_at_the_velocity_limit(tmp_path, damping, velocity):
+    """A motion at a velocity whose damping exceeds the effort limit could not be followed."""
+    limit = '<limit lower="-2" upper="2" velocity="2" effort="30"/>'
+    damped = URDF.replace(limit, f'{limit}<dynamics damping="{damping}"/>')
+    assert damped != URDF
+    write_arm(tmp_path, damped)
+    arm = load_arm(tmp_path)
+    assert arm.joint_by_name["bend"].velocity == pytest.approx(velocity)
+    reported = any("'bend': its damping takes" in note for note in arm.notes)
+    assert reported == (velocity < 2)

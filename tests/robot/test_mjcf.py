@@ -120,3 +120,56 @@ def test_a_file_that_cannot_be_used_is_refused_at_its_place(tmp_path, old, new, 
         load(tmp_path)
     for word in words:
         assert word in str(caught.value)
+
+
+@pytest.mark.parametrize("moments", ["0 0 0", "0 1e-4 1e-4", "1e-4 0 1e-4"])
+def test_a_fixed_body_without_inertia_gets_the_least_possible(tmp_path, moments):
+    """MuJoCo accepts zero moments where a joint moves the body together with others."""
+    plate = f"""<body name="plate"><inertial pos="0 0 0" mass="0.1" diaginertia="{moments}"/>
+      <geom type="box" size="0.02 0.02 0.01"/></body>"""
+    inertial = '<inertial pos="0 0 0" mass="1" diaginertia="0.01 0.01 0.01"/>'
+    text = f"""<mujoco><worldbody><body name="a">{inertial}<joint name="j" range="-1 1"/>
+      <geom type="box" size="0.05 0.05 0.05"/>{plate}</body></worldbody></mujoco>"""
+    (tmp_path / "arm.xml").write_text(text)
+    arm = load_robot(RobotSpec.model_validate({"mjcf": "arm.xml"}), tmp_path)
+    assert any(note.startswith("link 'plate': no body has") for note in arm.notes)
+    assert bare_robot(arm).compile().body("plate").mass == pytest.approx(0.1)
+
+
+FINGERS = """<mujoco><compiler angle="radian"/><worldbody><body name="a">
+  <joint name="turn" axis="0 0 1" range="-1 1"/><geom type="box" size="0.02 0.02 0.05"/>
+  <body name="b" pos="0 0 0.3"><joint name="bend" axis="0 1 0" range="-1 1"/>
+    <geom type="box" size="0.02 0.02 0.05"/>
+  <body name="c" pos="0 0 0.3"><joint name="roll" axis="0 0 1" range="-1 1"/>
+    <geom type="box" size="0.02 0.02 0.05"/><site name="pinch" pos="0 0 0.16"/>
+  <body name="left" pos="0 0.01 0.1"><joint name="l" type="slide" axis="0 1 0" range="0 0.04"/>
+    <geom type="box" size="0.01 0.005 0.03" pos="0 0 0.04"/></body>
+  <body name="right" pos="0 -0.01 0.1"><joint name="r" type="slide" axis="0 {axis} 0" {range}/>
+    <geom type="box" size="0.01 0.005 0.03" pos="0 0 0.04"/></body>
+  </body></body></body></worldbody>
+  <tendon><fixed name="both"><joint joint="l" coef="{coef}"/><joint joint="r" coef="{other}"/>
+  </fixed></tendon>
+  <actuator><position name="grip" tendon="both" forcerange="-60 60" kp="100"/></actuator>
+  {more}</mujoco>"""
+EQUAL = '<equality><joint joint1="r" joint2="l" polycoef="0 {0} 0 0 0"/></equality>'
+
+
+@pytest.mark.parametrize(
+    ("axis", "limits", "coef", "other", "more", "multiplier", "effort"),
+    [
+        (-1, "0 0.04", 0.5, 0.5, "", 1.0, 30),
+        (1, "-0.04 0", 0.25, -0.25, "", -1.0, 15),
+        (-1, "0 0.04", 0.5, 0.5, EQUAL.format(1), 1.0, 30),
+    ],
+)
+def test_fingers_on_one_tendon_are_a_gripper_and_a_site_its_tcp(
+    tmp_path, axis, limits, coef, other, more, multiplier, effort
+):
+    text = FINGERS.format(axis=axis, range=f'range="{limits}"', coef=coef, other=other, more=more)
+    (tmp_path / "arm.xml").write_text(text)
+    arm = load_robot(RobotSpec.model_validate({"mjcf": "arm.xml"}), tmp_path)
+    assert arm.groups["arm"].joint_names == ("turn", "bend", "roll")
+    assert (arm.gripper.joint, arm.tcp_link) == ("l", "pinch")
+    assert arm.joint_by_name["r"].mimic.multiplier == multiplier
+    assert arm.gripper.max_effort == pytest.approx(effort)
+    assert arm.gripper.widths[:, 1].max() == pytest.approx(0.09, abs=1e-6)

@@ -74,12 +74,68 @@ def test_the_tcp_is_halfway_between_the_pads(tmp_path):
     assert arm.joint_by_name["hand_tcp_joint"].pose.translation == pytest.approx([0, 0, 0.05])
 
 
-def test_a_frame_between_the_fingers_is_the_tcp_where_there_is_one(tmp_path):
-    frame = """<link name="grasp_point"/><joint name="g" type="fixed"><parent link="palm"/>
-    <child link="grasp_point"/><origin xyz="0 0 0.06"/></joint>"""
-    write(tmp_path, HAND + frame)
-    assert load_arm(tmp_path).tcp_link == "grasp_point"
+FRAME = """<link name="{0}">{2}</link><joint name="g" type="fixed"><parent link="palm"/>
+    <child link="{0}"/><origin xyz="{1}" rpy="0 0 1"/></joint>"""
+LIGHT = """<inertial><mass value="0.001"/><inertia ixx="1e-6" iyy="1e-6" izz="1e-6"/></inertial>"""
+
+
+@pytest.mark.parametrize(
+    ("name", "place", "inertial"),
+    [
+        ("grasp_point", "0 0 0.06", ""),
+        ("link_tcp", "0 0 0.081", ""),
+        ("hand_tcp", "0 0 0.068", ""),
+        ("ee_gripper_link", "0 0.001 0.062", LIGHT),
+        ("between", "0 0 0.045", ""),
+    ],
+)
+def test_a_frame_at_the_pads_is_the_tcp_where_there_is_one(tmp_path, name, place, inertial):
+    write(tmp_path, HAND + FRAME.format(name, place, inertial))
+    arm = load_arm(tmp_path)
+    assert arm.tcp_link == name
+    assert arm.groups["manipulator"].tip_link == name
+    assert any(note.startswith(f"TCP: '{name}', ") for note in arm.notes)
     assert load_arm(tmp_path, tcp_link="tool").tcp_link == "tool"
+
+
+def test_the_parent_of_the_end_effector_is_the_tcp_if_it_is_at_the_pads(tmp_path):
+    """xArm's SRDF names the TCP there, MoveIt's assistant the flange."""
+    frames = FRAME.format("between", "0 0 0.05", "") + FRAME.format(
+        "point", "0 0 0.09", ""
+    ).replace('"g"', '"h"')
+    write(tmp_path, HAND + frames, GROUP.replace('parent_link="tool"', 'parent_link="point"'))
+    assert load_arm(tmp_path).tcp_link == "point"
+    write(tmp_path, HAND + frames)
+    assert load_arm(tmp_path).tcp_link == "between"
+
+
+@pytest.mark.parametrize(
+    ("name", "place"), [("flange_tcp", "0 0 0.01"), ("tcp", "0 0 0.2"), ("other", "0 0.04 0.05")]
+)
+def test_a_frame_that_is_not_at_the_pads_is_no_tcp(tmp_path, name, place):
+    write(tmp_path, HAND + FRAME.format(name, place, ""))
+    arm = load_arm(tmp_path)
+    assert arm.tcp_link == "hand_tcp"
+    note = "TCP: no frame is between the pads; 'hand_tcp' is added there, 50 mm from 'tool'"
+    assert note in arm.notes
+
+
+def test_naming_the_gripper_does_not_change_the_tcp(tmp_path):
+    write(tmp_path, HAND + FRAME.format("tcp", "0 0 0.07", ""), GROUP.splitlines()[0])
+    named, found = load_arm(tmp_path, gripper="hand"), load_arm(tmp_path)
+    assert named.tcp_link == found.tcp_link == "tcp"
+    assert named.gripper.joint == found.gripper.joint
+
+
+def test_the_tcp_of_an_arm_of_joints_is_a_frame_of_that_name(tmp_path):
+    """A group of joints states no tip; a chain does."""
+    frame = FRAME.format("tool_tcp", "0 0 0.1", "")
+    joints = '<joint name="turn"/><joint name="bend"/><joint name="reach"/>'
+    chain = '<chain base_link="base_link" tip_link="tool"/>'
+    write_arm(tmp_path, URDF.replace("</robot>", PALM + frame + "</robot>"), SRDF)
+    assert load_arm(tmp_path).tcp_link == "tool"
+    write_arm(tmp_path, srdf=SRDF.replace(chain, joints), urdf=(tmp_path / "arm.urdf").read_text())
+    assert load_arm(tmp_path).tcp_link == "tool_tcp"
 
 
 def test_two_alike_fingers_without_a_mimic_are_coupled(tmp_path):
@@ -91,10 +147,58 @@ def test_two_alike_fingers_without_a_mimic_are_coupled(tmp_path):
     assert "gripper 'hand': right_joint is made to follow left_joint" in arm.notes
 
 
+UNCOUPLED = HAND.replace('<mimic joint="left_joint"/>', "")
+JAW = PALM.replace(
+    "</link>",
+    """<collision><origin xyz="0 -0.025 0.05"/><geometry><box size="0.03 0.01 0.1"/></geometry>
+    </collision></link>""",
+    1,
+) + FINGER.format(name="jaw", y=0.0, side=1, mimic="").replace(
+    'upper="0.03"', 'upper="0.05"'
+).replace('lower="0"', 'lower="-0.015"')
+
+
+@pytest.mark.parametrize(
+    ("hand", "joint", "opening"),
+    [
+        (HAND, "left_joint", 0.07),
+        (UNCOUPLED, "left_joint", 0.07),
+        (
+            UNCOUPLED.replace(
+                '<axis xyz="0 -1 0"/><limit lower="0" upper="0.03"',
+                '<axis xyz="0 1 0"/><limit lower="-0.03" upper="0"',
+            ),
+            "left_joint",
+            0.07,
+        ),
+        (JAW, "jaw_joint", 0.065),
+    ],
+    ids=["coupled", "alike", "mirrored", "one jaw"],
+)
+def test_a_gripper_is_found_without_an_srdf(tmp_path, hand, joint, opening):
+    write(tmp_path, hand)
+    arm = load_arm(tmp_path, srdf=None)
+    assert arm.groups["arm"].joint_names == ("turn", "bend", "reach")
+    assert (arm.gripper.joint, arm.gripper.group) == (joint, "gripper")
+    assert arm.gripper.widths[:, 1].max() == pytest.approx(opening, abs=1e-6)
+    assert arm.groups["gripper"].joint_names == (joint,)
+
+
+def test_fingers_that_no_group_names_are_found_too(tmp_path):
+    write(tmp_path, group="")
+    assert load_arm(tmp_path).gripper.group == "gripper"
+
+
+def test_a_wrist_that_ends_an_arm_is_no_jaw(tmp_path):
+    write_arm(tmp_path)
+    assert load_arm(tmp_path, srdf=None).groups["arm"].joint_names == ("turn", "bend", "reach")
+    assert load_arm(tmp_path, srdf=None).gripper is None
+
+
 def test_a_named_group_is_the_gripper_without_an_end_effector(tmp_path):
     group = GROUP.splitlines()[0]
     write(tmp_path, group=group)
-    assert load_arm(tmp_path).gripper is None
+    assert load_arm(tmp_path).gripper.group == "hand"
     assert load_arm(tmp_path, gripper="hand").gripper.joint == "left_joint"
 
 
@@ -153,3 +257,41 @@ def test_a_hand_that_starts_closed_takes_a_box_from_above(tmp_path):
         tmp_path, "- pick: {object: block}", robot="{urdf: arm.urdf, srdf: arm.srdf}", rest=rest
     )
     assert (found.problems, found.predicted) == ((), ())
+
+
+SIX_WITH_JAW = SIX.replace(HAND, JAW)
+BLOCK = """
+    objects:
+      - name: block
+        pose: {xyz: [0.3, 0.1, 0.03]}
+        box: {size: [0.03, 0.04, 0.06]}
+        mass: 0.05
+    expect:
+      - grasped: {object: block, during: pick}
+"""
+PICK = "- {pick: {object: block, approach: {distance: 0.05}, lift: {distance: 0.05}}, id: pick}"
+
+
+def test_a_single_jaw_closes_an_object_on_the_palm(tmp_path):
+    assert SIX_WITH_JAW != SIX
+    write_arm(tmp_path, SIX_WITH_JAW)
+    result, saved = run(tmp_path, PICK, robot="{urdf: arm.urdf}", rest=BLOCK)
+    assert result.outcome == "passed", [step.message for step in result.steps]
+    height = saved.signals.object_poses["block"][:, 2]
+    assert height[-1] - height[0] > 0.045
+
+
+def test_a_palm_near_the_pads_does_not_touch_what_is_grasped(tmp_path):
+    """The TCP stays above the depth of other grasps where the fingers are short."""
+    palm = PALM.replace(
+        "</link>",
+        """<collision><origin xyz="0 0 0.02"/><geometry><box size="0.1 0.1 0.04"/></geometry>
+    </collision></link>""",
+        1,
+    )
+    short = SIX.replace(PALM, palm)
+    assert short != SIX
+    write_arm(tmp_path, short, SIX_SRDF)
+    robot = "{urdf: arm.urdf, srdf: arm.srdf}"
+    result, _ = run(tmp_path, PICK, robot=robot, rest=BLOCK)
+    assert result.outcome == "passed", [step.message for step in result.steps]

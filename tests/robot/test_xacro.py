@@ -85,6 +85,9 @@ ESCAPE = "${python.vars(python.type)['__subclasses__'](python.type('').mro()[1])
         ("${2 * 0.1}", "${9**9**9**9}", "arm.xacro:1:", "more time or memory"),
         ("${2 * 0.1}", "${[0] * 10**10}", "arm.xacro", "memory"),
         ("</robot>", "</robt>", "arm.xacro:8:3", "not well-formed"),
+        (' length="${2 * 0.1}"', "", "arm.xacro:7:3", "Undefined parameters [length]"),
+        (' parent="base_link"', "", "arm.xacro:6:3", "Undefined parameters [parent]"),
+        ('parent="upper"', 'parent="upper" wide="1"', "arm.xacro:7:43", 'Invalid parameter "wide"'),
     ],
 )
 def test_what_cannot_be_rendered_is_refused_at_its_place(

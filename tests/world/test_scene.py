@@ -145,6 +145,9 @@ def test_a_plane_is_solid_behind_its_normal_at_its_distance(tmp_path):
         ),
         (NEW.replace("\n2\nbox", "\ntwo\nbox"), 5, "expected a number of shapes, found `two`"),
         ("", 1, "expected an object, found the end of the file"),
+        (NEW[: NEW.index("1 0 0 1")], 20, "the file ends inside the object 'ball'"),
+        (NEW[: NEW.index("0.05")], 20, "the file ends inside the object 'ball'"),
+        (NEW[: NEW.index("0.4 0.2")], 2, "the file ends inside the object 'table'"),
     ],
 )
 def test_a_mistake_is_reported_at_its_line(tmp_path, text, line, message):

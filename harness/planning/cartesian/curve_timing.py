@@ -15,8 +15,14 @@ from harness.core.types import FloatArray, IntArray
 from harness.planning.cartesian.link_timing import CENTRIPETAL_SHARE, LinkRates
 from harness.planning.model.robot_model import GroupSpace
 from harness.planning.timing.joint_spline import JointSpline
-from harness.planning.timing.limits import Limits, TimingError, stretched, within_limits
-from harness.planning.timing.profiles import on_grid, resting, sample
+from harness.planning.timing.limits import (
+    Limits,
+    TimingError,
+    sampled_within_limits,
+    stretched,
+    within_limits,
+)
+from harness.planning.timing.profiles import on_grid, resting
 from harness.planning.timing.toppra_solver import LinkLimits, fastest
 
 _MOST_STRETCHES = 8
@@ -55,7 +61,7 @@ def time_curve(
     timed, total = within_limits(timed, duration, limits)
     base, length, excess = timed, total, np.inf
     for _ in range(_MOST_STRETCHES):
-        trajectory = sample(joint_names, timed, total)
+        trajectory = sampled_within_limits(joint_names, timed, total, limits)
         trajectory.positions[[0, -1]] = spline.samples[[0, -1]]
         excess = link_excess(curve, space, trajectory)
         if excess <= 1.0:

@@ -17,10 +17,11 @@ from harness.planning.timing.limits import (
     Limits,
     TimingError,
     largest_jerk,
+    sampled_within_limits,
     slowed_to_limits,
     time_grid,
 )
-from harness.planning.timing.profiles import Curve, Trapezoid, on_grid, sample, smoothed
+from harness.planning.timing.profiles import Curve, Trapezoid, on_grid, smoothed
 from harness.ports import CartesianLimits, PlanningOptions
 
 MAX_TRANSLATION_VELOCITY = 1.0
@@ -113,7 +114,7 @@ def time_on_path(
         change /= max(1.0, float(np.max(np.abs(accelerations) / limits.acceleration)))
     profile = Trapezoid.fastest(1.0, rate, change)
     curve, total = _gentle(spline, profile, limits)
-    return sample(joint_names, curve, total)
+    return sampled_within_limits(joint_names, curve, total, limits)
 
 
 def _gentle(spline: Curve, profile: Trapezoid, limits: Limits) -> tuple[Curve, float]:

@@ -20,6 +20,7 @@ from harness.planning.model.robot_model import RobotModel
 from harness.ports import Touch
 from harness.recording.execution_failures import ObjectFailure
 from harness.robot.description import RobotDescription
+from harness.robot.solids import box_corners, coal_geometry, distance_to_point
 
 ROBOT = "robot"
 """Stands for every link of the robot in allowed pairs."""
@@ -234,6 +235,20 @@ class CoalScene:
             for touch, pair in self.distances(joint_positions)
         )
         return tuple(touch for touch in required if touch.distance <= touch.required)
+
+    def link_corners(self, link: str) -> FloatArray:
+        """Corners of the boxes around a link's shapes; its origin where it has none, (n, 3)."""
+        corners = [
+            shape.pose.apply(box_corners(coal_geometry(shape))) for shape in self._shapes_of(link)
+        ]
+        return np.concatenate(corners) if corners else np.zeros((1, 3))
+
+    def distance_to_link(self, link: str, point: FloatArray) -> float:
+        """Distance between a point in a link's frame and the link's shapes, 0 inside [m]."""
+        return distance_to_point(self._shapes_of(link), point)
+
+    def _shapes_of(self, link: str) -> tuple[Shape, ...]:
+        return next(each.collisions for each in self.description.links if each.name == link)
 
     def distances(self, joint_positions: FloatArray) -> list[tuple[Touch, BodyPair]]:
         """Signed distance of every checked pair of bodies [m], nearest first."""

@@ -8,12 +8,16 @@ from typing import Protocol
 import numpy as np
 
 from harness.core.details import Details
+from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.planning.timing.profiles import GRID, Curve, on_grid, smoothed
+from harness.planning.timing.profiles import GRID, SAMPLE_PERIOD, Curve, on_grid, sample, smoothed
 from harness.recording.motion_failures import TrajectoryFailure
 
 EFFORT_PERIOD = 10
 """Every so many samples of the time grid the efforts are computed: every 20 ms."""
+
+SMOOTHED_PERIODS = 3
+"""Periods between set points over which jumps of the acceleration are spread."""
 
 _MOST_STRETCHES = 20
 
@@ -56,12 +60,15 @@ class Limits:
         acceleration: The acceleration limits; never infinite.
         jerk: The jerk of every joint; inf for none.
         dynamics: The dynamics of the efforts; None where the robot gives no effort limits.
+        commanded: The accelerations of the joints without scaling, which the commands between the
+            set points of a trajectory keep as well; None where nothing interpolates.
     """
 
     velocity: FloatArray
     acceleration: FloatArray
     jerk: float = np.inf
     dynamics: Dynamics | None = None
+    commanded: FloatArray | None = None
 
     @classmethod
     def scaled(
@@ -69,7 +76,7 @@ class Limits:
     ) -> Limits:
         """Joint limits times the scaling factors; unlimited velocities count as 2 pi rad/s."""
         bounded = np.where(np.isfinite(velocity), velocity, 2 * np.pi)
-        return cls(bounded * velocity_scaling, acceleration * accel)
+        return cls(bounded * velocity_scaling, acceleration * accel, commanded=acceleration)
 
     def excess(self, velocities: FloatArray, accelerations: FloatArray) -> float:
         """How many times slower a motion (N, dof) must be; below 1 when it keeps both."""
@@ -146,6 +153,40 @@ def slowed_to_limits(curve: Curve, duration: float, limits: Limits) -> tuple[Cur
             return slowed, total
         total = on_grid(max(total * excess, total + GRID))
     raise TimingError(f"the limits are exceeded {excess:.3g} times however slow the motion is")
+
+
+def sampled_within_limits(
+    joint_names: tuple[str, ...], curve: Curve, duration: float, limits: Limits
+) -> JointTrajectory:
+    """Set points of a curve, run more slowly until commands between them keep the limits as well.
+
+    A controller interpolates set points by cubics. Where the acceleration of the curve jumps
+    between two of them, the cubic accelerates up to 1.5 times as much. Such a curve is first
+    smoothed over the periods between set points, and then slowed by what remains.
+    """
+    trajectory = sample(joint_names, curve, duration)
+    if _interpolated_excess(trajectory, limits) <= 1.0 + 1e-9:
+        return trajectory
+    mean = smoothed(curve, duration, SMOOTHED_PERIODS * SAMPLE_PERIOD)
+    length = total = duration + SMOOTHED_PERIODS * SAMPLE_PERIOD
+    while True:
+        trajectory = sample(joint_names, stretched(mean, length, total), total)
+        excess = _interpolated_excess(trajectory, limits)
+        if excess <= 1.0 + 1e-9:
+            return trajectory
+        total = on_grid(max(total * np.sqrt(excess), total + GRID))
+
+
+def _interpolated_excess(trajectory: JointTrajectory, limits: Limits) -> float:
+    """How many times the cubics between set points exceed the accelerations of the joints."""
+    if limits.commanded is None or len(trajectory.times) < 2:
+        return 0.0
+    step = np.diff(trajectory.times)[:, None]
+    mean = np.diff(trajectory.positions, axis=0) / step
+    before, after = trajectory.velocities[:-1], trajectory.velocities[1:]
+    first = (6.0 * mean - 4.0 * before - 2.0 * after) / step
+    last = (-6.0 * mean + 2.0 * before + 4.0 * after) / step
+    return float(np.max(np.maximum(np.abs(first), np.abs(last)) / limits.commanded))
 
 
 def largest_jerk(curve: Curve, total: float) -> float:

@@ -13,8 +13,8 @@ from harness.planning.timing.blended_path import BlendedPath
 from harness.planning.timing.jerk_profile import JerkLimited
 from harness.planning.timing.limits import Limits as Limits
 from harness.planning.timing.limits import TimingError as TimingError
-from harness.planning.timing.limits import slowed_to_limits, within_limits
-from harness.planning.timing.profiles import Trapezoid, resting, sample, straight_curve
+from harness.planning.timing.limits import sampled_within_limits, slowed_to_limits, within_limits
+from harness.planning.timing.profiles import Trapezoid, resting, straight_curve
 from harness.planning.timing.toppra_solver import fastest
 
 GRID_POINTS_PER_PIECE = 20
@@ -46,7 +46,7 @@ def time_straight(
         profile = Trapezoid.fastest(1.0, velocity, acceleration)
     line = straight_curve(first, second, profile)
     curve, total = slowed_to_limits(line, profile.duration, limits)
-    trajectory = sample(joint_names, curve, total)
+    trajectory = sampled_within_limits(joint_names, curve, total, limits)
     trajectory.positions[-1] = second
     return trajectory
 
@@ -94,7 +94,7 @@ def time_blended(
     path = BlendedPath(waypoints, deviation)
     timed, duration = fastest(path, limits, _grid(path))
     curve, total = within_limits(timed, duration, limits)
-    trajectory = sample(joint_names, curve, total)
+    trajectory = sampled_within_limits(joint_names, curve, total, limits)
     trajectory.positions[0], trajectory.positions[-1] = waypoints[0], waypoints[-1]
     return trajectory
 

@@ -14,7 +14,7 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.robot.description import Joint, Link, Mimic, PlanningGroup
 from harness.robot.robot_yaml import FingerSide, GripperFacts
-from harness.robot.solids import coal_geometry
+from harness.robot.solids import box_corners, coal_geometry
 from harness.robot.srdf.default_pairs import coal_transform, urdf_poses
 from harness.robot.srdf.srdf import Srdf, link_pair
 from harness.robot.urdf.urdf import Urdf
@@ -42,6 +42,7 @@ class IntegratedGripper:
     Attributes:
         facts: The gripper as in a robot.yaml.
         urdf: The robot, with two independent fingers coupled.
+        srdf: Its SRDF, with the group of the hand.
         center: Halfway between the pads, in palm axes [m], shape (3,).
         pairs: Links of the hand that may touch each other.
         notes: The assumptions, to which more are added.
@@ -49,6 +50,7 @@ class IntegratedGripper:
 
     facts: GripperFacts
     urdf: Urdf
+    srdf: Srdf
     center: FloatArray
     pairs: tuple[tuple[str, str], ...]
     notes: tuple[str, ...]
@@ -58,8 +60,9 @@ def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> IntegratedGripper
     """The gripper of a hand's group.
 
     The two sides are the finger links that move towards each other, or one that moves towards the
-    palm. The pad of a side is its link that reaches farthest out; gaps are measured between the
-    pads' shapes over the joint's range.
+    palm. The pad of a side is its link that reaches farthest out; the next one where the gap
+    between those does not change. Gaps are measured between the pads' shapes over the joint's
+    range.
 
     Raises:
         NoGripperError: Not one joint, not two sides, or a gap that does not change.
@@ -71,11 +74,8 @@ def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> IntegratedGripper
     palm = fingers[0][0].parent
     hand = _Hand(urdf, joint, palm)
     sides = _sides(hand, [links for _, links in fingers])
-    pads = tuple(_pad(hand, links, sides) for links in sides)
     positions = np.linspace(joint.lower, joint.upper, SAMPLES)
-    gaps = np.array([hand.gap(pads, float(position)) for position in positions])
-    if np.ptp(gaps) < LEAST_TRAVEL:
-        raise NoGripperError(f"the gap between {pads[0]} and {pads[1]} does not change")
+    pads, gaps = _pads(hand, sides, positions)
     widest, narrowest = positions[int(gaps.argmax())], positions[int(gaps.argmin())]
     opened = _state(srdf, group.name, joint.name, "open", float(widest))
     closed = _state(srdf, group.name, joint.name, "closed", float(narrowest))
@@ -101,7 +101,9 @@ def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> IntegratedGripper
         f"gripper '{group.name}': {joint.name} moves {pads[0]} and {pads[1]}, up to "
         f"{1000 * gaps.max():.0f} mm apart"
     )
-    return IntegratedGripper(facts, urdf, hand.center(pads, closed), tuple(pairs), tuple(notes))
+    return IntegratedGripper(
+        facts, urdf, srdf, hand.center(pads, closed), tuple(pairs), tuple(notes)
+    )
 
 
 def _one_joint(urdf: Urdf, group: PlanningGroup) -> tuple[Urdf, Joint, list[str]]:
@@ -112,18 +114,23 @@ def _one_joint(urdf: Urdf, group: PlanningGroup) -> tuple[Urdf, Joint, list[str]
         return urdf, driven[0], []
     if len(driven) == 2:
         first, second = driven
-        alike = (
-            first.kind == second.kind
-            and first.parent == second.parent
-            and (first.lower, first.upper) == (second.lower, second.upper)
-        )
-        if alike:
-            follower = replace(second, mimic=Mimic(first.name))
+        multiplier = _mirrored(first, second)
+        if multiplier:
+            follower = replace(second, mimic=Mimic(first.name, multiplier))
             changed = tuple(follower if j.name == second.name else j for j in urdf.joints)
             note = f"gripper '{group.name}': {second.name} is made to follow {first.name}"
             return replace(urdf, joints=changed), first, [note]
     names = ", ".join(group.joint_names) or "none"
     raise NoGripperError(f"a gripper has one driven joint, and the group has {names}")
+
+
+def _mirrored(first: Joint, second: Joint) -> float:
+    """How two alike fingers follow each other: 1 for equal limits, -1 for opposite ones, else 0."""
+    if first.kind != second.kind or first.parent != second.parent:
+        return 0.0
+    if (first.lower, first.upper) == (second.lower, second.upper):
+        return 1.0
+    return -1.0 if (first.lower, first.upper) == (-second.upper, -second.lower) else 0.0
 
 
 def _fingers(urdf: Urdf, joint: Joint) -> list[tuple[Joint, tuple[str, ...]]]:
@@ -172,15 +179,11 @@ class _Hand:
         """Lowest and highest corner of each solid, palm axes, shape (2, 3)."""
         found: list[FloatArray] = []
         for solid, pose in self.solids(link, position):
-            solid.computeLocalAABB()
-            box = solid.aabb_local
-            low, high = np.array(box.min_), np.array(box.max_)
-            ends = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
-            corners = pose.apply(ends)
+            corners = pose.apply(box_corners(solid))
             found.append(np.array([corners.min(axis=0), corners.max(axis=0)]))
         return found
 
-    def gap(self, pads: tuple[str, ...], position: float) -> float:
+    def gap(self, pads: tuple[str, str], position: float) -> float:
         """Distance between two links' solids, 0 where they overlap [m]."""
         import coal
 
@@ -195,7 +198,9 @@ class _Hand:
         return max(nearest, 0.0)
 
     def center(self, pads: tuple[str, ...], position: float) -> FloatArray:
-        """Midpoint between the pads' centres, shape (3,)."""
+        """Midpoint between the pads' centres; of a single jaw its own centre, shape (3,)."""
+        if self.palm in pads:
+            return self.middle(next(pad for pad in pads if pad != self.palm), position)
         return 0.5 * (self.middle(pads[0], position) + self.middle(pads[1], position))
 
 
@@ -220,8 +225,22 @@ def _sides(hand: _Hand, fingers: Sequence[tuple[str, ...]]) -> tuple[tuple[str, 
     return sides[0], (hand.palm,)
 
 
-def _pad(hand: _Hand, links: tuple[str, ...], sides: Sequence[tuple[str, ...]]) -> str:
-    """The link that extends farthest from the palm, in the fingers' direction."""
+def _pads(
+    hand: _Hand, sides: Sequence[tuple[str, ...]], positions: FloatArray
+) -> tuple[tuple[str, str], FloatArray]:
+    """The link of each side that touches objects, and the gap between them at positions."""
+    first, second = (_outermost(hand, links, sides) for links in sides)
+    ranks = [(n, m) for n in range(len(first)) for m in range(len(second))]
+    ranks.sort(key=lambda rank: (abs(rank[0] - rank[1]), sum(rank)))  # alike fingers, alike pads
+    for pads in ((first[n], second[m]) for n, m in ranks):
+        gaps = np.array([hand.gap(pads, float(position)) for position in positions])
+        if np.ptp(gaps) >= LEAST_TRAVEL:
+            return pads, gaps
+    raise NoGripperError(f"the gap between {first[0]} and {second[0]} does not change")
+
+
+def _outermost(hand: _Hand, links: tuple[str, ...], sides: Sequence[tuple[str, ...]]) -> list[str]:
+    """The links of a side, the one that extends farthest from the palm first."""
     middle = 0.5 * (hand.joint.lower + hand.joint.upper)
     fingers = [link for side in sides for link in side if link != hand.palm]
     out = np.mean([hand.middle(link, middle) for link in fingers], axis=0)
@@ -231,7 +250,7 @@ def _pad(hand: _Hand, links: tuple[str, ...], sides: Sequence[tuple[str, ...]]) 
         boxes = hand.boxes(link, middle)
         return max(float(np.maximum(low * out, high * out).sum()) for low, high in boxes)
 
-    return max(links, key=reach)
+    return sorted(links, key=reach, reverse=True)
 
 
 def _state(srdf: Srdf, group: str, joint: str, word: str, default: float) -> float:

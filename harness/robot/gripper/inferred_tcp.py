@@ -1,7 +1,9 @@
-"""The TCP frame of an arm's integrated gripper."""
+"""The TCP frame of an imported arm: its maker's, else one between the pads of its gripper."""
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -14,25 +16,25 @@ from harness.robot.srdf.srdf import Srdf, SrdfGroup
 from harness.robot.tree import carriers
 from harness.robot.urdf.urdf import Urdf
 
-NEAR = 0.03
-"""Largest distance of an existing TCP frame from the midpoint between the pads [m]."""
+TCP_NAMES = re.compile(r"tcp|grasp|pinch|grip_site|tool_?cent", re.IGNORECASE)
+TOOL_NAMES = re.compile(r"(?<![a-z])ee(?![a-z])|end_?effector|gripper_frame", re.IGNORECASE)
+
+FARTHEST = (0.1, 0.08, 0.03)
+"""Largest distances between the pads' midpoint and a frame of their name, by rank [m]: a TCP or the
+parent of the SRDF's end effector; a tool frame; any other frame."""
 
 
 def with_integrated_gripper(
-    own: IntegratedGripper,
-    urdf: Urdf,
-    srdf: Srdf,
-    arm: PlanningGroup,
-    tip: str,
-    tcp_link: str | None,
+    own: IntegratedGripper, arm: PlanningGroup, tip: str, tcp_link: str | None, notes: list[str]
 ) -> tuple[Urdf, Srdf, str]:
     """The robot with its gripper coupled, and the link that is its TCP.
 
-    The TCP is `tcp_link`, else a frame of the robot at the midpoint between the pads, else a new
-    frame there with the axes of the arm's tip. The arm's chain ends at the TCP.
+    The TCP is `tcp_link`, else a frame of the robot at the pads, else a new frame at the midpoint
+    between the pads with the axes of the arm's tip. The arm's chain ends at the TCP.
     """
-    srdf = replace(srdf, disabled={**dict.fromkeys(own.pairs, "Gripper"), **srdf.disabled})
     urdf = own.urdf
+    srdf = replace(own.srdf, disabled={**dict.fromkeys(own.pairs, "Gripper"), **own.srdf.disabled})
+    notes += own.notes
     carrier = carriers(urdf.joints, urdf.root)
     if tcp_link is not None:
         return urdf, _ending_at(srdf, arm, tip, tcp_link, carrier), tcp_link
@@ -41,21 +43,65 @@ def with_integrated_gripper(
     poses = urdf_poses(urdf, {})
     palm = poses[own.facts.palm_link]
     center = palm.apply(own.center)
-    frames = {
-        link.name: float(np.linalg.norm(poses[link.name].translation - center))
-        for link in urdf.links
-        if carrier[link.name] == carrier[tip] and link.inertial is None and not link.collisions
-    }
-    nearest = min(frames, key=lambda name: (frames[name], name), default="")
-    if nearest and frames[nearest] <= NEAR:
-        return urdf, _ending_at(srdf, arm, tip, nearest, carrier), nearest
+    ranked = sorted(
+        (rank, float(np.linalg.norm(poses[frame].translation - center)), frame)
+        for rank, frame in _frames(urdf, srdf, arm, tip)
+        if _is_at_the_pads(poses[frame].translation, palm.translation, center, FARTHEST[rank])
+    )
+    if ranked:
+        _, distance, frame = ranked[0]
+        notes.append(f"TCP: '{frame}', {1000 * distance:.0f} mm from the middle between the pads")
+        return urdf, _ending_at(srdf, arm, tip, frame, carrier), frame
     name = f"{own.facts.group}_tcp"
     rotation = palm.rotation.T @ poses[tip].rotation
     axis = np.array([1.0, 0.0, 0.0])
     pose = SE3(rotation, own.center)
     joint = Joint(f"{name}_joint", "fixed", own.facts.palm_link, name, pose, axis)
     added = replace(urdf, links=(*urdf.links, Link(name, None)), joints=(*urdf.joints, joint))
+    away = 1000 * float(np.linalg.norm(center - poses[tip].translation))
+    notes.append(
+        f"TCP: no frame is between the pads; '{name}' is added there, {away:.0f} mm from '{tip}'"
+    )
     return added, _ending_at(srdf, arm, tip, name, {**carrier, name: carrier[tip]}), name
+
+
+def tcp_without_gripper(urdf: Urdf, srdf: Srdf, arm: PlanningGroup, tip: str) -> str:
+    """The TCP of an arm without a gripper.
+
+    It is the tip of a chain that the SRDF states, as in MoveIt; else a frame that is rigidly
+    connected with the arm's last link and is named as a TCP or an end effector's parent.
+    """
+    stated = any(group.name == arm.name and group.chains for group in srdf.groups)
+    if stated and srdf.root_element is not None:
+        return tip
+    return next((frame for rank, frame in _frames(urdf, srdf, arm, tip) if rank == 0), tip)
+
+
+def _frames(urdf: Urdf, srdf: Srdf, arm: PlanningGroup, tip: str) -> Iterator[tuple[int, str]]:
+    """Links without shapes that are rigidly connected with the arm's tip, and their ranks."""
+    carrier = carriers(urdf.joints, urdf.root)
+    parents = {
+        tool.parent_link
+        for tool in srdf.end_effectors
+        if arm.name in (tool.parent_group, tool.group)
+    }
+    for link in urdf.links:
+        if carrier[link.name] != carrier.get(tip) or link.collisions or link.visuals:
+            continue
+        if link.name in parents or TCP_NAMES.search(link.name):
+            yield 0, link.name
+        elif TOOL_NAMES.search(link.name):
+            yield 1, link.name
+        elif link.inertial is None:
+            yield 2, link.name
+
+
+def _is_at_the_pads(
+    frame: np.ndarray, palm: np.ndarray, center: np.ndarray, farthest: float
+) -> bool:
+    """Whether a frame is near the pads' midpoint, and nearer to it than to the palm's origin."""
+    away = float(np.linalg.norm(frame - center))
+    return away <= farthest and away < float(np.linalg.norm(frame - palm))
 
 
 def _ending_at(

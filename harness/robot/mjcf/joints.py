@@ -92,16 +92,48 @@ def _effort(model: Any, joint: int) -> float:
         return float(np.abs(model.jnt_actfrcrange[joint]).max())
     most = 0.0
     for actuator in range(model.nu):
-        kind = int(model.actuator_trntype[actuator])
-        if kind != int(mujoco.mjtTrn.mjTRN_JOINT) or model.actuator_trnid[actuator, 0] != joint:
-            continue
+        kind, target = int(model.actuator_trntype[actuator]), model.actuator_trnid[actuator, 0]
         gear = abs(float(model.actuator_gear[actuator, 0]))
+        if kind == int(mujoco.mjtTrn.mjTRN_TENDON):
+            gear *= abs(tendon_joints(model, int(target)).get(joint, 0.0))
+        elif kind != int(mujoco.mjtTrn.mjTRN_JOINT) or target != joint:
+            continue
         if model.actuator_forcelimited[actuator]:
             most += gear * float(np.abs(model.actuator_forcerange[actuator]).max())
         elif model.actuator_ctrllimited[actuator] and not model.actuator_biasprm[actuator].any():
             gain = abs(float(model.actuator_gainprm[actuator, 0]))
             most += gear * gain * float(np.abs(model.actuator_ctrlrange[actuator]).max())
     return most or np.inf
+
+
+def tendon_joints(model: Any, tendon: int) -> dict[int, float]:
+    """Coefficients of the joints of a fixed tendon; none for a spatial one."""
+    import mujoco
+
+    first = int(model.tendon_adr[tendon])
+    wraps = range(first, first + int(model.tendon_num[tendon]))
+    joint = int(mujoco.mjtWrap.mjWRAP_JOINT)
+    return {
+        int(model.wrap_objid[wrap]): float(model.wrap_prm[wrap])
+        for wrap in wraps
+        if int(model.wrap_type[wrap]) == joint
+    }
+
+
+def _driven_together(model: Any, mimics: Mapping[str, Mimic]) -> dict[str, Mimic]:
+    """The second of two joints that one actuator pulls by a fixed tendon, following the first."""
+    import mujoco
+
+    found: dict[str, Mimic] = {}
+    for actuator in range(model.nu):
+        if int(model.actuator_trntype[actuator]) != int(mujoco.mjtTrn.mjTRN_TENDON):
+            continue
+        pulled = tendon_joints(model, int(model.actuator_trnid[actuator, 0]))
+        names = [str(model.joint(joint).name) for joint in pulled]
+        if len(names) == 2 and all(pulled.values()) and not set(names) & set(mimics):
+            first, second = pulled.values()
+            found[names[1]] = Mimic(names[0], second / first)
+    return found
 
 
 def with_mimics(model: Any, joints: Iterable[Joint], notes: list[str]) -> list[Joint]:
@@ -125,6 +157,10 @@ def with_mimics(model: Any, joints: Iterable[Joint], notes: list[str]) -> list[J
         # The polynomial relates displacements from both joints' references.
         zero, other_zero = (float(model.qpos0[model.jnt_qposadr[j]]) for j in (first, second))
         mimics[name] = Mimic(other, slope, zero + offset - slope * other_zero)
+    followed = set(mimics) | {mimic.joint for mimic in mimics.values()}
+    for name, mimic in _driven_together(model, dict.fromkeys(followed, Mimic(""))).items():
+        notes.append(f"joint '{name}' follows '{mimic.joint}': one actuator pulls both by a tendon")
+        mimics[name] = mimic
     return [replace(j, mimic=mimics[j.name]) if j.name in mimics else j for j in joints]
 
 

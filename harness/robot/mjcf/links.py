@@ -16,6 +16,7 @@ from harness.core.spatial import rotation_from_quat_wxyz
 from harness.robot.description import Inertial, Link
 from harness.robot.mesh_file import SUFFIXES
 from harness.robot.mjcf.joints import mjcf_pose
+from harness.robot.urdf.links import corrected_note, possible_moments
 
 SHARE = 1e-3
 """Share of a body's mass that each link between two of its joints gets."""
@@ -30,7 +31,14 @@ def body_link(spec: Any, model: Any, folder: Path, body: int, name: str, notes: 
     inertial = None
     if mass > 0:
         R = rotation_from_quat_wxyz(model.body_iquat[body])
-        tensor = R @ np.diag(model.body_inertia[body]) @ R.T
+        moments = np.array(model.body_inertia[body], dtype=float)
+        if moments.min() <= 0.0:  # MuJoCo accepts it for a body that a joint moves with others
+            order = np.argsort(moments)
+            raised = moments.copy()
+            raised[order] = possible_moments(moments[order], mass)
+            notes.append(corrected_note(name, moments, raised))
+            moments = raised
+        tensor = R @ np.diag(moments) @ R.T
         inertial = Inertial(mass, np.array(model.body_ipos[body]), 0.5 * (tensor + tensor.T))
     visuals: list[Shape] = []
     collisions: list[Shape] = []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from harness.robot.description import Joint
@@ -11,12 +12,19 @@ from harness.robot.urdf.urdf import Urdf
 DEFAULT_GROUP = "arm"
 """Name of the group of a robot without an SRDF."""
 
+FINGER_NAMES = re.compile(r"grip|jaw|finger|claw|pinch", re.IGNORECASE)
+"""Names by which a single movable jaw differs from an arm's last joint."""
+
+LEAST_ARM = 2
+"""Fewest joints that remain when a jaw is left out."""
+
 
 def default_srdf(urdf: Urdf, tip_link: str = "") -> Srdf:
     """One group from the root to a tip: the given link, else the end of the chain of most joints.
 
-    Fingers that mimic each other are not part of a chain. If several chains are longest, the group
-    ends where they branch, as at fingers that move alone; of several arms it is the first.
+    Fingers that mimic each other, and a jaw that closes on its palm, are not part of a chain. If
+    several chains are longest, the group ends where they branch, as at fingers that move alone; of
+    several arms it is the first.
     """
     before = {joint.child: joint for joint in urdf.joints}
 
@@ -31,7 +39,7 @@ def default_srdf(urdf: Urdf, tip_link: str = "") -> Srdf:
         tips = [tip_link]
     else:
         chains = [chain(link.name) for link in urdf.links]
-        tips = _tips([_without_fingers(each, urdf.joints) for each in chains]) or _tips(chains)
+        tips = _tips([_without_fingers(each, urdf) for each in chains]) or _tips(chains)
     if not tips:
         return Srdf()
     notes = ["no SRDF: only neighbouring links may touch"]
@@ -44,14 +52,14 @@ def default_srdf(urdf: Urdf, tip_link: str = "") -> Srdf:
     return Srdf((group,), notes=tuple(notes))
 
 
-def _without_fingers(chain: Sequence[Joint], joints: Sequence[Joint]) -> Sequence[Joint]:
+def _without_fingers(chain: Sequence[Joint], urdf: Urdf) -> Sequence[Joint]:
     """The chain without its last joints that move together with joints outside the chain.
 
     A hand closes several fingers by one joint. A joint farther up that others mimic, as in an arm
     with a parallel linkage, belongs to the arm: joints that move alone follow it.
     """
     inside = {joint.name for joint in chain}
-    leaders = {j.mimic.joint for j in joints if j.mimic and j.name not in inside}
+    leaders = {j.mimic.joint for j in urdf.joints if j.mimic and j.name not in inside}
     end = len(chain)
     for number in range(len(chain) - 1, -1, -1):
         joint = chain[number]
@@ -61,7 +69,17 @@ def _without_fingers(chain: Sequence[Joint], joints: Sequence[Joint]) -> Sequenc
         if leader in inside and leader not in leaders:
             break
         end = number
+    movable = [number for number in range(end) if chain[number].is_movable]
+    if len(movable) > LEAST_ARM and _is_jaw(chain[movable[-1]], urdf):
+        end = movable[-1]
     return chain[:end]
+
+
+def _is_jaw(joint: Joint, urdf: Urdf) -> bool:
+    """Whether a chain's last joint is a jaw that closes on the link that carries it."""
+    shaped = {link.name for link in urdf.links if link.collisions}
+    named = FINGER_NAMES.search(joint.name) or FINGER_NAMES.search(joint.child)
+    return bool(named) and {joint.parent, joint.child} <= shaped
 
 
 def _tips(chains: Sequence[Sequence[Joint]]) -> list[str]:

@@ -25,6 +25,27 @@ NO_BODY = "no body has the principal moments of inertia"
 """Beginning of the note on a corrected tensor."""
 
 
+def possible_moments(moments: np.ndarray, mass: float) -> np.ndarray:
+    """Principal moments, ascending, raised to those of a body of a mass, shape (3,) [kg m^2]."""
+    least = 0.4 * mass * SMALLEST_RADIUS**2
+    raised = np.maximum(moments, 0.0)
+    if raised[0] < 1e-3 * least:
+        raised = np.maximum(raised, least)
+    lack = raised[2] - raised[0] - raised[1]
+    if lack > TRIANGLE_SLACK * raised[2]:
+        raised = raised + np.array([lack / 2, lack / 2, 0.0]) * (1 + 1e-9)
+    return raised
+
+
+def corrected_note(link: str, moments: np.ndarray, raised: np.ndarray) -> str:
+    """The note on a link whose moments were raised."""
+    return (
+        f"link '{link}': {NO_BODY} "
+        f"{', '.join(f'{value:.3g}' for value in moments)} kg m^2; taken as "
+        f"{', '.join(f'{value:.3g}' for value in raised)}"
+    )
+
+
 @dataclass(frozen=True, eq=False)
 class LinkReader:
     """Reads the links of one file.
@@ -68,15 +89,16 @@ class LinkReader:
             mass_element.refuse(f"link '{link}' weighs {mass:g} kg", at="value")
         if mass == 0:
             return None
-        if tensor is None:
-            element.refuse(f"link '{link}': <inertial> has no <inertia>")
-        xx, yy, zz = (number(tensor, key) for key in ("ixx", "iyy", "izz"))
-        xy, xz, yz = (number(tensor, key, 0.0) for key in ("ixy", "ixz", "iyz"))
-        placed = pose(element)
-        inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        placed, inertia = pose(element), np.zeros((3, 3))
+        if tensor is not None:
+            xx, yy, zz = (number(tensor, key) for key in ("ixx", "iyy", "izz"))
+            xy, xz, yz = (number(tensor, key, 0.0) for key in ("ixy", "ixz", "iyz"))
+            inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
         if not np.array_equal(placed.rotation, np.eye(3)):
             inertia = placed.rotation @ inertia @ placed.rotation.T
-        return Inertial(mass, placed.translation, self._of_a_body(inertia, mass, tensor, link))
+        return Inertial(
+            mass, placed.translation, self._of_a_body(inertia, mass, tensor or element, link)
+        )
 
     def _of_a_body(
         self, inertia: np.ndarray, mass: float, tensor: XmlElement, link: str
@@ -88,20 +110,10 @@ class LinkReader:
                 f"link '{link}' has a negative moment of inertia, {moments[0]:.3g} kg m^2",
                 "the tensor is about the centre of mass and positive definite",
             )
-        least = 0.4 * mass * SMALLEST_RADIUS**2
-        raised = np.maximum(moments, 0.0)
-        if raised[0] < 1e-3 * least:
-            raised = np.maximum(raised, least)
-        lack = raised[2] - raised[0] - raised[1]
-        if lack > TRIANGLE_SLACK * raised[2]:
-            raised = raised + np.array([lack / 2, lack / 2, 0.0]) * (1 + 1e-9)
+        raised = possible_moments(moments, mass)
         if np.array_equal(raised, moments):
             return inertia
-        self.notes.append(
-            f"link '{link}': {NO_BODY} "
-            f"{', '.join(f'{value:.3g}' for value in moments)} kg m^2; taken as "
-            f"{', '.join(f'{value:.3g}' for value in raised)}"
-        )
+        self.notes.append(corrected_note(link, moments, raised))
         return axes @ np.diag(raised) @ axes.T
 
     def _shape(self, element: XmlElement, link: str) -> Shape | None:

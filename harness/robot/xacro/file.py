@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from harness.language.files.source import Source
 from harness.language.files.xml_file import XmlElement, read_bounded, read_xml
 from harness.robot.packages import PackagePath
 
+XACRO_PREFIX = "xacro:"
 XACRO_ARG = "xacro:arg"
 PROCESSOR_TIME = 8
 """CPU time limit of a rendering [s]."""
@@ -24,9 +26,36 @@ WALL_TIME = 60.0
 """Time limit of a rendering that uses less CPU time [s]."""
 
 
+def is_xacro(root: XmlElement) -> bool:
+    """Whether a document has elements that xacro replaces."""
+    return any(item.tag.startswith(XACRO_PREFIX) for item in root.walk())
+
+
 def arguments_of(root: XmlElement) -> frozenset[str]:
     """Names that a xacro document declares as arguments."""
     return frozenset(item.get("name") for item in root.walk() if item.tag == XACRO_ARG)
+
+
+def refuse_unknown_arguments(args: Mapping[str, Any], paths: Sequence[Path]) -> None:
+    """Refuse arguments that none of a robot's files declares; included files may declare them.
+
+    Raises:
+        SpecError: A file is not XML.
+        RobotError: No file takes one of the arguments.
+    """
+    roots = {path: root for path in paths if args and is_xacro(root := read_xml(path))}
+    if args and not roots:
+        raise RobotOptionError("args", "only a xacro file takes arguments, and none is given")
+    declared = {name for root in roots.values() for name in arguments_of(root)}
+    includes = any(item.tag == "xacro:include" for root in roots.values() for item in root.walk())
+    unknown = [key for key in args if key not in declared]
+    if unknown and not includes:
+        names = " and ".join(path.name for path in roots)
+        raise RobotOptionError(
+            "args",
+            f"{names} takes no argument '{unknown[0]}'; "
+            f"known are {', '.join(sorted(declared)) or 'none'}",
+        )
 
 
 def render_bundled(path: Path, mappings: Mapping[str, str]) -> str:
@@ -55,17 +84,7 @@ def render(path: Path, args: Mapping[str, Any], packages: PackagePath) -> str:
 
     Raises:
         SpecError: The file, or one that it includes, cannot be rendered.
-        RobotError: The file does not take one of the arguments.
     """
-    root = read_xml(path)
-    declared = arguments_of(root)
-    includes = any(item.tag == "xacro:include" for item in root.walk())
-    for key in args:
-        if key not in declared and not includes:
-            known = ", ".join(sorted(declared)) or "none"
-            raise RobotOptionError(
-                "args", f"{path.name} takes no argument '{key}'; known are {known}"
-            )
     order = {
         "file": str(path),
         "mappings": {key: _text(value) for key, value in args.items()},
@@ -128,6 +147,11 @@ def _problem(answer: Mapping[str, Any], path: Path, packages: PackagePath) -> Pr
     except SpecError:
         return Problem(named, 0, 0, message)
     source = Source(named, tuple(lines))
+    if "macro" in answer:
+        call = _call_without(lines, str(answer["macro"]), [str(name) for name in answer["lacks"]])
+        if call is not None:
+            number, column = call
+            return Problem(named, number, column, message, "", source.line(number))
     for word in words:
         for number, line in enumerate(lines, 1):
             column = line.find(word)
@@ -135,3 +159,15 @@ def _problem(answer: Mapping[str, Any], path: Path, packages: PackagePath) -> Pr
                 text = source.line(number)
                 return Problem(named, number, column + 1, message, "", text, len(word))
     return Problem(named, 1, 1, message, "", source.line(1))
+
+
+def _call_without(
+    lines: Sequence[str], macro: str, parameters: Sequence[str]
+) -> tuple[int, int] | None:
+    """Line and column of the first call of a macro that lacks parameters."""
+    text = "\n".join(lines)
+    for call in re.finditer(rf"<{re.escape(macro)}\b[^>]*", text):
+        if not any(re.search(rf"\b{re.escape(name)}\s*=", call[0]) for name in parameters):
+            before = text[: call.start()]
+            return before.count("\n") + 1, call.start() - before.rfind("\n")
+    return None

@@ -132,7 +132,12 @@ def _answer(file: str, mappings: dict[str, str], packages: PackagePath) -> dict[
         message = guard.complaint or " ".join(str(error).split()) or type(error).__name__
         if _is_of_memory(error):
             message = f"it takes too much memory {message}"
-        return _complaint(f"cannot be rendered: {message}", xacro.filestack, file)
+        said = _complaint(f"cannot be rendered: {message}", xacro.filestack, file)
+        lacking = re.search(r"Undefined parameters \[([\w,]+)\]", message)
+        if lacking and xacro.macrostack:
+            name = xacro.macrostack[-1].body.getAttribute("name")
+            said |= {"macro": f"xacro:{name}", "lacks": lacking[1].split(",")}
+        return said
     finally:
         guard.is_on = False
 

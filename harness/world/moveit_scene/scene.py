@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.core.errors import SpecError
+from harness.core.errors import Problem, SpecError
 from harness.core.geometry import Rgba
 from harness.core.spatial import SE3, wxyz_from_xyzw
 from harness.language.files.source import Place, Source
@@ -79,11 +79,21 @@ class _Reader:
                 raise SpecError([place.problem(f"another object has the name '{name}'")])
             if len(objects) >= MOST_OBJECTS:
                 raise SpecError([place.problem(f"more than {MOST_OBJECTS} objects")])
-            found_object = self._object(name, place, has_poses)
+            try:
+                found_object = self._object(name, place, has_poses)
+            except SpecError as error:
+                raise SpecError([self._in_object(error.problems[0], name, place)]) from error
             if found_object is not None:
                 objects[name] = found_object
         world = WorldSpec(world=title, objects=tuple(objects.values()))
         return Scene(ImportedWorld(world, self._path, self._notes.all()), self._meshes)
+
+    def _in_object(self, problem: Problem, name: str, begin: Place) -> Problem:
+        """The mistake; at the object's first line where the file ends inside the object."""
+        if not self._words.is_at_end:
+            return problem
+        message = f"the file ends inside the object '{name}': {problem.message}"
+        return begin.problem(message, "a number is missing in it, or a count is too large")
 
     def _is_of_the_new_form(self) -> bool:
         """Whether objects have poses: then three numbers follow the first name, otherwise one."""

@@ -32,6 +32,15 @@ class TokenReader:
         self._line, self._column = self._line + 1, 0
         return rest.strip()
 
+    @property
+    def is_at_end(self) -> bool:
+        """Whether no word follows."""
+        return not any(line.strip() for line in self._lines_left())
+
+    def _lines_left(self) -> tuple[str, ...]:
+        rest = self._lines[self._line : self._line + 1]
+        return tuple(line[self._column :] for line in rest) + tuple(self._lines[self._line + 1 :])
+
     def lines_ahead(self) -> tuple[str, ...]:
         """The lines that are not read yet."""
         return self._lines[self._line :]

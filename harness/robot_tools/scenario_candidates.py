@@ -1,0 +1,197 @@
+"""Numbers of a first scenario: where a box is picked, where the arm starts and moves to."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.planning.collision.pair_statistics import sample_robot_positions
+from harness.planning.collision.scene import CoalScene
+from harness.planning.ik.kinematics import PinocchioKinematics
+from harness.robot.description import Gripper, RobotDescription
+
+SAMPLES = 5000
+"""Random configurations that measure the reach."""
+
+DISTANCES, HEIGHTS = (0.25, 0.35, 0.45, 0.55, 0.65), (0.1, 0.2, 0.35, 0.5)
+"""Distances from the base and heights above it where the box is tried, as shares of the reach."""
+
+NEAR = 0.08
+"""Distance up to which a random configuration shows that a place is reached, likewise."""
+
+DOWNWARD = 0.9
+"""Cosine between the gripper and the vertical from which it points downward."""
+
+MOST_PLACES = 6
+"""Places of the box that are tried in a direction."""
+
+CLEAR = 0.25
+"""Distance of the box from the hand at the start, as a share of the reach."""
+
+HEADINGS = (0.0, 0.5 * math.pi)
+WIDEST_BOX, TALLEST_BOX = 0.05, 0.08  # [m]
+MOTIONS = 10
+
+MARGIN = 0.02
+"""Distance of joint goals from the limits, as a share of the range."""
+
+FREE_ROTATION = 6
+"""Joints of an arm that reaches any rotation."""
+
+DIGITS = 4
+"""Decimals of joint positions in the file."""
+
+PADDING = 0.002
+"""Distance of bodies at the start [m], as planning keeps by default."""
+
+FLOOR_CLEARANCE = 0.05
+"""Height of the lowest moving link above the floor at the start, at least [m]."""
+
+
+class Candidates:
+    """What fills the templates, the likeliest first."""
+
+    def __init__(self, description: RobotDescription) -> None:
+        self._description = description
+        self._kinematics = PinocchioKinematics(description)
+        self._scene = CoalScene(description)
+        self._samples = sample_robot_positions(description, SAMPLES, np.random.default_rng(0))
+        links = (description.base_link, description.tcp_link)
+        poses = self._kinematics.link_poses(self._samples, links)[:, :, :3]
+        self._reach = float(np.linalg.norm(poses[:, 1] - poses[:, 0], axis=1).max())
+        self._start = self._free_start()
+        self._base = self._base_height()
+
+    def start_state(self) -> str:
+        """The line of the scenario's robot with its start, where the robot's own is not free."""
+        if np.array_equal(self._start, self._description.start_positions()):
+            return ""
+        joints = [joint for joint in self._description.movable_joints if joint.mimic is None]
+        names = tuple(joint.name for joint in joints)
+        return f"\n  start_state: {{joints: {self._positions(names, self._start)}}}"
+
+    def picks(self) -> Iterator[dict[str, str]]:
+        """A box on a stand, its size by the gripper's opening; none without an arm's gripper."""
+        description = self._description
+        if description.gripper is None or not description.arm_group:
+            return
+        hand = self._kinematics.link_pose(self._start, description.tcp_link).translation
+        for heading in HEADINGS:
+            for distance, height in self._places(description.gripper)[:MOST_PLACES]:
+                level = distance * self._reach
+                x, y = round(level * math.cos(heading), 2), round(level * math.sin(heading), 2)
+                place = (x, y, round(height * self._reach, 2))
+                if np.linalg.norm(np.array(place) - hand) > CLEAR * self._reach:
+                    yield _pick(place, self._base, self._reach, description.gripper)
+
+    def _places(self, gripper: Gripper) -> list[tuple[float, float]]:
+        """Distances and heights that most random configurations reach, the most first.
+
+        An arm of six joints takes a box from above, so its gripper points downward there.
+        """
+        description = self._description
+        links = (description.base_link, description.tcp_link, gripper.palm_link)
+        base, tcp, palm = np.moveaxis(self._kinematics.link_poses(self._samples, links), 1, 0)
+        away = (tcp - base)[:, :3] / self._reach
+        along = (tcp - palm)[:, :3]
+        fits = -along[:, 2] > DOWNWARD * np.linalg.norm(along, axis=1)
+        if len(description.groups[description.arm_group].joint_names) < FREE_ROTATION:
+            fits[:] = True
+        reached = np.column_stack([np.hypot(away[fits, 0], away[fits, 1]), away[fits, 2]])
+        grid = [(distance, height) for height in HEIGHTS for distance in DISTANCES]
+        counts = [int((np.abs(reached - place).max(axis=1) < NEAR).sum()) for place in grid]
+        order = np.argsort(np.negative(counts), kind="stable")
+        return [grid[number] for number in order if counts[number]]
+
+    def motions(self) -> Iterator[dict[str, str]]:
+        """Goals of the arm between its start and random configurations, inside the limits."""
+        description = self._description
+        group = description.groups.get(description.arm_group)
+        names = () if group is None else group.joint_names
+        for row in self._samples[:MOTIONS]:
+            goal = self._inside(self._start + 0.4 * (row - self._start))
+            yield {
+                "base": f"{self._base:g}",
+                "goal": self._positions(names, goal),
+                "start": self._positions(names, self._inside(self._start)),
+            }
+
+    def _free_start(self) -> FloatArray:
+        """Where the robot starts, if it touches nothing there, with its gripper open too.
+
+        Else the middle of the ranges, or the free random configuration next to it.
+        """
+        start = self._description.start_positions()
+        joints = self._description.movable_joints
+        ends = np.array([[joint.lower, joint.upper] for joint in joints])
+        middle = np.where(np.isfinite(ends).all(axis=1, keepdims=True), ends, 0.0).mean(axis=1)
+        near = np.argsort(np.linalg.norm(self._samples - middle, axis=1), kind="stable")
+        for row in (start, middle, *self._samples[near]):
+            positions = start if row is start else np.round(self._inside(row), DIGITS)
+            positions = self._description.with_mimics(positions)
+            if not any(self._scene.touches(each, PADDING) for each in self._with_hand(positions)):
+                return positions
+        return start
+
+    def _with_hand(self, positions: FloatArray) -> list[FloatArray]:
+        """The positions, and those with the gripper open."""
+        gripper = self._description.gripper
+        if gripper is None:
+            return [positions]
+        opened = positions.copy()
+        opened[self._description.joint_index[gripper.joint]] = gripper.open_position
+        return [positions, self._description.with_mimics(opened)]
+
+    def _inside(self, positions: FloatArray) -> FloatArray:
+        """Positions away from the limits by MARGIN, so that rounded ones are inside too."""
+        joints = self._description.movable_joints
+        lower = np.array([joint.lower for joint in joints])
+        upper = np.array([joint.upper for joint in joints])
+        size = np.where(np.isfinite(upper - lower), upper - lower, 0.0)
+        return np.clip(positions, lower + MARGIN * size, upper - MARGIN * size)
+
+    def _positions(self, names: tuple[str, ...], positions: FloatArray) -> str:
+        index = self._description.joint_index
+        values = (f"{name}: {positions[index[name]]:.{DIGITS}f}" for name in names)
+        return "{" + ", ".join(values) + "}"
+
+    def _base_height(self) -> float:
+        """Height of the base at which the arm starts clear of the floor [m]."""
+        description = self._description
+        lowest = min(
+            float(pose.apply(self._scene.link_corners(link))[:, 2].min())
+            for link in description.link_names
+            if link not in description.static_links
+            for pose in [self._kinematics.link_pose(self._start, link)]
+        )
+        return 0.0 if lowest > 0 else math.ceil(10 * (FLOOR_CLEARANCE - lowest)) / 10
+
+
+def _pick(
+    place: tuple[float, float, float], base: float, reach: float, gripper: Gripper
+) -> dict[str, str]:
+    """What fills the template: a box on a stand, its size by the gripper's opening."""
+    x, y, top = place[0], place[1], base + place[2]
+    ends = (gripper.closed_position, gripper.open_position)
+    least, opening = np.interp(ends, gripper.widths[:, 0], gripper.widths[:, 1])
+    width = max(0.6 * float(opening), 0.5 * float(least + opening))
+    width = math.floor(1e3 * min(WIDEST_BOX, width)) / 1e3
+    height = min(TALLEST_BOX, 2.0 * width)
+    travel = round(min(0.1, 0.1 * reach), 2)
+    numbers = {
+        "base": base,
+        "x": x,
+        "y": y,
+        "stand": round(min(0.2, 0.25 * reach), 2),
+        "stand_height": top,
+        "stand_middle": top / 2,
+        "box_middle": top + height / 2,
+        "width": width,
+        "height": height,
+        "travel": travel,
+        "above": travel / 2,
+    }
+    return {key: f"{value + 0.0:.4g}" for key, value in numbers.items()}

@@ -1,0 +1,1 @@
+"""MoveIt's PlanningScene and MotionPlanRequest messages, written as YAML."""

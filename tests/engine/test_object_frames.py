@@ -1,0 +1,48 @@
+"""Objects whose pose is in the frame of an object that stands there before."""
+
+import pytest
+
+from tests.engine.front_door import problems, run
+
+OM = "open_manipulator_x"
+TABLE = (
+    "{name: table, static: true, pose: {xyz: [0.5, 0.2, 0.1], rpy: [0, 0, 90 deg]}, "
+    "box: {size: [0.2, 0.2, 0.2]}}"
+)
+CUBE = (
+    "{{name: cube, pose: {{frame: {0}, xyz: [0.05, 0, 0.12]}}, box: {{size: [0.04, 0.04, 0.04]}}}}"
+)
+WAIT = "- wait: 0.05 s"
+
+
+def objects(*lines):
+    return "objects:\n" + "".join(f"  - {line}\n" for line in lines)
+
+
+def test_an_object_stands_on_another_one_turned_with_it(tmp_path):
+    _, saved = run(tmp_path, WAIT, robot=OM, rest=objects(TABLE, CUBE.format("table")))
+    assert saved.signals.object_poses["cube"][0, :3] == pytest.approx([0.5, 0.25, 0.22], abs=1e-6)
+
+
+def test_a_chain_of_frames_is_followed(tmp_path):
+    rest = objects(
+        TABLE, CUBE.format("table"), CUBE.format("cube").replace("name: cube", "name: b")
+    )
+    _, saved = run(tmp_path, WAIT, robot=OM, rest=rest)
+    assert saved.signals.object_poses["b"][0, :3] == pytest.approx([0.5, 0.3, 0.34], abs=1e-3)
+
+
+def test_the_frame_of_an_object_of_the_world_file(tmp_path):
+    world = f"world: w\nobjects:\n  - {TABLE}\n  - {CUBE.format('table')}\n"
+    (tmp_path / "w.yaml").write_text(world)
+    rest = objects(CUBE.format("cube").replace("name: cube", "name: b"))
+    _, saved = run(tmp_path, WAIT, robot=OM, world="w.yaml", rest=rest)
+    assert saved.signals.object_poses["b"][0, :3] == pytest.approx([0.5, 0.3, 0.34], abs=1e-3)
+
+
+@pytest.mark.parametrize("frame", ["tabl", "cube", "later"])
+def test_an_object_that_does_not_stand_there_before_is_no_frame(tmp_path, frame):
+    later = TABLE.replace("name: table", "name: later")
+    [(_, message)] = problems(tmp_path, WAIT, robot=OM,
+                              rest=objects(TABLE, CUBE.format(frame), later))  # fmt: skip
+    assert f"'{frame}'" in message

@@ -1,0 +1,87 @@
+"""Robots without <inertial>: masses come from the volume of their shapes, and are reported."""
+
+import math
+
+import numpy as np
+import pytest
+
+from harness.core.errors import SpecError
+from tests.engine.front_door import run
+from tests.robot.arm_files import INERTIAL, SHAPE, URDF, load_arm, write_arm
+from tests.world.sdf_files import TETRAHEDRON
+
+BARE = URDF.replace(INERTIAL, "")
+
+
+def link(arm, name):
+    return next(each for each in arm.links if each.name == name)
+
+
+def test_a_link_without_a_mass_weighs_its_shapes(tmp_path):
+    write_arm(tmp_path, BARE)
+    arm = load_arm(tmp_path)
+    volume = math.pi * 0.03**2 * 0.14
+    upper = link(arm, "upper").inertial
+    assert upper.mass == pytest.approx(1000 * volume)
+    assert upper.center_of_mass == pytest.approx([0, 0, 0.1])
+    assert upper.inertia[2, 2] == pytest.approx(1000 * volume * 0.03**2 / 2)
+    assert link(arm, "base_link").inertial is None, "it does not move"
+    note = "no mass is given for upper, lower, wrist: 1.19 kg in all, from the volume of their"
+    assert any(each.startswith(note) for each in arm.notes)
+
+
+def test_two_shapes_are_one_body(tmp_path):
+    """Two cubes of 0.1 m, 0.2 m apart: the parallel axis theorem."""
+    cube = '<collision><origin xyz="{0} 0 0"/><geometry><box size="0.1 0.1 0.1"/></geometry>'
+    cubes = "".join(cube.format(x) + "</collision>" for x in (-0.1, 0.1))
+    write_arm(tmp_path, BARE.replace(SHAPE, cubes))
+    inertial = link(load_arm(tmp_path), "upper").inertial
+    assert inertial.mass == pytest.approx(2.0)
+    assert np.diag(inertial.inertia) == pytest.approx([2 / 600, 2 / 600 + 0.02, 2 / 600 + 0.02])
+
+
+def test_meshes_and_visuals_give_a_mass_too(tmp_path):
+    (tmp_path / "part.obj").write_text(TETRAHEDRON)
+    mesh = '<visual><geometry><mesh filename="part.obj" scale="0.1 0.1 0.1"/></geometry></visual>'
+    write_arm(tmp_path, BARE.replace(SHAPE, mesh))
+    mass = link(load_arm(tmp_path), "upper").inertial.mass
+    assert 0 < mass < 1
+
+
+def test_given_masses_stay(tmp_path):
+    write_arm(tmp_path, URDF.replace(INERTIAL + SHAPE, SHAPE, 1))
+    arm = load_arm(tmp_path)
+    assert link(arm, "lower").inertial.mass == 1
+    assert any("no mass is given for upper: " in note for note in arm.notes)
+
+
+def test_every_link_that_weighs_nothing_is_in_one_message(tmp_path):
+    write_arm(tmp_path, BARE.replace(SHAPE, ""))
+    with pytest.raises(SpecError) as caught:
+        load_arm(tmp_path)
+    said = [problem.message for problem in caught.value.problems]
+    assert said == [
+        f"link '{name}' moves and weighs nothing" for name in ("upper", "lower", "wrist")
+    ]
+    assert len({problem.line for problem in caught.value.problems}) == 3
+
+
+def test_a_stated_mass_of_zero_is_still_a_mistake(tmp_path):
+    write_arm(tmp_path, URDF.replace('<mass value="1"/>', '<mass value="0"/>'))
+    with pytest.raises(SpecError) as caught:
+        load_arm(tmp_path)
+    assert len(caught.value.problems) == 3
+
+
+def test_an_arm_without_masses_moves(tmp_path):
+    write_arm(tmp_path, BARE)
+    result, _ = run(
+        tmp_path,
+        "- move_to: {joints: {turn: 1, bend: 0.2, reach: 0.1}}",
+        robot="{urdf: arm.urdf, srdf: arm.srdf}",
+        rest="""
+        expect:
+          - always: within_limits
+        """,
+    )
+    assert result.outcome == "passed", [step.message for step in result.steps]
