@@ -66,6 +66,9 @@ class GripperState(Predicate):
     def check(self, at: At) -> None:
         at.scope.check_gripper(at.loc, "`gripper`")
         hand = at.scope.description.gripper
+        for key in ("position", "tolerance"):
+            if hand is not None and key in self.model_fields_set:
+                at.scope.check_joint_unit(hand.joint, at.key(key))
         if self.named_target is not None and hand is not None:
             at.scope.check_state(hand.group, self.named_target, at.key("named_target"))
 
