@@ -10,6 +10,7 @@ from collections.abc import Collection
 
 import numpy as np
 
+from harness.assertions.poses import present
 from harness.assertions.temporal import TIME_RESOLUTION, trailing_max
 from harness.assertions.window import NotObservable, object_record
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Sphere
@@ -204,11 +205,17 @@ def robot_contact(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
     return force, attached(run, name).astype(float)
 
 
+def was_in_robot(run: Run, name: str, stop: int) -> bool:
+    """Whether the robot touched or held an object at some sample before one."""
+    force, hold = robot_contact(run, name)
+    return bool((force[:stop] > TOUCH_FORCE).any() or hold[:stop].any())
+
+
 def bodies(run: Run, word: str) -> frozenset[str]:
     """Links and objects that a word of `between` means: `robot`, `gripper`, `any`, or a name.
 
     Raises:
-        NotObservable: The run knows no such body.
+        NotObservable: The run knows no such body, or only the planner knows it.
     """
     robot = run.robot
     links = frozenset(robot.link_names)
@@ -221,9 +228,41 @@ def bodies(run: Run, word: str) -> frozenset[str]:
         case "any":
             return links | objects | {name for pair in run.signals.contact_forces for name in pair}
         case _ if word in links or word in objects:
+            if any(record.name == word and not record.in_simulation for record in run.objects):
+                raise NotObservable(f"{word} is not in the physics: nothing can touch it")
             return frozenset({word})
         case _:
             raise NotObservable(f"there is no body '{word}' in this run")
+
+
+def could_touch(run: Run, pairs: Collection[tuple[str, str]]) -> BoolArray:
+    """Samples at which both bodies of a pair are in the physics, for some of the pairs, (N,)."""
+    here = {name: is_there(run, name) for name in sorted({name for pair in pairs for name in pair})}
+    together = np.zeros(len(run.signals.times), dtype=bool)
+    for first, second in pairs:
+        together |= here[first] & here[second]
+        if together.all():
+            break
+    return together
+
+
+def pairs_of(firsts: Collection[str], seconds: Collection[str]) -> frozenset[tuple[str, str]]:
+    """Pairs of two different bodies, one of each set, each pair once."""
+    return frozenset(
+        (min(first, second), max(first, second))
+        for first in firsts
+        for second in seconds
+        if first != second
+    )
+
+
+def is_there(run: Run, name: str) -> BoolArray:
+    """Samples at which a body is in the physics: a link always, an object while it is present."""
+    for record in run.objects:
+        if record.name == name:
+            never = np.zeros(len(run.signals.times), dtype=bool)
+            return present(run, name) if record.in_simulation else never
+    return np.ones(len(run.signals.times), dtype=bool)
 
 
 def sample_time(run: Run) -> float:

@@ -50,6 +50,9 @@ class MarginSignal:
         applies: Samples at which the predicate is defined (default all): distance to an object has
             no value before the object exists. `always` skips the others, nothing holds at them.
         progress: Chooses the sample to show among equal margins.
+        present: Samples at which its object is there (default all): a value that is missing at one
+            of them is unknown, at another one it does not exist.
+        pairs: How many pairs of bodies it reads; None where it reads none.
     """
 
     values: FloatArray
@@ -57,6 +60,15 @@ class MarginSignal:
     evidence: Callable[[int], Evidence]
     applies: BoolArray | None = None
     progress: FloatArray | None = None
+    present: BoolArray | None = None
+    pairs: int | None = None
+
+    def unknown(self) -> BoolArray:
+        """Samples at which there is a value that is not known, shape (n,)."""
+        unknown = np.isnan(self.values)
+        for mask in (self.applies, self.present):
+            unknown = unknown if mask is None else unknown & mask
+        return unknown
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,4 +223,4 @@ def all_of(
         return Evidence(text(index, measures[0]), measures, margin, unit, is_moment)
 
     unit = parts[0].unit if len(parts) == 1 else "1"
-    return MarginSignal(values, unit, evidence, applies)
+    return MarginSignal(values, unit, evidence, applies, present=present)

@@ -78,9 +78,19 @@ def episodes(mask: BoolArray) -> list[tuple[int, int]]:
     return [(int(start), int(stop)) for start, stop in edges.reshape(-1, 2)]
 
 
-def longest_hold(values: FloatArray, times: FloatArray) -> float:
-    """Longest time without a break for which a margin is not negative [s]."""
-    spans = [times[stop - 1] - times[start] for start, stop in episodes(values >= 0)]
+def longest_hold(values: FloatArray, times: FloatArray, *, is_first: bool = False) -> float:
+    """Longest time without a break for which a margin is not negative [s].
+
+    Args:
+        values: Margins, shape (n,).
+        times: Of the samples [s], shape (n,).
+        is_first: Only the time that begins with the first sample counts.
+    """
+    spans = [
+        times[stop - 1] - times[start]
+        for start, stop in episodes(values >= 0)
+        if not (is_first and start)
+    ]
     return float(max(spans, default=0.0))
 
 

@@ -95,6 +95,7 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
         page=not arguments.no_page,
         bag=arguments.bag,
         shard=shard,
+        strict=arguments.strict,
     )
     plan = planned_cases(files, request)
     if shard is not None and root is not None:
@@ -109,7 +110,7 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
         resume=arguments.resume,
         is_part=shard is not None,
     )
-    return SuiteRun(plan, how)
+    return SuiteRun(plan, how, files)
 
 
 def write_files(arguments: argparse.Namespace, suite: SuiteRun) -> Path | None:
@@ -175,6 +176,8 @@ def show_results(
     rate_text = f"; {style.outcome('failed', rates)}" if rates else ""
     if suite.results:
         say(f"{summary(list(suite.results.values()), seconds, style)}{rate_text}")
+    if len(suite.files) > 1:
+        say(suite.files_text)
     if suite.resumed:
         say(f"{suite.resumed} of them were known from before")
     written = [result for result in suite.results.values() if result.report_dir]
@@ -257,8 +260,8 @@ def _command(arguments: argparse.Namespace, job: CaseJob) -> str:
         words += ["--seed", str(arguments.seed)]
     if arguments.samples is not None:
         words += ["--samples", str(arguments.samples)]
-    if arguments.bag:
-        words.append("--bag")
+    words += ["--strict"] if arguments.strict else []
+    words += ["--bag"] if arguments.bag else []
     if arguments.report_dir != "reports":
         words += ["--report-dir", arguments.report_dir]
     return shlex.join(words)

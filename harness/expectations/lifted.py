@@ -40,6 +40,7 @@ class Lifted(ObjectPredicate):
 
     judged = "eventually"
     quantities = (HEIGHT, FINGERS, OTHERS)
+    is_change = True
 
     above: PositiveLength = Field(
         default=0.01, description="The height above the object's own start height [m]."

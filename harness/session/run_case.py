@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -26,6 +26,7 @@ from harness.recording.run import Outcome, Run, Signals, StepRecord, Verdict
 from harness.recording.store import PAGE, StoredRun, write_run
 from harness.reporting.explanation import explanation_lines
 from harness.reporting.result import CaseResult, ProgressEvent, StepLine
+from harness.reporting.terminal import verdict_warnings
 from harness.session.camera_pictures import with_camera_pictures
 from harness.session.failure_pictures import draw_pictures, with_pictures
 from harness.session.physics import overlap_note, start_physics
@@ -56,6 +57,7 @@ def run_case(
     only_failed: bool = False,
     text: str | None = None,
     redraw: Redraw | None = None,
+    strict: bool = False,
     on_progress: Notify = lambda _: None,
 ) -> CaseResult:
     """Compile, execute, judge and report one scenario.
@@ -73,6 +75,7 @@ def run_case(
         text: What would stand in the file; None: what does.
         redraw: Other overrides by the number of the draw, from 1, as long as objects overlap at the
             start; None draws no others.
+        strict: Whether a warning of a verdict fails the case.
         on_progress: Told of every step.
     """
     clock = Clock()
@@ -102,7 +105,8 @@ def run_case(
         activity("judging", 0, 0)
         with clock.part("judge"):
             verdicts = judge(run, placed)
-        outcome = _outcome(run, verdicts)
+        warned = verdict_warnings(str(path), verdicts)
+        outcome = _outcome(run, verdicts, warned if strict else ())
         _tell_verdicts(program, run, outcome, on_progress)
         fingerprint = digest(run, verdicts)
         notes: tuple[str, ...] = ()
@@ -148,7 +152,9 @@ def run_case(
         page=str(report_dir / PAGE) if report_dir is not None and page else "",
         steps=tuple(step_line(step) for step in run.steps),
         verdicts=verdicts,
+        message="\n".join(warned) if strict else "",
         notes=(
+            *warned,
             *(finding.message for finding in prepared.about_file),
             *(overlap_note(prepared, touch) for touch in overlaps),
             *notes,
@@ -327,8 +333,9 @@ def _placed(program: Program) -> list[PlacedExpectation]:
     return [PlacedExpectation.of(item.spec, item.step, item.line) for item in program.expectations]
 
 
-def _outcome(run: Run, verdicts: tuple[Verdict, ...]) -> Outcome:
+def _outcome(run: Run, verdicts: tuple[Verdict, ...], warned: Sequence[str]) -> Outcome:
     is_good = not run.ended_early and all(verdict.status == "passed" for verdict in verdicts)
+    is_good = is_good and not warned
     return "passed" if is_good else "failed"
 
 

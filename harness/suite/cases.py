@@ -45,6 +45,7 @@ class CaseJob:
         text: What would stand in the file; None: what does.
         redraw: Draws the sample again while objects overlap at the start; None: it is drawn once.
         fixed: Those of `overrides` that no draw changes.
+        strict: Whether a warning of a verdict fails the case.
     """
 
     file: Path
@@ -59,6 +60,7 @@ class CaseJob:
     text: str | None = None
     redraw: Redraw | None = None
     fixed: Mapping[str, str] = field(default_factory=dict[str, str])
+    strict: bool = False
 
     def overrides_of_draw(self, draw: int) -> Mapping[str, str]:
         """Overrides of the sample as it is drawn again."""
@@ -97,6 +99,7 @@ def run_case(job: CaseJob, notify: Callable[[ProgressEvent], None]) -> CaseResul
         only_failed=job.only_failed,
         text=job.text,
         redraw=None if job.redraw is None else job.overrides_of_draw,
+        strict=job.strict,
         on_progress=notify,
     )
     if job.redraw is None or not result.redraws:

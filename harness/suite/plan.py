@@ -34,6 +34,7 @@ class RunRequest:
         page: Whether to write the page of a report.
         bag: Whether to write a rosbag2.
         shard: The part of the suite to run; None runs the whole suite.
+        strict: Whether a warning of a verdict fails a case.
     """
 
     expression: str = ""
@@ -46,6 +47,7 @@ class RunRequest:
     page: bool = True
     bag: bool = False
     shard: Shard | None = None
+    strict: bool = False
 
 
 @dataclass(frozen=True)
@@ -165,6 +167,7 @@ def _job(file: Path, case: Case, folder: Path | None, request: RunRequest) -> Ca
         only_failed=keep == "failed",
         redraw=case.redraw,
         fixed=request.overrides,
+        strict=request.strict,
     )
 
 
