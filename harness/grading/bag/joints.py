@@ -11,7 +11,7 @@ from harness.core.pose_arrays import relative, rotation_vector
 from harness.core.types import FloatArray
 from harness.grading.bag.clocks import Timeline
 from harness.grading.bag.content import BagContent, Track, Tracks
-from harness.grading.bag.sampling import rows_at
+from harness.grading.bag.sampling import rows_at, with_gaps_filled
 from harness.recording.run import LinkPlacement
 from harness.robot.description import RobotDescription
 
@@ -51,9 +51,10 @@ def reference_track(
 
 
 def sample_times(reference: Track, timeline: Timeline) -> FloatArray:
-    """Times of the run's samples [s], rising, from 0."""
+    """Times of the run's samples [s], rising, from 0; in gaps too, where the joints are NaN."""
     times, is_judged = timeline.rows(reference, "joint states")
-    return np.unique(times[is_judged])
+    found = np.unique(times[is_judged])
+    return with_gaps_filled(found) if len(found) > 1 else found
 
 
 def joint_rows(
@@ -66,7 +67,7 @@ def joint_rows(
     joints = description.movable_joints
     values = np.full((3, len(times), len(joints)), np.nan)
     for column, joint in enumerate(joints):
-        seconds, rows = _rows_of(joint.name, tracks, timeline, name)
+        seconds, rows = rows_of_joint(joint.name, tracks, timeline, name)
         for kind in range(3):
             known = ~np.isnan(rows[:, kind])
             if known.any():
@@ -81,7 +82,7 @@ def joint_rows(
     return JointRows(*values)
 
 
-def _rows_of(
+def rows_of_joint(
     joint: str, tracks: Tracks, timeline: Timeline, name: str
 ) -> tuple[FloatArray, FloatArray]:
     """Times and (position, velocity, effort) of a joint in all messages that name it."""
