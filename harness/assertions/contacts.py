@@ -10,12 +10,12 @@ from collections.abc import Collection
 
 import numpy as np
 
-from harness.assertions.poses import present
+from harness.assertions.poses import SCENE_VERBS, present
 from harness.assertions.temporal import TIME_RESOLUTION, trailing_max
 from harness.assertions.window import NotObservable, object_record
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Sphere
 from harness.core.types import BoolArray, FloatArray
-from harness.recording.run import GripperRecord, Run
+from harness.recording.run import GripperRecord, Run, VerdictWarning
 
 TOUCH_FORCE = 1e-3
 """A tenth of the weight of one gram; less is no support and no grip [N]."""
@@ -254,6 +254,51 @@ def pairs_of(firsts: Collection[str], seconds: Collection[str]) -> frozenset[tup
         for second in seconds
         if first != second
     )
+
+
+def skipped_contacts(run: Run, pairs: Collection[tuple[str, str]]) -> tuple[VerdictWarning, ...]:
+    """A warning for each object that may have passed through another between two samples.
+
+    Contacts are looked for at each sample: an object that moves by more than the least widths of
+    both bodies together is before the other at one sample and after it at the next.
+    """
+    found: list[VerdictWarning] = []
+    for name in sorted({name for pair in pairs for name in pair}):
+        poses = run.signals.object_poses.get(name)
+        width = _least_known_width(run, name)
+        if poses is None or not width:
+            continue
+        moved = np.nan_to_num(np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1))
+        moved[_jumps(run, len(moved))] = 0.0
+        others = [first if second == name else second for first, second in pairs
+                  if name in (first, second)]  # fmt: skip
+        thinnest = min((_least_known_width(run, other) for other in others), default=0.0)
+        if len(moved) and moved.max() > width + thinnest:
+            most = float(moved.max())
+            time = float(run.signals.times[int(moved.argmax()) + 1])
+            found.append(
+                VerdictWarning(
+                    "contact may be missed",
+                    f"{name} moves by {1000 * most:.0f} mm between two samples at t={time:.3f} s"
+                    f" and is {1000 * width:.0f} mm thick: it may have passed through something",
+                )
+            )
+    return tuple(found)
+
+
+def _least_known_width(run: Run, name: str) -> float:
+    """The least width of an object [m]; 0 of a link, and of a mesh."""
+    known = [record for record in run.objects if record.name == name]
+    return least_width(run, name) if known else 0.0
+
+
+def _jumps(run: Run, count: int) -> BoolArray:
+    """Intervals between samples in which a step may put objects somewhere, shape (N - 1,)."""
+    mask = np.zeros(count, dtype=bool)
+    for step in run.steps:
+        if step.verb in SCENE_VERBS:
+            mask[max(step.start_index - 1, 0) : step.end_index + 1] = True
+    return mask
 
 
 def is_there(run: Run, name: str) -> BoolArray:

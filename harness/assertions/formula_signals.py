@@ -106,14 +106,14 @@ def _poses(window: Window, name: str) -> FloatArray:
 
 def _joint(name: str, joint: str, window: Window) -> Values:
     column, record = joint_column(window.run, joint)
-    signals = window.run.signals
-    array, unit = {
-        "position": (signals.joint_positions, unit_of(record)),
-        "velocity": (signals.joint_velocities, f"{unit_of(record)}/s"),
-        "effort": (signals.joint_efforts, _effort_unit(record)),
-        "command": (signals.joint_commands, unit_of(record)),
+    field, unit = {
+        "position": ("joint_positions", unit_of(record)),
+        "velocity": ("joint_velocities", f"{unit_of(record)}/s"),
+        "effort": ("joint_efforts", _effort_unit(record)),
+        "command": ("joint_commands", unit_of(record)),
     }[name]
-    return Values(window.cut(array)[:, column], unit)
+    recorded = getattr(window.run.signals, field)  # only this one need have been recorded
+    return Values(window.cut(recorded)[:, column], unit)
 
 
 def _effort_unit(joint: JointRecord) -> str:

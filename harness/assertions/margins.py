@@ -12,7 +12,7 @@ import numpy as np
 from harness.assertions.window import Window
 from harness.core.types import BoolArray, FloatArray
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure
+from harness.recording.run import Measure, VerdictWarning
 
 Comparison = Literal["<=", ">=", "=="]
 Margin = FloatArray
@@ -53,6 +53,7 @@ class MarginSignal:
         present: Samples at which its object is there (default all): a value that is missing at one
             of them is unknown, at another one it does not exist.
         pairs: How many pairs of bodies it reads; None where it reads none.
+        warnings: What makes a verdict that holds say less than it seems to.
     """
 
     values: FloatArray
@@ -62,6 +63,7 @@ class MarginSignal:
     progress: FloatArray | None = None
     present: BoolArray | None = None
     pairs: int | None = None
+    warnings: tuple[VerdictWarning, ...] = ()
 
     def unknown(self) -> BoolArray:
         """Samples at which there is a value that is not known, shape (n,)."""

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from harness.assertions.collision import Pair, colliding
-from harness.assertions.contacts import bodies, could_touch, pairs_of
+from harness.assertions.contacts import bodies, could_touch, pairs_of, skipped_contacts
 from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import Evidence, MarginSignal, measured
 from harness.assertions.observations import Observations
@@ -82,7 +82,12 @@ class Collision(Predicate):
         )
         possible = pairs_of(first, second)
         together = window.cut(could_touch(run, possible))
-        return replace(self._contacts(window), applies=together, pairs=len(possible))
+        return replace(
+            self._contacts(window),
+            applies=together,
+            pairs=len(possible),
+            warnings=skipped_contacts(run, possible),
+        )
 
     def _contacts(self, window: Window) -> MarginSignal:
         """The margins of `signal`, whether or not the bodies are in the physics."""

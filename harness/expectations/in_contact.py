@@ -15,6 +15,7 @@ from harness.assertions.contacts import (
     force_between,
     pairs_of,
     sample_time,
+    skipped_contacts,
 )
 from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
@@ -71,4 +72,8 @@ class InContact(Predicate):
             return f"{now} (first at t={begun:.3f} s, {amount(seconds, 's')} in all, up to {peak})"
 
         together = window.cut(could_touch(run, pairs))
-        return replace(all_of(window, [part], text, applies=together), pairs=len(pairs))
+        return replace(
+            all_of(window, [part], text, applies=together),
+            pairs=len(pairs),
+            warnings=skipped_contacts(run, pairs),
+        )

@@ -11,7 +11,7 @@ from harness.core.pose_arrays import relative, rotation_vector
 from harness.core.types import FloatArray
 from harness.grading.bag.clocks import Timeline
 from harness.grading.bag.content import BagContent, Track, Tracks
-from harness.grading.bag.sampling import rows_at, with_gaps_filled
+from harness.grading.bag.sampling import gap_limit, rows_at, with_gaps_filled
 from harness.recording.run import LinkPlacement
 from harness.robot.description import RobotDescription
 
@@ -50,11 +50,20 @@ def reference_track(
     return None
 
 
-def sample_times(reference: Track, timeline: Timeline) -> FloatArray:
-    """Times of the run's samples [s], rising, from 0; in gaps too, where the joints are NaN."""
+def sample_times(reference: Track, content: BagContent, timeline: Timeline) -> FloatArray:
+    """Times of the run's samples [s], rising, from 0; in gaps too, where the joints are NaN.
+
+    A gap lasts to the end of the recording where the joints fall silent before other topics do.
+    """
     times, is_judged = timeline.rows(reference, "joint states")
     found = np.unique(times[is_judged])
-    return with_gaps_filled(found) if len(found) > 1 else found
+    if len(found) < 2:
+        return found
+    others = [*content.joints.values(), *content.edges.values(), *content.objects.values()]
+    last = max(float(timeline.rows(track, "other topics")[0].max()) for track in others)
+    whole = with_gaps_filled(np.append(found, last) if last > found[-1] else found)
+    is_silent = last - found[-1] > gap_limit(found)
+    return whole if is_silent else whole[whole <= found[-1]]
 
 
 def joint_rows(

@@ -93,7 +93,7 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
     if reference is None:
         raise _no_joints(path, topics, content, known)
     timeline = Timeline(reference)
-    times = sample_times(reference, timeline)
+    times = sample_times(reference, content, timeline)
     if len(times) < 2:
         raise bag_error(path, "has joints at a single time; at least two samples are needed")
     placements = {placement.link: placement for placement in known.robot.placements}
