@@ -38,7 +38,11 @@ LEFT = Quantity(
 
 
 class Collision(Predicate):
-    """Two bodies touch that may not: no pair allows it, no grasp, no object on its support."""
+    """Two bodies touch that may not: no pair allows it, no grasp, no object on its support.
+
+    It is judged while two of the bodies are in the physics: with an object that only the planner
+    knows it is not observable, before an object is there it is not reached.
+    """
 
     short = "between"
     judged = "eventually"

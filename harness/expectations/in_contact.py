@@ -30,7 +30,11 @@ CONTACT = Quantity("contact force", "N", "at least `min_force`, and 0.001 N", "c
 
 
 class InContact(Predicate):
-    """The two bodies touch."""
+    """The two bodies touch.
+
+    It is judged while both are in the physics: with an object that only the planner knows it is not
+    observable, before an object is there it is not reached.
+    """
 
     short = "between"
     judged = "eventually"

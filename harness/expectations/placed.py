@@ -65,7 +65,8 @@ class Placed(ObjectPredicate):
     """The object rests on a support, released and still, at a pose if one is given.
 
     A `pose` without a rotation allows every turn about the vertical after which the object looks
-    the same, as `place` does.
+    the same, as `place` does. It is still where it was slow for 50 ms, which may begin before the
+    step's window.
     """
 
     quantities = (SUPPORT, SPEED, TURNING, CONTACT, ATTACHED, POSITION, LEAN, ORIENTATION)

@@ -27,7 +27,12 @@ JOINT_SPEED = Quantity(
 
 
 class Static(Predicate):
-    """The object, or everything, moves slower than a limit."""
+    """The object, or everything, moves slower than a limit.
+
+    It counts as still where it was slower for 50 ms: at the turning point of a swing it is slow for
+    a moment. Those 50 ms may begin before the step's window. Where less was recorded of an object
+    it is not judged, since what is let go in the air is slow at first.
+    """
 
     short = "object"
     quantities = (SPEED, TURNING, JOINT_SPEED)

@@ -9,6 +9,7 @@ ARM = "{model: open_manipulator_x, base: {xyz: [0, 0, 0.01]}}"
 BOX = "{name: red_box, box: {size: [0.04, 0.04, 0.08]}, pose: {xyz: [0.25, 0, 0.041]}, %s}"
 LIFTED = "lifted: {object: red_box, above: 3 cm, for: 200 ms}"
 STEPS = AT_BOX + "  - move_relative: {direction: {xyz: [0, 0, 1]}, distance: 4 cm}\n"
+STEPS += "  - wait: 0.3 s\n"
 CUBE = "{name: cube, box: {size: [0.04, 0.04, 0.04]}, mass: %s, friction: %s, pose: {xyz: [%s]}}"
 
 
@@ -22,7 +23,7 @@ def is_lifted(folder, *, friction=1.0, mass=0.05, effort=10.0):
     return verdict.status == "passed"
 
 
-def slid(folder, *, friction=0.5, mass=0.05, force=20.0):
+def slid(folder, *, friction=0.3, mass=0.05, force=5.0):
     """How far a push of 10 ms moves a cube on the floor [m]."""
     rest = f"objects: [{CUBE % (f'{mass:g}', f'{friction:g}', '0.4, 0.2, 0.0199')}]\n"
     rest += "expect: [{displaced: {object: cube, at_least: 1 mm}}]\n"
@@ -59,9 +60,9 @@ def test_more_friction_less_mass_and_a_firmer_grip_lift_what_less_of_it_lifted(
 @pytest.mark.parametrize(
     ("what", "values"),
     [
-        ("friction", [0.9, 0.7, 0.5, 0.3, 0.2]),
+        ("friction", [0.5, 0.4, 0.3, 0.2, 0.1]),
         ("mass", [0.2, 0.1, 0.07, 0.05, 0.03]),
-        ("force", [5.0, 10.0, 15.0, 20.0, 25.0]),
+        ("force", [2.0, 3.0, 4.0, 5.0, 6.0]),
     ],
 )
 def test_a_cube_slides_further_with_less_friction_less_mass_and_more_force(what, values, tmp_path):
