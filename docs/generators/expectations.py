@@ -51,10 +51,16 @@ little carries a named warning. `harness run --strict`, `harness judge --strict`
 
 | warning | condition |
 | --- | --- |
-| already true at the start | `eventually`, `lifted`, `displaced`, the second part of `until`, or what a formula awaits, holds at the first sample of its window; `placed`, `released` and `in` at the end, where the robot never touched the object and it moved by no more than 5 mm, or was in the container since the run began |
+| already true at the start | `eventually`, `lifted`, `displaced`, the second part of `until`, \
+or what a formula awaits, holds at the first sample of its window; `placed`, `released` and `in` \
+at the end, where the robot never touched the object and it moved by no more than 5 mm, or was \
+in the container since the run began |
 | premise never held | the left side of an `implies` holds at no sample of the window |
-| hardly observed | `always` or `never` of something that is in the scene at 1 % of the samples at most, as an object that the next step adds |
-| contact may be missed | `never: in_contact` or `never: collision` of an object that moves between two samples by more than its least width and the other's together: the physics looks for contacts at the samples |
+| hardly observed | `always` or `never` of something that is in the scene at 1 % of the samples \
+at most, as an object that the next step adds |
+| contact may be missed | `never: in_contact` or `never: collision` of an object that moves \
+between two samples by more than its least width and the other's together: the physics looks for \
+contacts at the samples |
 
 A step that fails unexpectedly ends the run. Expectations that could still have become true are
 then `not reached` and name that step: `lifted`, `eventually`, and everything that is judged at
