@@ -82,8 +82,8 @@ def longest_hold(values: FloatArray, times: FloatArray, *, is_first: bool = Fals
     """Longest time without a break for which a margin is not negative [s].
 
     Args:
-        values: Margins, shape (n,).
-        times: Of the samples [s], shape (n,).
+        values: The margins of a predicate, shape (n,).
+        times: The times of the samples [s], shape (n,).
         is_first: Only the time that begins with the first sample counts.
     """
     spans = [

@@ -30,13 +30,13 @@ def _run(arguments: argparse.Namespace) -> int:
     topics = BagTopics(
         arguments.joint_states, tuple(arguments.objects), dict(arguments.object_poses)
     )
-    asked = dict(arguments.overrides), arguments.allowed
+    options = dict(arguments.overrides), arguments.allowed
     if arguments.json:
         with only_json_on_stdout() as write_json:
-            grade = grade_bag(scenarios[0], Path(arguments.bag), topics, *asked)
+            grade = grade_bag(scenarios[0], Path(arguments.bag), topics, *options)
             write_json(_document(grade))
         return _code(grade)
-    grade = grade_bag(scenarios[0], Path(arguments.bag), topics, *asked)
+    grade = grade_bag(scenarios[0], Path(arguments.bag), topics, *options)
     _print_grade(grade)
     return _code(grade)
 

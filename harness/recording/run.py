@@ -287,7 +287,7 @@ class VerdictWarning:
 
     Attributes:
         name: One of a few fixed names: `already true at the start`, `premise never held`.
-        message: One sentence.
+        message: One sentence with the numbers.
     """
 
     name: str

@@ -52,7 +52,7 @@ FILES = (
               varied="parametrize: {params.time: [0.1 s, 0.2 s]}"),
     FileScene("object called `any`", "is a word of expectations", name="any",
               expect="never: {in_contact: {between: [robot, any]}}"),
-    FileScene("length for a joint that turns", "is a length; an angle is meant",
+    FileScene("length for a joint that turns", "is a length; an angle is expected",
               expect="joints: {positions: {joint1: 5 cm}}"),
     FileScene("degrees without a unit", "is between 0 and pi rad",
               expect="formula: always tilt(cube) < 90"),

@@ -25,7 +25,7 @@ from tests.grading.recordings import (
 )
 
 SCENARIO = """
-scenario: an arm turns beside a box
+scenario: an arm turns next to a box
 robot: {model: open_manipulator_x, base: {xyz: [0, 0, 0.01]}}
 world: empty
 objects:

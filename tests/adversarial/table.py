@@ -56,7 +56,7 @@ LIMITS = """
   carry the warning `contact may be missed`. Distances are interpolated there, to within 2 mm.
 - **Resting** is slow motion, at most 5 mm/s and 0.05 rad/s for 50 ms, not a proof of equilibrium:
   what creeps more slowly rests.
-- **`sees`** reads pictures. What is hidden behind a transparent body is hidden in the segmentation
+- **`sees`** reads pictures. What a transparent body covers is hidden in the segmentation
   too, although a person sees it through the body; nothing is refracted or mirrored.
 - **"Below" and "up"** are along the world's z axis. Under gravity in another direction `on`,
   `placed`, `upright` and `lifted` keep that meaning.

@@ -74,7 +74,7 @@ WINDOW_SCENES = (
     ),
     Scene(
         "premise that never holds",
-        "nobody lifts the box, and it must be held while it is above 10 cm",
+        "the box is not lifted, and it must be held while it is above 10 cm",
         "objects:\n" + CUBE % ON_FLOOR + "steps: [{wait: 0.2 s}]\n",
         "no sample shows it above 10 cm and not held",
         lambda run: not rose(run, "cube", 0.1),
@@ -208,7 +208,7 @@ WINDOW_SCENES = (
     ),
     Scene(
         "ball that passes through a plate between two samples",
-        "at 60 m/s a ball of 1 cm is before a plate of 4 mm at one sample, and behind it at the"
+        "at 60 m/s a ball of 1 cm is before a plate of 4 mm at one sample, and past it at the"
         " next",
         "objects:\n" + PLATE + BALL % "0.8, 0.3, 0.3"
         + "steps:\n" + PUSH % ("ball", "-60, 0, 0")

@@ -57,7 +57,7 @@ def test_a_value_has_the_dimension_of_its_joint(expected, is_right, tmp_path):
     said = messages(tmp_path, rest=f"expect: [{{{expected}}}]" if "(" not in expected else
                     f"expect:\n  - {expected}\n")  # fmt: skip
     assert (said == []) == is_right, said
-    assert all("is meant" in each or "joins" in each for each in said)
+    assert all("is expected" in each or "joins" in each for each in said)
 
 
 @pytest.mark.parametrize(

@@ -38,7 +38,7 @@ class Doubt:
     """Why points for what a recording shows are withheld, unless the grader allows it.
 
     Attributes:
-        kind: What `--allow` names.
+        kind: The word that `--allow` takes.
         message: What was found, and where.
         names: Objects that it concerns; empty where it concerns everything, or steps.
     """
@@ -84,8 +84,8 @@ def _first_jump(
     """Time of the first of several jumps there and back; None where there are too few [s].
 
     Args:
-        times: Of the messages [s], shape (N,), in any order.
-        values: Shape (N, k).
+        times: The times of the messages [s], shape (N,), in any order.
+        values: The values of the messages, shape (N, k).
         fastest: Speed that is no jump.
         slack: Distance that is no jump at any speed.
     """

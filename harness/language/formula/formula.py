@@ -189,7 +189,7 @@ def unit_of(node: Number, joint_units: Mapping[str, str] | None = None) -> str |
     """SI unit of a number: empty for a bare number, None where it is not known before a run.
 
     Args:
-        node: The number.
+        node: The number or signal of a formula.
         joint_units: The unit of each joint's position, where the robot is known.
     """
     match node:
