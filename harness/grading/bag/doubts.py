@@ -53,7 +53,7 @@ def publisher_doubts(
 ) -> Iterator[Doubt]:
     """Joints and objects whose messages jump there and back, as those of two publishers do."""
     for joint in description.movable_joints:
-        seconds, rows = rows_of_joint(joint.name, content.joints, timeline, "joint states")
+        seconds, rows = rows_of_joint(joint.name, content.joints, timeline, "")
         slides = joint.kind == "prismatic"
         limit = joint.velocity if np.isfinite(joint.velocity) else 2 * np.pi
         slack = SLACK["prismatic" if slides else "revolute"]
@@ -73,7 +73,7 @@ def _two_values(time: float) -> str:
 
 
 def _first_jump_of_track(track: Track, timeline: Timeline) -> float | None:
-    seconds, is_judged = timeline.rows(track, "the topic of frames or objects")
+    seconds, is_judged = timeline.rows(track)
     places = track.rows()[is_judged, :3]
     return _first_jump(seconds[is_judged], places, FASTEST_OBJECT, OBJECT_SLACK)
 

@@ -55,12 +55,12 @@ def sample_times(reference: Track, content: BagContent, timeline: Timeline) -> F
 
     A gap lasts to the end of the recording where the joints fall silent before other topics do.
     """
-    times, is_judged = timeline.rows(reference, "joint states")
+    times, is_judged = timeline.rows(reference)
     found = np.unique(times[is_judged])
     if len(found) < 2:
         return found
     others = [*content.joints.values(), *content.edges.values(), *content.objects.values()]
-    last = max(float(timeline.rows(track, "other topics")[0].max()) for track in others)
+    last = max(float(timeline.rows(track)[0].max()) for track in others)
     whole = with_gaps_filled(np.append(found, last) if last > found[-1] else found)
     is_silent = last - found[-1] > gap_limit(found)
     return whole if is_silent else whole[whole <= found[-1]]
