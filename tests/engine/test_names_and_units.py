@@ -45,6 +45,8 @@ def test_a_world_file_has_no_such_object_either(tmp_path):
         ("gripper: {position: 5 deg}", False),
         ("gripper: {position: 5 mm, tolerance: 1 deg}", False),
         ("gripper: {position: 5 mm, tolerance: 1 mm}", True),
+        ("gripper: {width: 2 cm, tolerance: 1 mm}", True),
+        ("gripper: {width: 2 cm, tolerance: 1 deg}", False),
         ("formula: always position(joint1) < 5 cm", False),
         ("formula: always position(joint1) + 5 cm < 1", False),
         ("formula: always effort(joint1) < 5 N", False),
