@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal, Protocol
+from typing import Any, ClassVar, Literal, Protocol
 
+import numpy as np
+
+from harness.core.details import Details
+from harness.core.registry import Plugin
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
-from harness.core.types import FloatArray
+from harness.core.types import BoolArray, FloatArray
 from harness.core.world import WorldObject
 from harness.recording.run import Signals
+from harness.robot.description import RobotDescription
 
 LONGEST_RUN = 600.0
 """Simulated time of one run at most [s]: a file cannot fill the machine's memory or its day."""
@@ -201,7 +207,8 @@ class PlanningOptions:
     """How to plan; every number known.
 
     Attributes:
-        planner_id: `auto`, or OMPL's or MoveIt's name: `RRTConnectkConfigDefault` ...
+        pipeline: The planning pipeline, a plug-in of the kind `planner`.
+        planner_id: A planner of the pipeline; of `ompl`: `auto`, or OMPL's or MoveIt's name.
         max_state_checks: Budget of state validity checks for one attempt.
         attempts: Plans tried, each with a seed of its own.
         velocity_scaling: The share of the joint velocity limits, (0, 1].
@@ -214,6 +221,7 @@ class PlanningOptions:
         path_only: Leave out the times: the plan jumps from its start to its end.
     """
 
+    pipeline: str = "ompl"
     planner_id: str = "auto"
     max_state_checks: int = 200_000
     attempts: int = 1
@@ -240,8 +248,21 @@ class MotionPlan:
 
     trajectory: JointTrajectory
     statistics: Mapping[str, Any]
-    explanation: Mapping[str, Any]
-    result: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    explanation: Details
+    result: Details = field(default_factory=Details)
+
+
+@dataclass(frozen=True, eq=False)
+class CheckedGoal:
+    """A goal that can be reached.
+
+    Attributes:
+        positions: The group positions of the free solution that is tried first, shape (dof,).
+        explanation: The solutions of inverse kinematics, and what rules each of them out.
+    """
+
+    positions: FloatArray
+    explanation: Details
 
 
 @dataclass(frozen=True)
@@ -346,6 +367,197 @@ class Kinematics(Protocol):
         ...
 
 
+class JointSpace(Protocol):
+    """The joints of a planning group and their limits; the rest of the robot stands still."""
+
+    joint_names: tuple[str, ...]
+    lower: FloatArray
+    """Position limits, shape (dof,) [rad or m]; -inf for continuous joints."""
+    upper: FloatArray
+    """The upper ones, shape (dof,)."""
+    wraps: BoolArray
+    """Which joints turn, so that a whole turn more is the same place, shape (dof,)."""
+    metric: FloatArray
+    """Weights of joint-space distances, shape (dof,): 1 for radians, more for metres."""
+
+    @property
+    def dof(self) -> int:
+        """Number of joints."""
+        ...
+
+    def distance(self, first: FloatArray, second: FloatArray) -> float:
+        """Joint-space distance in the metric [rad]."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class PathRequest:
+    """What a planning pipeline must find: a free path from a start to one of several goals.
+
+    The checks answer for the planning scene as it is now, with attached objects, allowed
+    collisions and padding; each costs state checks. After the budget is used up, a check ends the
+    search of a third-party planner: the search has failed.
+
+    Attributes:
+        planner_id: The name of the planner, as `PathPlanner.check` returned it.
+        space: The joints that move.
+        start: Joint positions, shape (dof,), free.
+        goals: Joint positions, shape (dof,) each, free; nearest first.
+        is_state_free: Whether joint positions are free of collisions.
+        is_edge_free: Whether the straight line from free joint positions to others is free.
+        state_checks: The number of state checks used by this search.
+        max_state_checks: The budget of this search.
+        resolution: Largest distance between the states that an edge check checks [rad].
+        seed: The only source of randomness; the same request must give the same path.
+        parameters: The planner's parameters, by name.
+    """
+
+    planner_id: str
+    space: JointSpace
+    start: FloatArray
+    goals: tuple[FloatArray, ...]
+    is_state_free: Callable[[FloatArray], bool]
+    is_edge_free: Callable[[FloatArray, FloatArray], bool]
+    state_checks: Callable[[], int]
+    max_state_checks: int
+    resolution: float
+    seed: int
+    parameters: Mapping[str, float]
+
+    @property
+    def rng(self) -> np.random.Generator:
+        """A generator of random numbers at the start of its sequence."""
+        return np.random.default_rng(self.seed)
+
+
+@dataclass(frozen=True, eq=False)
+class PathResult:
+    """What a planning pipeline found.
+
+    Attributes:
+        waypoints: Joint positions, shape (N, dof), from the start to a goal; None: no path.
+        vertices: The number of vertices of its trees or graph, for statistics.
+        gap: The joint-space distance that was left to a goal [rad]; None when it is not known.
+        planner_id: The planner that found it, where `planner_id` left that open.
+    """
+
+    waypoints: FloatArray | None
+    vertices: int = 0
+    gap: float | None = None
+    planner_id: str = ""
+
+
+class PathPlanner(Plugin, ABC):
+    """A planning pipeline, selected by `planning: {pipeline: NAME}`.
+
+    Its paths are checked anew, shortened, timed and verified like those of every other pipeline.
+
+    Attributes:
+        planner_ids: Names that `planner_id` may have; empty for a pipeline of one planner.
+        parameters: Names that `parameters` may have.
+    """
+
+    plugin_kind: ClassVar[str] = "planner"
+    planner_ids: ClassVar[tuple[str, ...]] = ()
+    parameters: ClassVar[tuple[str, ...]] = ()
+
+    @classmethod
+    def check(cls, planner_id: str, parameters: Mapping[str, float]) -> str:
+        """Check a file's `planner_id` and `parameters`.
+
+        Args:
+            planner_id: The name in the file; empty where the file has none.
+            parameters: The parameters in the file, by name.
+
+        Returns:
+            The planner's name; by default the first of `planner_ids`.
+
+        Raises:
+            ValueError: There is no such planner, or it takes no such parameter; says what there is.
+        """
+        name = planner_id or next(iter(cls.planner_ids), "")
+        if name and name not in cls.planner_ids:
+            known = ", ".join(cls.planner_ids) or "none, leave out `planner_id`"
+            raise ValueError(
+                f"the planning pipeline `{cls.name}` has no planner '{name}'; planners: {known}"
+            )
+        for each in parameters:
+            if each not in cls.parameters:
+                known = ", ".join(cls.parameters) or "none"
+                raise ValueError(
+                    f"the planning pipeline `{cls.name}` has no parameter '{each}' (it has: "
+                    f"{known})"
+                )
+        return name
+
+    @abstractmethod
+    def find_path(self, request: PathRequest) -> PathResult:
+        """Search a path; a new object of the class is made for every search."""
+
+
+@dataclass(frozen=True, eq=False)
+class IkRequest:
+    """What an inverse kinematics solver must find: joint positions that put a link somewhere.
+
+    Attributes:
+        goal: The link and its pose, or its position; in world axes.
+        space: The joints that move, and their limits.
+        seed_positions: Joint positions to start from, shape (dof,).
+        description: The robot, with its URDF and SRDF.
+        link_pose: T_world_link of the goal's link at joint positions of shape (dof,).
+        seed: The only source of randomness; the same request must give the same answer.
+    """
+
+    goal: PoseGoal | PositionGoal
+    space: JointSpace
+    seed_positions: FloatArray
+    description: RobotDescription
+    link_pose: Callable[[FloatArray], SE3]
+    seed: int
+
+    @property
+    def rng(self) -> np.random.Generator:
+        """A generator of random numbers at the start of its sequence."""
+        return np.random.default_rng(self.seed)
+
+
+@dataclass(frozen=True, eq=False)
+class IkResult:
+    """What an inverse kinematics solver found.
+
+    Attributes:
+        solutions: Joint positions, shape (dof,) each, in any order; whole turns are shifted into
+            the limits by the caller. Empty when the goal is not reached.
+        excess: How far the goal is beyond the chain's reach [m]; 0 when unknown or within reach.
+    """
+
+    solutions: tuple[FloatArray, ...]
+    excess: float = 0.0
+
+
+class IkSolver(Plugin, ABC):
+    """An inverse kinematics solver, selected by `robot: {ik_solver: NAME}`.
+
+    Its answers are compared with forward kinematics, and those that miss the goal are refused.
+
+    Attributes:
+        is_refined: Answers are exact only for an ideal arm, and are refined by Newton steps.
+    """
+
+    plugin_kind: ClassVar[str] = "ik_solver"
+    is_refined: ClassVar[bool] = False
+
+    @classmethod
+    def fits(cls, request: IkRequest) -> bool:
+        """Whether the solver is made for such an arm and goal; otherwise `numeric` is used."""
+        del request
+        return True
+
+    @abstractmethod
+    def solve(self, request: IkRequest) -> IkResult:
+        """Find joint positions; a new object of the class is made for every goal."""
+
+
 class MotionPlanner(Protocol):
     """Finds motions of a group that can be trusted, or raises PlanningFailed and says why."""
 
@@ -446,7 +658,7 @@ class MotionPlanner(Protocol):
         goal: Goal | AnyGoal,
         options: PlanningOptions,
         constraints: PathConstraints | None = None,
-    ) -> Mapping[str, Any]:
+    ) -> CheckedGoal:
         """What can be said of a goal without planning to it: IK solutions and what became of each.
 
         Raises:
@@ -465,6 +677,7 @@ class GripperResult:
         stalled: Stopped before the goal (contact).
         reached_goal: Whether it is at the commanded position within tolerance.
         contacts: Object names in contact with each finger side at the end, by side name.
+        between: Names of objects that two finger sides press from opposite sides at the end.
     """
 
     position: float
@@ -472,6 +685,7 @@ class GripperResult:
     stalled: bool
     reached_goal: bool
     contacts: Mapping[str, tuple[str, ...]]
+    between: tuple[str, ...]
 
 
 class Faults(Protocol):

@@ -29,7 +29,7 @@ from harness.language.reading.load import load_scenario
 from harness.recording.run import Measure, Run, Verdict
 from harness.recording.store import read_run
 from harness.session.rejudge import expectations_of
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 FOLDER = ROOT / "docs/pictures/expectations"
 RENEW = "python -m docs.generators.expectation_pictures"

@@ -9,8 +9,8 @@ import cv2
 
 from docs import ROOT
 from harness.core.types import FloatArray
-from harness.session.run_case import run_case
 from tests.reporting.browser import launched, wait_for
+from tests.running import run_case
 
 FOLDER = ROOT / "docs/pictures/gallery"
 LESSONS = ROOT / "scenarios/lessons"

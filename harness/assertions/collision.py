@@ -7,30 +7,43 @@ A contact of two bodies is no collision where
 - the fingers of the gripper meet, closing on nothing;
 - fingers or palm grip an object: see `_gripping`;
 - two objects touch, none of them in the hand (a box that stands on a table);
-- an object in the hand still touches what it touched when it was gripped, until it leaves that, or
-  is being put down: the contact, with something under it, outlasts the hold.
-Gaps under `BRIDGE` seconds end neither a contact between objects nor a hold.
+- an object in the hand, held by the fingers or welded to it, still touches what it touched when it
+  was gripped, until it leaves that, or is being put down: the contact, with something under it,
+  outlasts the hold.
+The last two excuses of a hand and what it holds end where they press harder than `excused_force`
+explains, or where the object is dragged along. Gaps under `BRIDGE` seconds end neither a contact
+between objects nor a hold.
 """
 
 from __future__ import annotations
 
+from itertools import permutations
+
 import numpy as np
 
 from harness.assertions.contacts import (
+    TOUCH_FORCE,
     attached,
     bodies,
     debounced,
     finger_links,
     force_between,
-    held_by_fingers,
+    side_forces,
 )
+from harness.assertions.excused_force import (
+    DRAG,
+    dragged,
+    hand_limit,
+    held_limit,
+    mean_force,
+)
+from harness.assertions.hold import held_by_fingers, welded
 from harness.assertions.support import is_below
-from harness.assertions.temporal import episodes
-from harness.core.types import BoolArray
+from harness.assertions.temporal import bridged, episodes
+from harness.assertions.text import amount, amounts
+from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import Run
 
-BRIDGE = 0.1
-"""[s]"""
 GRIPPING_VERBS = ("gripper", "grasp", "release")
 RESTING_VERBS = (*GRIPPING_VERBS, "wait", "settle")
 
@@ -55,7 +68,43 @@ def colliding(run: Run, pair: Pair, count_allowed: bool = False) -> BoolArray:
     static = {record.name for record in run.objects if record.is_static}
     if link in run.robot.static_links and thing in static:
         return np.zeros_like(touching)
-    return touching & ~_gripping(run, link, thing)
+    gripping = _gripping(run, link, thing)
+    if gripping.any():
+        gripping &= mean_force(run, link, thing) <= hand_limit(run, thing)
+    return touching & ~gripping
+
+
+def why_not_excused(run: Run, pair: Pair) -> str:
+    """How a contact of the hand, or of what it holds, goes beyond its excuse; empty if it does not.
+
+    Contacts that nothing excuses have no such reason.
+    """
+    links = frozenset(run.robot.link_names)
+    things = [name for name in pair if name not in links]
+    if run.robot.gripper is None or not things:
+        return ""
+    force = mean_force(run, *pair)
+    beyond = np.zeros(len(force))
+    limits = np.zeros(len(force))
+    if len(things) == 1:
+        (link,) = set(pair) - set(things)
+        limits = hand_limit(run, things[0])
+        beyond = np.where(_gripping(run, link, things[0]), force - limits, 0.0)
+    for held, other in permutations(things, 2):
+        limit = _held_limit(run, held)
+        for first, last, is_excused in _contacts_in_hand(run, held, other):
+            if not is_excused:
+                continue
+            moved = dragged(run, held, other, first, last)
+            if moved.max(initial=0.0) >= DRAG:
+                return f"dragged along it by {amount(float(moved.max()), 'm')}"
+            beyond[first:last] = (force - limit)[first:last]
+            limits[first:last] = limit[first:last]
+    worst = int(np.argmax(beyond))
+    if beyond[worst] <= 0:
+        return ""
+    pressed, explained = amounts(float(force[worst]), float(limits[worst]), "N")
+    return f"{pressed} over 50 ms, where weight and grip explain {explained}"
 
 
 def _allowed(run: Run, pair: Pair) -> BoolArray:
@@ -101,7 +150,8 @@ def _gripping(run: Run, link: str, name: str) -> BoolArray:
         return np.zeros(len(run.signals.times), dtype=bool)
     held = held_by_fingers(run, name)
     begins = _steps_of(run, GRIPPING_VERBS, held)
-    lasts = attached(run, name) | held | _steps_of(run, RESTING_VERBS)
+    touched = np.min(list(side_forces(run, name).values()), axis=0) >= TOUCH_FORCE
+    lasts = attached(run, name) | touched | _steps_of(run, RESTING_VERBS)
     contact = debounced(run, force_between(run, hand, {name})) > 0
     mask = np.zeros(len(contact), dtype=bool)
     for start, stop in episodes(contact & lasts):
@@ -111,31 +161,49 @@ def _gripping(run: Run, link: str, name: str) -> BoolArray:
     return mask
 
 
+def _holds(run: Run, name: str) -> BoolArray:
+    """Samples at which the hand holds an object, welds and short gaps included, shape (N,)."""
+    mask = held_by_fingers(run, name) | welded(run, name)
+    for start, stop in bridged(run.signals.times, episodes(mask)):
+        mask[start:stop] = True
+    return mask
+
+
+def _held_limit(run: Run, name: str) -> FloatArray:
+    return held_limit(run, name, _steps_of(run, GRIPPING_VERBS))
+
+
 def _hits_from_hand(run: Run, held: str, other: str) -> BoolArray:
     """Samples at which an object in the hand touches another without excuse, shape (N,)."""
     guilty = np.zeros(len(run.signals.times), dtype=bool)
-    if run.robot.gripper is None:
+    contacts = _contacts_in_hand(run, held, other)
+    if not contacts:
         return guilty
-    holds = _bridged(run, episodes(held_by_fingers(run, held)))
-    contacts = _bridged(run, episodes(force_between(run, {held}, {other}) > 0))
-    carries = is_below(run, other, held) if holds and contacts else guilty
-    for hold_start, hold_stop in holds:
-        for start, stop in contacts:
-            if start >= hold_stop or stop <= hold_start or start <= hold_start:
-                continue
-            put_down = stop > hold_stop and bool(carries[hold_stop - 1])
-            if not put_down:
-                guilty[start : min(stop, hold_stop)] = True
+    presses = mean_force(run, held, other) > _held_limit(run, held)
+    for first, last, is_excused in contacts:
+        if is_excused:
+            guilty[first:last] |= presses[first:last]
+            guilty[first:last] |= dragged(run, held, other, first, last) >= DRAG
+        else:
+            guilty[first:last] = True
     return guilty
 
 
-def _bridged(run: Run, spans: list[tuple[int, int]]) -> list[tuple[int, int]]:
-    """The same spans with gaps shorter than `BRIDGE` closed."""
-    times = run.signals.times
-    joined: list[tuple[int, int]] = []
-    for start, stop in spans:
-        if joined and times[start] - times[joined[-1][1] - 1] < BRIDGE:
-            joined[-1] = (joined[-1][0], stop)
-        else:
-            joined.append((start, stop))
-    return joined
+def _contacts_in_hand(run: Run, held: str, other: str) -> list[tuple[int, int, bool]]:
+    """Contacts of an object in the hand with another: first sample, one past the last, excused?
+
+    They are excused where the object leaves what it touched before, or is put down on it.
+    """
+    if run.robot.gripper is None:
+        return []
+    holds = episodes(_holds(run, held))
+    contacts = bridged(run.signals.times, episodes(force_between(run, {held}, {other}) > 0))
+    carries = is_below(run, other, held) if holds and contacts else np.zeros(0, dtype=bool)
+    found: list[tuple[int, int, bool]] = []
+    for hold_start, hold_stop in holds:
+        for start, stop in contacts:
+            if start < hold_stop and stop > hold_start:
+                put_down = stop > hold_stop and bool(carries[hold_stop - 1])
+                span = max(start, hold_start), min(stop, hold_stop)
+                found.append((*span, start <= hold_start or put_down))
+    return found

@@ -11,16 +11,14 @@ from collections.abc import Collection
 import numpy as np
 
 from harness.assertions.poses import SCENE_VERBS, present
-from harness.assertions.temporal import TIME_RESOLUTION, trailing_max
-from harness.assertions.window import NotObservable, object_record
-from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Sphere
+from harness.assertions.temporal import trailing_max
+from harness.assertions.window import NotObservable
+from harness.core.antipodal import least_thickness
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import GripperRecord, Run, VerdictWarning
 
 TOUCH_FORCE = 1e-3
 """A tenth of the weight of one gram; less is no support and no grip [N]."""
-GIVE = 0.003
-"""How far pads and object may press into each other, and a gap's table be off [m]."""
 DEBOUNCE = 0.010
 """Longest gap inside one contact [s]: ten physics steps of 1 ms."""
 
@@ -87,57 +85,6 @@ def side_forces(run: Run, name: str) -> dict[str, FloatArray]:
     }
 
 
-def held_by_fingers(run: Run, name: str, min_force: float = TOUCH_FORCE) -> BoolArray:
-    """Samples at which every finger side touches an object that is between them, shape (N,)."""
-    forces = list(side_forces(run, name).values())
-    if not forces:
-        raise NotObservable("the gripper has no finger sides")
-    held = np.min(forces, axis=0) >= max(min_force, TOUCH_FORCE)
-    return held & between_fingers(run, name) if held.any() else held
-
-
-def between_fingers(run: Run, name: str) -> BoolArray:
-    """Samples at which an object that all sides touch is between them, shape (N,).
-
-    A slab that leans against the tips touches both fingers, and so does what lies on them like on a
-    shelf: they press it the same way, or are closer than it is thin.
-    """
-    between = _presses_from_both_sides(run, name)
-    if gripper_of(run).widths:
-        between = between & (finger_gap(run) + GIVE >= least_width(run, name))
-    return between
-
-
-def _presses_from_both_sides(run: Run, name: str) -> BoolArray:
-    """Samples at which two finger sides press an object against each other, shape (N,).
-
-    Where no direction was recorded (an older run) the press counts.
-    """
-    sides = gripper_of(run).sides
-    pressures: list[FloatArray] = []
-    for side in sorted(sides):
-        keys = [key for key in run.signals.presses if key[0] in sides[side] and key[1] == name]
-        if not keys:
-            return np.ones(len(run.signals.times), dtype=bool)
-        forces = [np.nan_to_num(run.signals.presses[key][:, 3:]) for key in keys]
-        total = np.sum(forces, axis=0)
-        pressures.append(_recent_sum(run, total))
-    opposed = [
-        np.sum(first * second, axis=1) < 0
-        for index, first in enumerate(pressures)
-        for second in pressures[index + 1 :]
-    ]
-    return np.any(opposed, axis=0) if opposed else np.ones(len(run.signals.times), dtype=bool)
-
-
-def _recent_sum(run: Run, vectors: FloatArray) -> FloatArray:
-    """Sum of the last `DEBOUNCE` seconds at each sample, shape (N, 3)."""
-    times = run.signals.times
-    first = np.searchsorted(times, times - DEBOUNCE - TIME_RESOLUTION)
-    summed = np.concatenate([np.zeros((1, 3)), np.cumsum(vectors, axis=0)])
-    return summed[1:] - summed[first]
-
-
 def finger_gap(run: Run) -> FloatArray:
     """Gap between the pads at each sample [m], shape (N,).
 
@@ -153,24 +100,6 @@ def finger_gap(run: Run) -> FloatArray:
     return np.interp(position, rows[:, 0], rows[:, 1])
 
 
-def least_width(run: Run, name: str) -> float:
-    """What a gap must have at least so that a part of the object fits into it [m]; 0 if unknown."""
-    widths = [_least_width(shape.geometry) for shape in object_record(run, name).shapes]
-    return min(widths, default=0.0)
-
-
-def _least_width(geometry: Geometry) -> float:
-    match geometry:
-        case Box(size=size):
-            return min(size)
-        case Cylinder(radius=radius, length=length):
-            return min(2 * radius, length)
-        case Sphere(radius=radius) | Capsule(radius=radius):
-            return 2 * radius
-        case _:
-            return 0.0
-
-
 def attached(run: Run, name: str) -> BoolArray:
     """Samples at which the planning scene holds an object, or its stand-in, shape (N,)."""
     times = run.signals.times
@@ -179,21 +108,6 @@ def attached(run: Run, name: str) -> BoolArray:
         if name in (record.object, record.represents):
             mask |= (times >= record.start_time) & (times < record.end_time)
     return mask
-
-
-def weld_note(run: Run, name: str) -> str:
-    """What a verdict says of an object that a grasp with `mode: weld` fixed in the physics too."""
-    welded = any(
-        step.result.get("mode") == "weld" and step.result.get("attached") == name
-        for step in run.steps
-    )
-    return "; welded to the hand by `mode: weld`" if welded else ""
-
-
-def in_hand(run: Run, name: str) -> BoolArray:
-    """Samples at which an object is attached, or between all finger sides, shape (N,)."""
-    mask = attached(run, name)
-    return mask if run.robot.gripper is None else mask | held_by_fingers(run, name)
 
 
 def robot_contact(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
@@ -288,8 +202,8 @@ def skipped_contacts(run: Run, pairs: Collection[tuple[str, str]]) -> tuple[Verd
 
 def _least_known_width(run: Run, name: str) -> float:
     """The least width of an object [m]; 0 of a link, and of a mesh."""
-    known = [record for record in run.objects if record.name == name]
-    return least_width(run, name) if known else 0.0
+    shapes = [record.shapes for record in run.objects if record.name == name]
+    return least_thickness(shapes[0]) if shapes else 0.0
 
 
 def _jumps(run: Run, count: int) -> BoolArray:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.assertions.contacts import attached, in_hand
+from harness.assertions.contacts import attached
+from harness.assertions.hold import in_hand
 from harness.assertions.window import NotObservable, NotReached, object_record
 from harness.core.types import FloatArray
 from harness.recording.run import Run

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.assertions.contacts import held_by_fingers
+from harness.assertions.hold import held_by_fingers
 from harness.assertions.poses import link_poses, object_poses
 from harness.assertions.window import NotObservable, NotReached, object_record
 from harness.core.pose_arrays import (

@@ -8,16 +8,16 @@ from dataclasses import replace
 import numpy as np
 
 from harness.assertions.expectation import Expectation
+from harness.assertions.expectation_text import describe
 from harness.assertions.placed import PlacedExpectation
-from harness.assertions.recorded import guarded
+from harness.assertions.recorded import guard_unrecorded
 from harness.assertions.window import NotObservable, NotReached
-from harness.assertions.wording import describe
 from harness.recording.run import Run, Verdict
 
 
 def judge(run: Run, expectations: Sequence[PlacedExpectation]) -> tuple[Verdict, ...]:
     """A verdict for each expectation, in their order."""
-    readable = guarded(run)
+    readable = guard_unrecorded(run)
     return tuple(_judge(readable, expectation) for expectation in expectations)
 
 

@@ -19,6 +19,8 @@ WORDS = {
     "support_forces": "what carries what",
     "clearances": "distances",
     "planned_clearances": "planned distances",
+    "frictions": "the friction forces of the robot",
+    "link_overlaps": "overlaps of links",
 }
 
 
@@ -80,7 +82,7 @@ class _Guarded:
         return getattr(self._signals, name)
 
 
-def guarded(run: Run) -> Run:
+def guard_unrecorded(run: Run) -> Run:
     """The same run; what it does not have cannot be read as if nothing had happened."""
     if not run.unrecorded:
         return run

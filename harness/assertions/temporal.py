@@ -17,6 +17,8 @@ TIME_RESOLUTION = 1e-9
 """Times nearer than this are the same [s]."""
 
 
+BRIDGE = 0.1
+"""Gaps under this time end neither a contact between objects nor a hold [s]."""
 FOREVER = 1e9
 """Longer than any time that an expectation names [s]."""
 
@@ -76,6 +78,17 @@ def episodes(mask: BoolArray) -> list[tuple[int, int]]:
     """Runs of true samples as (start, stop), in order."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
     return [(int(start), int(stop)) for start, stop in edges.reshape(-1, 2)]
+
+
+def bridged(times: FloatArray, spans: list[tuple[int, int]]) -> list[tuple[int, int]]:
+    """The same spans with gaps shorter than `BRIDGE` closed."""
+    joined: list[tuple[int, int]] = []
+    for start, stop in spans:
+        if joined and times[start] - times[joined[-1][1] - 1] < BRIDGE:
+            joined[-1] = (joined[-1][0], stop)
+        else:
+            joined.append((start, stop))
+    return joined
 
 
 def longest_hold(values: FloatArray, times: FloatArray, *, is_first: bool = False) -> float:

@@ -15,6 +15,7 @@ from harness.core.types import FloatArray
 from harness.engine.dry_run import DryPlanner, DrySimulator
 from harness.engine.execute import execute_program
 from harness.planning.collision.scene import CoalScene
+from harness.planning.search.find_pipeline import with_planner
 from harness.ports import AnyGoal, Goal, MotionPlan, PathConstraints, PlanningOptions
 from harness.recording.run import StepRecord
 from harness.session.prepare import Prepared, prepare
@@ -63,7 +64,7 @@ def collect(
 
     Args:
         path: The path of the scenario.
-        planners: The `planner_id`s to compare.
+        planners: Planners of `ompl`, names of pipelines, or `PIPELINE/PLANNER`.
         seeds: Scenario seeds; `harness run --seed` plans the same motions.
         on_motion: Called with each motion when its trials are complete.
         overrides: Dotted path in the file -> new value, as YAML text.
@@ -135,8 +136,8 @@ class _BenchPlanner(DryPlanner):
             return jump
         trials: list[Trial] = []
         for planner, seed in product(self._planners, self._seeds):
-            chosen = replace(options, planner_id=planner, seed=step_seed(seed, step.path))
-            trial = try_plan(self._real, self._scene, group, start, goal, chosen, seed)
+            chosen = replace(with_planner(options, planner), seed=step_seed(seed, step.path))
+            trial = try_plan(self._real, self._scene, group, start, goal, chosen, planner, seed)
             trials.append(trial)
             if trial.is_straight:
                 break  # a free straight line needs no search, with any planner

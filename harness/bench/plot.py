@@ -8,7 +8,7 @@ from html import escape
 import numpy as np
 
 from harness.bench.collect import Motion
-from harness.bench.summary import QUANTITIES, Quantity, of_planner, values
+from harness.bench.summary import QUANTITIES, ComparedQuantity, of_planner, values
 
 PANEL_WIDTH, LABEL_WIDTH, ROW, TOP, BOTTOM, GAP = 360, 130, 26, 42, 34, 24  # [px]
 COLUMNS, HEAD = 2, 56
@@ -60,7 +60,9 @@ def _success(motions: Sequence[Motion], planners: Sequence[str]) -> list[str]:
     return parts
 
 
-def _boxes(quantity: Quantity, motions: Sequence[Motion], planners: Sequence[str]) -> list[str]:
+def _boxes(
+    quantity: ComparedQuantity, motions: Sequence[Motion], planners: Sequence[str]
+) -> list[str]:
     found = {planner: values(quantity, of_planner(motions, planner)) for planner in planners}
     every = [value for row in found.values() for value in row]
     if not every:

@@ -12,7 +12,7 @@ from harness.bench.trial import Trial
 
 
 @dataclass(frozen=True)
-class Quantity:
+class ComparedQuantity:
     """A measured quantity that is compared between planners.
 
     Attributes:
@@ -33,16 +33,20 @@ class Quantity:
 
 
 QUANTITIES = (
-    Quantity("state_checks", "state checks", lambda t: float(t.state_checks), 0, False, True),
-    Quantity("planning_time", "planning time [ms]", lambda t: 1e3 * t.planning_time, 1, True, True),
-    Quantity("path_length", "path length [rad]", lambda t: t.path_length, 2),
-    Quantity("smoothness", "smoothness [rad²]", lambda t: t.smoothness, 4),
-    Quantity("clearance", "clearance [mm]", lambda t: 1e3 * t.clearance, 1),
+    ComparedQuantity(
+        "state_checks", "state checks", lambda t: float(t.state_checks), 0, False, True
+    ),
+    ComparedQuantity(
+        "planning_time", "planning time [ms]", lambda t: 1e3 * t.planning_time, 1, True, True
+    ),
+    ComparedQuantity("path_length", "path length [rad]", lambda t: t.path_length, 2),
+    ComparedQuantity("smoothness", "smoothness [rad²]", lambda t: t.smoothness, 4),
+    ComparedQuantity("clearance", "clearance [mm]", lambda t: 1e3 * t.clearance, 1),
 )
 """The table shows their medians. Smaller values are better, except for the clearance."""
 
 
-def values(quantity: Quantity, trials: Sequence[Trial]) -> list[float]:
+def values(quantity: ComparedQuantity, trials: Sequence[Trial]) -> list[float]:
     """A quantity of the trials that have it."""
     found = [quantity.value(t) for t in trials if t.is_solved or not quantity.solved_only]
     return [value for value in found if np.isfinite(value)]
@@ -59,7 +63,7 @@ def of_planner(motions: Sequence[Motion], planner: str) -> list[Trial]:
     ]
 
 
-def table(motions: Sequence[Motion], planners: Sequence[str]) -> str:
+def planner_table(motions: Sequence[Motion], planners: Sequence[str]) -> str:
     """One row per planner: its successes, then the medians."""
     rows = [["planner", "success", *(quantity.name for quantity in QUANTITIES)]]
     for planner in planners:

@@ -13,6 +13,7 @@ from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.planning.collision.scene import CoalScene
 from harness.ports import AnyGoal, Goal, MotionPlanner, PlanningOptions
+from harness.recording.motion_failures import SearchFailure
 
 SPACING = 0.05
 """Joint-space distance between the states that smoothness and clearance are measured at [rad]."""
@@ -29,7 +30,7 @@ class Trial:
     """The result of one planning attempt.
 
     Attributes:
-        planner: The `planner_id` of the trial.
+        planner: The planner's name, as `with_planner` takes it.
         seed: Seed of the scenario; `harness run --seed` plans the same motion.
         error_code: Code of the failure; empty when planning succeeded.
         state_checks: States checked for collision, including shortening and verification.
@@ -67,6 +68,7 @@ def try_plan(
     start: FloatArray,
     goal: Goal | AnyGoal,
     options: PlanningOptions,
+    name: str,
     seed: int,
 ) -> Trial:
     """Plan once, and measure the result.
@@ -78,20 +80,22 @@ def try_plan(
         start: Joint positions in description order.
         goal: Goal of the motion.
         options: Options with the planner and the step's seed.
+        name: Name of the planner, for the record.
         seed: Seed of the scenario, for the record.
     """
     begin = time.process_time()
     try:
         plan = planner.plan(group, start, goal, options)
     except PlanningFailed as failure:
-        checks = int(failure.facts.get("state_checks", 0))
-        return Trial(options.planner_id, seed, failure.code, checks)
+        search = failure.details.find(SearchFailure)
+        checks = 0 if search is None else search.state_checks
+        return Trial(name, seed, failure.code, checks)
     spent = time.process_time() - begin
     path = even(plan.trajectory.positions)
     nearest = _clearances(scene, group, start, path)
     statistics: Mapping[str, Any] = plan.statistics
     return Trial(
-        options.planner_id,
+        name,
         seed,
         "",
         int(statistics["state_checks"]),

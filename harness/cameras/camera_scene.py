@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from harness.cameras.picture_model import PictureModel, build_picture_model
-from harness.cameras.recorded_scene import floor_height, poses_at
+from harness.cameras.recorded_scene import floor_height, scene_poses
 from harness.cameras.viewpoint import View, view_of
 from harness.core.camera import Camera
 from harness.core.geometry import Plane
@@ -54,7 +54,7 @@ class CameraScene:
 
     def pose(self, sample: int) -> dict[str, SE3]:
         """Pose all bodies as in a sample; returns T_world_body of those present, and of `world`."""
-        poses = poses_at(self._description, self._objects, self._run, sample)
+        poses = scene_poses(self._description, self._objects, self._run, sample)
         self.picture.pose(poses)
         return poses
 

@@ -76,7 +76,8 @@ def take_pictures(
             camera.name, RayRenderer(scene.picture, camera.width, camera.height)
         )
         time = float(run.signals.times[look.sample])
-        stem = f"{folders[camera.name]}/{time:08.3f}s-{slug(look.step) if look.step else 'look'}"
+        subject = file_stem(look.step) if look.step else "look"
+        stem = f"{folders[camera.name]}/{time:08.3f}s-{subject}"
         taken = _Shot(scene, camera, view, renderer, run.seed, look)
         encoded = taken.encoded()
         suffixes = SUFFIXES if look.step else {**SUFFIXES, "color": ".color.jpg"}
@@ -154,14 +155,14 @@ def camera_folders(cameras: Sequence[Camera]) -> dict[str, str]:
     """A separate folder for each camera, by its name."""
     folders: dict[str, str] = {}
     for camera in cameras:
-        folder = f"{FOLDER}/{slug(camera.name)}"
+        folder = f"{FOLDER}/{file_stem(camera.name)}"
         while folder in folders.values():
             folder += "_"
         folders[camera.name] = folder
     return folders
 
 
-def slug(name: str) -> str:
+def file_stem(name: str) -> str:
     """A name as part of a file's name."""
     return re.sub(r"[^A-Za-z0-9_-]+", "-", name).strip("-")[:48] or "camera"
 

@@ -12,7 +12,7 @@ import numpy as np
 from harness.cameras.mesh_part import MeshPart, coarsen
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh, Rgba
-from harness.robot.mesh_file import unit_of
+from harness.robot.mesh_file import metres_per_unit
 
 
 def load_collada(geometry: Mesh) -> tuple[MeshPart, ...]:
@@ -26,7 +26,7 @@ def load_collada(geometry: Mesh) -> tuple[MeshPart, ...]:
     import collada  # here: few robots have COLLADA files
     import collada.common
 
-    scale = unit_of(geometry) * np.array(geometry.scale)
+    scale = metres_per_unit(geometry) * np.array(geometry.scale)
     unknown = [collada.common.DaeUnsupportedError, collada.common.DaeBrokenRefError]
     try:
         with warnings.catch_warnings():  # the library uses numpy.matrix

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from harness.cameras.caption import write_captioned
 from harness.cameras.marks import GOAL, ORANGE, RED, frame_mark, line_mark, mark
 from harness.cameras.picture_model import PictureModel, build_picture_model
-from harness.cameras.recorded_scene import floor_height, poses_at
+from harness.cameras.recorded_scene import floor_height, scene_poses
 from harness.cameras.renderer import render_overview
-from harness.cameras.robot_poses import link_poses
 from harness.cameras.stills import HEIGHT, WIDTH
 from harness.core.geometry import Shape, Sphere, bounding_radius
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
+from harness.recording.explanation import NearestState, recorded_explanation
 from harness.recording.run import Run, StepRecord
 from harness.robot.description import RobotDescription
+from harness.robot.forward_kinematics import robot_poses
 
 ARM_SIZE = 0.12  # radius around a link's origin that the view contains [m]
 
@@ -33,7 +33,7 @@ def draw_failure(
     *,
     backend: str = "auto",
 ) -> None:
-    """Write a JPEG of the state in a step's `explanation["nearest"]`, with the goal.
+    """Write a JPEG of the state that explains a failed step, with the goal.
 
     The axes x, y, z of the goal's frame are red, green, blue; an orange line connects the link with
     it. Objects are where they were when the step failed, attached ones move with their link.
@@ -46,12 +46,13 @@ def draw_failure(
         file: The file to write; its folder exists.
         backend: `auto`, `egl`, `osmesa` or `rays`.
     """
-    nearest: Mapping[str, Any] = step.explanation["nearest"]
-    joints = nearest["joint_positions"]
-    state = np.array([joints[name] for name in description.joint_names])
+    nearest = recorded_explanation(step.explanation).nearest
+    if nearest is None:
+        raise ValueError(f"step {step.id} has no state to draw")
+    state = np.array([nearest.joint_positions[name] for name in description.joint_names])
     sample = min(max(step.end_index - 1, 0), len(run.signals.times) - 1)
-    poses = poses_at(description, world_objects, run, sample, step)
-    poses |= link_poses(description, state)
+    poses = scene_poses(description, world_objects, run, sample, step)
+    poses |= robot_poses(description, state)
     for held in run.attachments:
         if held.start_time <= step.end_time < held.end_time and held.object in poses:
             poses[held.object] = poses[held.link] @ SE3.from_vector(held.pose_in_link)
@@ -67,29 +68,29 @@ def draw_failure(
     picture.pose(poses | {mark.name: mark.pose for mark in marks})
     points, radii = _in_view(description, poses, marks)
     pixels = render_overview(picture, points, radii, WIDTH, HEIGHT, backend)
-    write_captioned(file, pixels, f"{step.error_code}: {nearest['shows']}{_missed_by(nearest)}")
+    write_captioned(file, pixels, f"{step.error_code}: {nearest.shows}{_missed_by(nearest)}")
 
 
-def _tint(picture: PictureModel, nearest: Mapping[str, Any]) -> None:
+def _tint(picture: PictureModel, nearest: NearestState) -> None:
     """Tint the two bodies of the deepest contact red."""
-    for touch in nearest.get("touches", ())[:1]:
-        for name in touch["pair"]:
+    for touch in (nearest.touches or ())[:1]:
+        for name in touch.pair:
             if name in picture.geoms:
                 colours = picture.rgba[picture.geoms[name]]
                 colours[:, :3] = 0.35 * colours[:, :3] + 0.65 * np.array(RED[:3])
 
 
-def _marks(nearest: Mapping[str, Any]) -> list[WorldObject]:
+def _marks(nearest: NearestState) -> list[WorldObject]:
     """The goal, and a line to it from the link's nearest pose."""
-    target = nearest.get("target")
-    if target is None:
+    target = nearest.target
+    if target is None or nearest.pose is None:
         return []
     point = np.array(target[:3], dtype=float)
     if len(target) == 7:
         marks = [frame_mark(SE3.from_vector(target))]
     else:
         marks = [mark(GOAL, SE3.from_xyz_rpy(point), Shape(Sphere(0.02), rgba=ORANGE))]
-    line = line_mark(np.array(nearest["pose"][:3], dtype=float), point)
+    line = line_mark(np.array(nearest.pose[:3]), point)
     return marks if line is None else [*marks, line]
 
 
@@ -105,14 +106,14 @@ def _in_view(
     return np.array(points), np.array(radii)
 
 
-def _missed_by(nearest: Mapping[str, Any]) -> str:
-    shift = float(nearest.get("position_error", 0.0))
-    turn = float(np.degrees(nearest.get("orientation_error", 0.0)))
+def _missed_by(nearest: NearestState) -> str:
+    shift = nearest.position_error or 0.0
+    turn = float(np.degrees(nearest.orientation_error or 0.0))
     parts = [f"{1000 * shift:.1f} mm"] if shift > 1e-5 else []
     parts += [f"{turn:.1f} deg"] if turn > 0.05 else []
     if parts:
         return f", {' and '.join(parts)} away"
-    for touch in nearest.get("touches", ())[:1]:
-        how = "deep" if touch["distance"] < 0 else "apart"
-        return f", {' and '.join(touch['pair'])} {1000 * abs(touch['distance']):.1f} mm {how}"
+    for touch in (nearest.touches or ())[:1]:
+        how = "deep" if touch.distance < 0 else "apart"
+        return f", {' and '.join(touch.pair)} {1000 * abs(touch.distance):.1f} mm {how}"
     return ""

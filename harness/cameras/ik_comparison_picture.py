@@ -12,12 +12,12 @@ from harness.cameras.marks import frame_mark, line_mark, mark
 from harness.cameras.picture_model import build_picture_model
 from harness.cameras.recorded_scene import floor_height
 from harness.cameras.renderer import render_overview
-from harness.cameras.robot_poses import link_poses
 from harness.cameras.stills import HEIGHT, WIDTH
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.robot.description import RobotDescription
+from harness.robot.forward_kinematics import robot_poses
 
 AXIS_LENGTH = 0.06  # of the target's frame [m]
 BLUE_GHOST = (0.15, 0.35, 0.95)
@@ -51,7 +51,7 @@ def draw_ik_comparison(
     """
     solid = expected if reached is None else reached
     assert solid is not None
-    shown = link_poses(description, solid)
+    shown = robot_poses(description, solid)
     marks = [frame_mark(target, AXIS_LENGTH)]
     line = line_mark(shown[link].translation, target.translation)
     marks += [] if line is None else [line]
@@ -80,7 +80,7 @@ def draw_ik_comparison(
 
 def _ghosts(description: RobotDescription, state: FloatArray) -> list[WorldObject]:
     """The robot's links at a state, translucent."""
-    poses = link_poses(description, state)
+    poses = robot_poses(description, state)
     return [
         replace(mark(f"{link.name} expected", poses[link.name], *link.visuals), in_simulation=False)
         for link in description.links

@@ -6,15 +6,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from harness.cameras.robot_poses import link_poses
 from harness.core.geometry import Plane
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.recording.run import Run, StepRecord
 from harness.robot.description import RobotDescription
+from harness.robot.forward_kinematics import robot_poses
 
 
-def poses_at(
+def scene_poses(
     description: RobotDescription,
     world_objects: Sequence[WorldObject],
     run: Run,
@@ -33,7 +33,7 @@ def poses_at(
         step: Selects one of several steps that share the sample. Changes by steps without duration
             at the moment a motion ends are not part of the motion's end.
     """
-    poses = link_poses(description, run.signals.joint_positions[sample])
+    poses = robot_poses(description, run.signals.joint_positions[sample])
     present = _present_after(run, step)
     seen = sample if step is None or step.end_time > step.start_time else sample + 1
     for obj in world_objects:
@@ -54,7 +54,7 @@ def floor_height(description: RobotDescription, world_objects: Sequence[WorldObj
         for shape in obj.shapes:
             if isinstance(shape.geometry, Plane):
                 return float((obj.pose @ shape.pose).translation[2])
-    base = link_poses(description, description.start_positions())[description.base_link]
+    base = robot_poses(description, description.start_positions())[description.base_link]
     return min(0.0, float(base.translation[2]))
 
 

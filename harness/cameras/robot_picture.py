@@ -10,10 +10,10 @@ import numpy as np
 from harness.cameras.picture_model import build_picture_model, undrawn
 from harness.cameras.recorded_scene import floor_height
 from harness.cameras.renderer import render_overview
-from harness.cameras.robot_poses import link_poses
 from harness.core.geometry import bounding_radius
 from harness.core.types import FloatArray
 from harness.robot.description import Link, RobotDescription
+from harness.robot.forward_kinematics import robot_poses
 
 WIDTH, HEIGHT = 800, 800
 SMALLEST, LARGEST = 0.03, 0.15
@@ -39,7 +39,7 @@ def save_robot_picture(
     """
     floor = floor_height(description, ())
     picture = build_picture_model(description, (), floor_height=floor, width=WIDTH, height=HEIGHT)
-    poses = link_poses(description, joint_positions)
+    poses = robot_poses(description, joint_positions)
     links = [link for link in description.links if link.visuals or link.collisions]
     links = links or description.links[1:]
     centres = np.array([poses[link.name].translation for link in links])

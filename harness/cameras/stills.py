@@ -11,15 +11,15 @@ import numpy as np
 
 from harness.cameras.caption import DARK, RED, write_captioned
 from harness.cameras.picture_model import build_picture_model, undrawn
-from harness.cameras.recorded_scene import floor_height, poses_at
+from harness.cameras.recorded_scene import floor_height, scene_poses
 from harness.cameras.renderer import make_renderer
-from harness.cameras.robot_poses import link_poses
 from harness.cameras.viewpoint import Viewpoint, fit_viewpoint
 from harness.core.activity import Activity, unobserved
 from harness.core.geometry import bounding_radius
 from harness.core.world import WorldObject
 from harness.recording.run import Run
 from harness.robot.description import RobotDescription
+from harness.robot.forward_kinematics import robot_poses
 
 WIDTH, HEIGHT = 640, 480
 STATES = 40
@@ -86,8 +86,8 @@ def save_stills(
         for number, step in enumerate(steps, start=1):
             activity("drawing a picture of each step", number - 1, len(steps))
             sample = min(max(step.end_index - 1, 0), len(run.signals.times) - 1)
-            picture.pose(poses_at(description, world_objects, run, sample, step))
-            files.append(folder / f"{number:02d}-{slug(step.id)}.jpg")
+            picture.pose(scene_poses(description, world_objects, run, sample, step))
+            files.append(folder / f"{number:02d}-{step_slug(step.id)}.jpg")
             write_captioned(
                 files[-1],
                 renderer.render(view),
@@ -120,14 +120,14 @@ def overview(
     }
     samples = np.unique(np.linspace(0, last, STATES).astype(int))
     for sample in samples:
-        poses = link_poses(description, run.signals.joint_positions[sample])
+        poses = robot_poses(description, run.signals.joint_positions[sample])
         for name, size in link_sizes.items():
             if name != "world":
                 points.append(poses[name].translation)
                 radii.append(min(size, 0.15))
-    base = link_poses(description, run.signals.joint_positions[0])[description.base_link]
+    base = robot_poses(description, run.signals.joint_positions[0])[description.base_link]
     for sample in (0, last):
-        scene = poses_at(description, world_objects, run, int(sample))
+        scene = scene_poses(description, world_objects, run, int(sample))
         for obj in world_objects:
             size = max((bounding_radius(shape) for shape in obj.shapes), default=0.0)
             pose = scene.get(obj.name)
@@ -139,6 +139,6 @@ def overview(
     return fit_viewpoint(np.array(points), np.array(radii), WIDTH, HEIGHT)
 
 
-def slug(text: str) -> str:
+def step_slug(text: str) -> str:
     """A step's id as part of a file name."""
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:48] or "step"

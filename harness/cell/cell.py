@@ -9,6 +9,7 @@ from typing import Any
 
 from harness.cell.program import ProgramStep, step_seed
 from harness.core.camera import Camera
+from harness.core.details import Details
 from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
@@ -17,6 +18,7 @@ from harness.core.world import WorldObject
 from harness.language.poses import Direction, Pose
 from harness.language.step import Step
 from harness.ports import Kinematics, MotionPlan, MotionPlanner, PlanningScene, Simulator
+from harness.recording.execution_failures import TimeoutFailure
 from harness.recording.run import AttachmentRecord
 from harness.robot.description import Gripper, RobotDescription
 
@@ -57,7 +59,7 @@ class StepNotes:
 
     trajectory: Mapping[str, Any] | None = None
     planner: dict[str, Any] = field(default_factory=dict[str, Any])
-    explanation: dict[str, Any] = field(default_factory=dict[str, Any])
+    explanation: Details = field(default_factory=Details)
     result: dict[str, Any] = field(default_factory=dict[str, Any])
 
 
@@ -290,15 +292,15 @@ class Cell:
         """Note a plan, check it against the step's timeout, then follow it."""
         self.notes.trajectory = trajectory_record(plan.trajectory)
         self.notes.planner.update(plan.statistics)
-        self.notes.explanation.update(plan.explanation)
-        self.notes.result.update(plan.result)
+        self.notes.explanation = plan.explanation
+        self.notes.result.update(plan.result.plain())
         timeout = self.current.spec.timeout
         if timeout is not None and plan.trajectory.duration > timeout:
             raise StepFailed(
                 "TIMED_OUT",
                 f"the motion takes {plan.trajectory.duration:.2f} s, the step's timeout is"
                 f" {timeout:g} s; raise the timeout or the velocity scaling",
-                {"duration": plan.trajectory.duration, "timeout": timeout},
+                TimeoutFailure(plan.trajectory.duration, timeout),
             )
         self.simulator.track(plan.trajectory)
 

@@ -11,8 +11,8 @@ from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.language.goals import ArcFields, CartesianLimits, GoalFields, GoalTolerance
-from harness.language.planning import PathConstraints as ConstraintsSpec
+from harness.language.goals import ArcFields, CartesianLimitsSpec, GoalFields, GoalTolerance
+from harness.language.planning import PathConstraintsSpec as ConstraintsSpec
 from harness.language.poses import Pose, Position
 from harness.ports import (
     ArcPoint,
@@ -137,7 +137,7 @@ def world_point(position: Position, cell: Cell) -> FloatArray:
     return cell.frame(position.frame).apply(np.array(position.xyz))
 
 
-def link_limits(limits: CartesianLimits | None) -> LinkLimits:
+def link_limits(limits: CartesianLimitsSpec | None) -> LinkLimits:
     """A step's Cartesian limits as the planner takes them."""
     if limits is None:
         return LinkLimits()

@@ -9,10 +9,12 @@ import numpy as np
 
 from harness.cell.cell import Cell
 from harness.cell.goals import TcpGoal, resolve_goal
+from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.language.goals import GoalFields
 from harness.ports import JointGoal, PlanningOptions
+from harness.recording.explanation import ApproachFailure
 
 MOST_BRANCHES = 2
 """Free solutions of inverse kinematics before the approach from which it is tried."""
@@ -34,7 +36,7 @@ class Approach:
 
 
 @dataclass(frozen=True)
-class Search:
+class GraspSearch:
     """How approaches are tried.
 
     Attributes:
@@ -52,7 +54,7 @@ class Search:
     then: Callable[[FloatArray], bool] = lambda _: True
 
 
-def choose_approach(approaches: Sequence[Approach], search: Search, cell: Cell) -> Approach:
+def choose_approach(approaches: Sequence[Approach], search: GraspSearch, cell: Cell) -> Approach:
     """The first approach that the arm can follow, if possible one after which it can go on.
 
     Raises:
@@ -70,7 +72,7 @@ def choose_approach(approaches: Sequence[Approach], search: Search, cell: Cell) 
     return followed or _most_promising(approaches, search, cell)
 
 
-def _most_promising(approaches: Sequence[Approach], search: Search, cell: Cell) -> Approach:
+def _most_promising(approaches: Sequence[Approach], search: GraspSearch, cell: Cell) -> Approach:
     """The approach of which most is possible.
 
     Raises:
@@ -83,12 +85,12 @@ def _most_promising(approaches: Sequence[Approach], search: Search, cell: Cell) 
         try:
             cell.planner.check_goal(search.group, search.start, joint_goal, options)
         except PlanningFailed as failure:
-            failure.facts["is_start_of_approach"] = goal is best.before
+            failure.details += Details.of(ApproachFailure(goal is best.before))
             raise
     return best
 
 
-def _progress(approach: Approach, search: Search, cell: Cell) -> float:
+def _progress(approach: Approach, search: GraspSearch, cell: Cell) -> float:
     """How many of these hold: the end is reachable, it is free; then the same of the beginning.
 
     Of two ends in collision the one with less penetration counts more.
@@ -112,7 +114,7 @@ def _depth(state: FloatArray, padding: float, cell: Cell) -> float:
     return max((touch.required - touch.distance for touch in touches), default=0.0)
 
 
-def _ends(approach: Approach, search: Search, cell: Cell) -> Iterator[FloatArray]:
+def _ends(approach: Approach, search: GraspSearch, cell: Cell) -> Iterator[FloatArray]:
     """The whole robot at the end of each straight approach that it can follow."""
     goal = resolve_goal(GoalFields(**approach.at.keys), search.group, cell)
     states = _solutions(approach.before, search, cell)
@@ -130,7 +132,7 @@ def _ends(approach: Approach, search: Search, cell: Cell) -> Iterator[FloatArray
             yield end
 
 
-def _solutions(goal: TcpGoal, search: Search, cell: Cell) -> list[FloatArray]:
+def _solutions(goal: TcpGoal, search: GraspSearch, cell: Cell) -> list[FloatArray]:
     """The whole robot at a goal, nearest to the start first."""
     joint_goal = resolve_goal(GoalFields(**goal.keys), search.group, cell)
     if isinstance(joint_goal, JointGoal):

@@ -14,6 +14,8 @@ from harness.core.quantity import distinct
 from harness.core.spatial import SE3, rotation_from_quat_wxyz
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
+from harness.recording.execution_failures import WidthFailure
+from harness.recording.explanation import Explanation
 
 GRASP_DEPTH = 0.02  # [m] below the top of a tall object
 GAP_SLACK = 0.001
@@ -114,17 +116,12 @@ def check_opening(obj: WorldObject, object_pose: SE3, cell: Cell) -> None:
         "GOAL_STATE_INVALID",
         f"'{obj.name}' is too {too} for the gripper: {stated} across its narrowest level side, and"
         f" the gripper {does} to {most}",
-        {
-            "width": width,
-            "opening": opening,
-            "least_gap": least,
-            "height": size[vertical],
-            "advice": (
-                f"its height of {height} fits: give a `grasp_pose` that takes it from the side"
-                if _fits(size[vertical], cell)
-                else f"take {other}: no side of it fits"
-            ),
-        },
+        WidthFailure(width, opening, least, size[vertical]),
+        Explanation(
+            advice=f"its height of {height} fits: give a `grasp_pose` that takes it from the side"
+            if _fits(size[vertical], cell)
+            else f"take {other}: no side of it fits"
+        ),
     )
 
 
@@ -235,7 +232,7 @@ def _align(
     return in_world @ in_tcp.T
 
 
-def pitch_of(rotation: FloatArray) -> float:
+def matrix_pitch(rotation: FloatArray) -> float:
     """Angle of a frame's x axis below the horizontal [rad]."""
     return -math.asin(float(np.clip(rotation[2, 0], -1.0, 1.0)))
 

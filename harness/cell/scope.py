@@ -20,8 +20,8 @@ from harness.robot.description import RobotDescription
 
 LISTED = 12  # names in a hint
 
-Part = Literal["robot", "world"]
-EVERYTHING: tuple[Part, ...] = ("robot", "world")
+Prerequisite = Literal["robot", "world"]
+EVERYTHING: tuple[Prerequisite, ...] = ("robot", "world")
 
 
 class Problems:
@@ -31,7 +31,7 @@ class Problems:
     cannot be judged, but a planner's name can.
     """
 
-    def __init__(self, lines: SourceMap, missing: frozenset[Part] = frozenset()) -> None:
+    def __init__(self, lines: SourceMap, missing: frozenset[Prerequisite] = frozenset()) -> None:
         """Collect nothing yet.
 
         Args:
@@ -44,7 +44,12 @@ class Problems:
         self._unusable: set[str] = set()
 
     def add(
-        self, loc: Loc, message: str, hint: str = "", *, needs: tuple[Part, ...] = EVERYTHING
+        self,
+        loc: Loc,
+        message: str,
+        hint: str = "",
+        *,
+        needs: tuple[Prerequisite, ...] = EVERYTHING,
     ) -> None:
         """Note a problem at a place of the file; others at the same place follow from the first."""
         if not self._missing.intersection(needs):
@@ -63,7 +68,7 @@ class Problems:
         *,
         is_key: bool = False,
         start: int | None = None,
-        needs: tuple[Part, ...] = EVERYTHING,
+        needs: tuple[Prerequisite, ...] = EVERYTHING,
     ) -> None:
         """Note a name that nothing has, with the nearest that something has, then the rest.
 
@@ -97,7 +102,9 @@ class Problems:
             (*loc, start), self._lines.problem_in_text(loc, start, 1, message, hint)
         )
 
-    def check_unit(self, loc: Loc, unit: str, *, needs: tuple[Part, ...] = EVERYTHING) -> None:
+    def check_unit(
+        self, loc: Loc, unit: str, *, needs: tuple[Prerequisite, ...] = EVERYTHING
+    ) -> None:
         """Note a value whose written unit has another dimension than an SI unit."""
         value = self._lines.find(loc).item.value
         if not isinstance(value, str):

@@ -31,7 +31,7 @@ def folder(text: str) -> Path:
     return Path(text)
 
 
-def override(text: str) -> tuple[str, str]:
+def override_argument(text: str) -> tuple[str, str]:
     """`PATH=VALUE` of `--set`."""
     path, equals, value = text.partition("=")
     if not equals or not path.strip():
@@ -55,7 +55,7 @@ def object_topic(text: str) -> tuple[str, str]:
     return name.strip(), topic.strip()
 
 
-def count(text: str) -> int:
+def whole_number(text: str) -> int:
     """A number from 1."""
     if not text.isdigit() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"'{text}' is not a number from 1")

@@ -17,12 +17,13 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    from harness.planning.search.planner_names import planner_names, resolve_planner_id
+    from harness.planning.search.find_pipeline import planner_names, with_planner
+    from harness.ports import PlanningOptions
 
     planners = arguments.planners or list(planner_names())
     for planner in planners:
         try:
-            resolve_planner_id(planner)
+            with_planner(PlanningOptions(), planner)
         except ValueError as error:
             raise UsageError(f"--planners: {error}") from error
     files = discover(arguments.paths)
@@ -39,7 +40,7 @@ def _bench(
 ) -> tuple[int, object]:
     from harness.bench.collect import Motion, collect
     from harness.bench.results import PICTURE, document, write_results
-    from harness.bench.summary import motion_line, table
+    from harness.bench.summary import motion_line, planner_table
 
     seeds = list(range(1, arguments.seeds + 1))
     motions: list[Motion] = []
@@ -61,7 +62,7 @@ def _bench(
         say(f"nothing to compare: {len(motions)} motions by `move_to`, none of them searched")
         return code, document(motions, planners, seeds)
     say("", f"{searched} of {len(motions)} motions are searched, {len(seeds)} seeds; medians:")
-    say_text(table(motions, planners))
+    say_text(planner_table(motions, planners))
     if not arguments.no_report:
         folder = Path(arguments.report_dir) / "bench"
         write_results(folder, motions, planners, seeds)

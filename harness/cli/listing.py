@@ -26,9 +26,17 @@ def _run(rows: Rows) -> int:
 
 def _robots() -> Rows:
     from harness.robot.load import gripper_names, robot_names
+    from harness.robot.robot_collection import collected_robots, package_of_robot
 
-    grippers = gripper_names()
-    return [(name, "gripper" if name in grippers else "arm") for name in robot_names()]
+    grippers, collected = gripper_names(), collected_robots()
+    return [
+        (
+            name,
+            "gripper" if name in grippers else "arm",
+            package_of_robot(name) if name in collected else "",
+        )
+        for name in robot_names()
+    ]
 
 
 def _worlds() -> Rows:
@@ -43,14 +51,6 @@ def _scenarios() -> Rows:
     from harness.suite.header import read_header
 
     return [(name, read_header(file).title) for name, file in bundled_scenarios().items()]
-
-
-def _steps() -> Rows:
-    return _plugins("step")
-
-
-def _expectations() -> Rows:
-    return _plugins("expectation")
 
 
 def _plugins(kind: str) -> Rows:
@@ -68,16 +68,25 @@ def _plugins(kind: str) -> Rows:
 
 
 def _planners() -> Rows:
-    from harness.planning.search.planner_names import DEFAULT_PLANNER, planner_names
+    from harness.planning.search.find_pipeline import planner_names
+    from harness.planning.search.planner_names import DEFAULT_PLANNER
 
     return [(name, "default" if name == DEFAULT_PLANNER else "") for name in planner_names()]
+
+
+def _listing(kind: str) -> Callable[[], Rows]:
+    return lambda: _plugins(kind)
 
 
 LISTINGS: dict[str, Callable[[], Rows]] = {
     "robots": _robots,
     "worlds": _worlds,
     "scenarios": _scenarios,
-    "steps": _steps,
-    "expectations": _expectations,
+    "steps": _listing("step"),
+    "expectations": _listing("expectation"),
     "planners": _planners,
+    "pipelines": _listing("planner"),
+    "ik-solvers": _listing("ik_solver"),
+    "world-formats": _listing("world_format"),
+    "reporters": _listing("reporter"),
 }

@@ -146,9 +146,9 @@ def _package_path(folders: Sequence[Path]) -> AbstractContextManager[None]:
 
     if not folders:
         return nullcontext()
-    from harness.robot.packages import searched_too
+    from harness.robot.packages import additional_package_folders
 
-    return searched_too(folders)
+    return additional_package_folders(folders)
 
 
 def _load_plugins(modules: Sequence[str]) -> bool:

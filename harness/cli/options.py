@@ -5,15 +5,15 @@ from __future__ import annotations
 import argparse
 
 from harness.cli.arguments import (
-    count,
     folder,
     metres,
     names_of,
     object_topic,
-    override,
+    override_argument,
     radians,
     rate,
     seconds,
+    whole_number,
 )
 from harness.cli.robot_options import ROBOT, add_robot_options
 
@@ -21,7 +21,18 @@ IMPORTS = ("sdf", "scene", "srdf")
 FORMATS = ("full", "short", "json", "github")
 BAGS = ("mcap", "sqlite3")
 DOUBTS = ("publishers", "tf", "frames", "steps")
-LISTS = ("robots", "worlds", "scenarios", "steps", "expectations", "planners")
+LISTS = (
+    "robots",
+    "worlds",
+    "scenarios",
+    "steps",
+    "expectations",
+    "planners",
+    "pipelines",
+    "ik-solvers",
+    "world-formats",
+    "reporters",
+)
 
 STRICT = "fail where a verdict has a warning, such as `already true at the start`"
 
@@ -56,14 +67,14 @@ def for_run(run: argparse.ArgumentParser) -> None:
         "-j",
         metavar="N",
         dest="workers",
-        type=count,
+        type=whole_number,
         default=1,
         help="run N scenarios side by side",
     )
     run.add_argument(
         "--repeat",
         metavar="N",
-        type=count,
+        type=whole_number,
         default=1,
         help="run each N times and say whether all digests are the same",
     )
@@ -76,7 +87,7 @@ def for_run(run: argparse.ArgumentParser) -> None:
         help="only the case of this name, or of names that match: 'ur5e-*'",
     )
     run.add_argument(
-        "--samples", metavar="N", type=count, default=None, help="in place of the file's"
+        "--samples", metavar="N", type=whole_number, default=None, help="in place of the file's"
     )
     run.add_argument(
         "--keep",
@@ -107,6 +118,14 @@ def for_run(run: argparse.ArgumentParser) -> None:
     run.add_argument("--no-report", action="store_true", help="write no report")
     run.add_argument("--no-page", action="store_true", help="write the report without its page")
     run.add_argument("--bag", action="store_true", help="write a rosbag2 into the report too")
+    run.add_argument(
+        "--reporter",
+        metavar="NAME",
+        dest="reporters",
+        action="append",
+        default=[],
+        help="let a reporter of `harness list reporters` write into the report too; repeatable",
+    )
     run.add_argument(
         "--history",
         metavar="DIR",
@@ -164,12 +183,12 @@ def for_bench(bench: argparse.ArgumentParser) -> None:
         metavar="A,B",
         type=names_of,
         default=[],
-        help="planner ids to compare (default: all that `harness list planners` names)",
+        help="planners and pipelines to compare (default: all that `harness list planners` names)",
     )
     bench.add_argument(
         "--seeds",
         metavar="N",
-        type=count,
+        type=whole_number,
         default=5,
         help="plan with seeds 1 to N (default: 5)",
     )
@@ -220,7 +239,8 @@ def for_grade(grade: argparse.ArgumentParser) -> None:
                        type=object_topic, default=[],
                        help="the topic with the pose of one object")  # fmt: skip
     grade.add_argument("--set", metavar="PATH=VALUE", dest="overrides", action="append",
-                       type=override, default=[], help="change a value of the file")  # fmt: skip
+                       type=override_argument, default=[],
+                       help="change a value of the file")  # fmt: skip
     grade.add_argument("--allow", metavar="DOUBT", dest="allowed", action="append", default=[],
                        choices=DOUBTS,
                        help="award points in spite of a doubt about the recording: "
@@ -278,12 +298,18 @@ def for_import(importing: argparse.ArgumentParser) -> None:
 def for_ik_test(test: argparse.ArgumentParser) -> None:
     """Of `harness ik-test`."""
     add = test.add_argument
-    add("solver", metavar="SOLVER", help="module:function or file.py:function; `own` is built in")
+    add(
+        "solver",
+        metavar="SOLVER",
+        help="module:function, file.py:function, a name of `harness list ik-solvers`, or `own` for"
+        " the robot's own solver",
+    )
+    _plugin_option(test)
     add("--robot", metavar="ROBOT", required=True, help=ROBOT)
     add_robot_options(test)
     add("--link", metavar="LINK", default="", help="that is placed (default: the TCP)")
     add("--branches", action="store_true", help="it claims to find every way to a target")
-    add("--examples", metavar="N", type=count, default=100,
+    add("--examples", metavar="N", type=whole_number, default=100,
         help="cases of each property (default: 100)")  # fmt: skip
     add("--seed", metavar="N", type=int, default=0, help="of the cases (default: 0)")
     add("--position-tolerance", metavar="M", type=metres, default=1e-4,
@@ -313,7 +339,7 @@ def for_robot(robot: argparse.ArgumentParser) -> None:
         action.add_argument("--state", metavar="NAME", default="",
                             help="for the picture: a named state (default: the start)")  # fmt: skip
         action.add_argument("--image", metavar="FILE", default="", help="a picture, PNG or JPEG")
-    check.add_argument("--samples", metavar="N", type=count, default=None,
+    check.add_argument("--samples", metavar="N", type=whole_number, default=None,
                        help="random configurations (default: 2000; for an SRDF 10000)")  # fmt: skip
     check.add_argument("--seed", metavar="N", type=int, default=0, help="of them (default: 0)")
     check.add_argument("--write-srdf", metavar="FILE", default="",
@@ -346,7 +372,7 @@ def _paths(command: argparse.ArgumentParser) -> None:
         metavar="PATH=VALUE",
         dest="overrides",
         action="append",
-        type=override,
+        type=override_argument,
         default=[],
         help="change a value of the file: --set robot.model=ur5e, --set objects.cube.mass=1",
     )

@@ -30,11 +30,11 @@ def _check(arguments: argparse.Namespace) -> int:
     from harness.reporting.robot_report import page
     from harness.reporting.terminal import Style
     from harness.robot_tools.robot_check import check_robot
-    from harness.robot_tools.robot_source import load
+    from harness.robot_tools.robot_source import load_source
     from harness.robot_tools.srdf_proposal import proposed_srdf
 
     source = source_of(arguments)
-    description = load(source)
+    description = load_source(source)
     checked = check_robot(
         description,
         source.word,
@@ -60,11 +60,11 @@ def _check(arguments: argparse.Namespace) -> int:
 
 
 def _show(arguments: argparse.Namespace) -> int:
-    from harness.robot_tools.robot_source import load
+    from harness.robot_tools.robot_source import load_source
 
     name = Path(arguments.robot).name.split(".")[0] or "robot"
     image = _picture(arguments.image or f"{name}.png")
-    for line in _draw(load(source_of(arguments)), arguments.state, image):
+    for line in _draw(load_source(source_of(arguments)), arguments.state, image):
         say(line)
     return 0
 

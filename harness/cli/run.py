@@ -11,14 +11,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from harness.cli.output import complain, guarded, only_json_on_stdout, output, say, say_text
-from harness.suite.cases import describe
+from harness.core.registry import registry
+from harness.suite.cases import progress_text
 from harness.suite.discovery import UsageError, discover
 from harness.suite.leftovers import clean_report_folder
 from harness.suite.warm import WarmServer
 
 if TYPE_CHECKING:
     from harness.reporting.terminal import Style
-    from harness.suite.cases import CaseJob
+    from harness.session.run_request import RunRequest
     from harness.suite.suite_run import SuiteRun
 
 BRIEF_FROM = 20
@@ -74,17 +75,22 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
-    from harness.suite.plan import RunRequest, planned_cases, record_of
+    from harness.suite.plan import SuiteRequest, planned_cases, record_of
     from harness.suite.shards import shard_of, write_shard_record
-    from harness.suite.suite_run import How, SuiteRun
+    from harness.suite.suite_run import SuiteOptions, SuiteRun
 
     if arguments.history and not Path(arguments.history).is_dir():
         raise UsageError(f"--history '{arguments.history}' is no folder")
+    for name in arguments.reporters:
+        try:
+            registry("reporter").find(name)
+        except LookupError as error:
+            raise UsageError(f"--reporter: {error.args[0]}") from None
     root = None if arguments.no_report else Path(arguments.report_dir)
     if root is not None:
         clean_report_folder(root)
     shard = shard_of(arguments.shard) if arguments.shard else None
-    request = RunRequest(
+    request = SuiteRequest(
         expression=arguments.expression,
         cases=arguments.cases,
         overrides=dict(arguments.overrides),
@@ -96,12 +102,13 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
         bag=arguments.bag,
         shard=shard,
         strict=arguments.strict,
+        reporters=arguments.reporters,
     )
     plan = planned_cases(files, request)
     if shard is not None and root is not None:
         write_shard_record(record_of(files, request, shard, root))
     is_whole = arguments.repeat == 1 and (len(plan) > 1 or shard is not None)
-    how = How(
+    how = SuiteOptions(
         workers=arguments.workers,
         repeat=arguments.repeat,
         in_process=arguments.in_process,
@@ -142,7 +149,7 @@ def show_lines(arguments: argparse.Namespace, suite: SuiteRun) -> int:
     return suite.exit_code
 
 
-def _case_names(arguments: argparse.Namespace, jobs: Sequence[CaseJob]) -> list[str]:
+def _case_names(arguments: argparse.Namespace, jobs: Sequence[RunRequest]) -> list[str]:
     is_alone = arguments.workers == 1
     names = [str(job.file) if is_alone else job.file.name.split(".")[0] for job in jobs]
     names = [
@@ -197,12 +204,12 @@ def _show_interruption(arguments: argparse.Namespace, suite: SuiteRun, seconds: 
         return
     after = f"interrupted after {seconds:.1f} s"
     if len(suite.jobs) == 1:
-        where = "".join(f", during {describe(event)}" for event in suite.unfinished.values())
+        where = "".join(f", during {progress_text(event)}" for event in suite.unfinished.values())
         complain(f"{after}{where}: the run did not finish, and no report was written")
         return
     complain(f"{after}: {suite.missing} of {len(suite.jobs)} runs did not finish")
     for index, event in suite.unfinished.items():
-        complain(f"  {suite.jobs[index].file}: during {describe(event)}")
+        complain(f"  {suite.jobs[index].file}: during {progress_text(event)}")
     if arguments.repeat == 1 and not arguments.no_report:
         complain("the same command with --resume runs the rest")
 
@@ -245,7 +252,7 @@ def _print_rates(suite: SuiteRun, style: Style) -> None:
         say(line)
 
 
-def _command(arguments: argparse.Namespace, job: CaseJob) -> str:
+def _command(arguments: argparse.Namespace, job: RunRequest) -> str:
     """The command that runs one case again as it was run."""
     words = ["harness", "run", str(job.file)]
     if job.case:
@@ -262,6 +269,8 @@ def _command(arguments: argparse.Namespace, job: CaseJob) -> str:
         words += ["--samples", str(arguments.samples)]
     words += ["--strict"] if arguments.strict else []
     words += ["--bag"] if arguments.bag else []
+    for name in arguments.reporters:
+        words += ["--reporter", name]
     if arguments.report_dir != "reports":
         words += ["--report-dir", arguments.report_dir]
     return shlex.join(words)

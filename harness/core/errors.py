@@ -3,6 +3,7 @@
 HarnessError
 ├── SpecError          a file has mistakes (exit code 2)
 ├── RobotError         a robot's or world's files cannot be used (exit code 2)
+│   └── RobotOptionError with the key of the scenario's `robot` that does not fit
 ├── ModelRefused       the physics cannot be built from a robot and a world (exit code 2)
 ├── StepFailed         a step cannot be carried out; ends the run, named by a MoveIt error code
 │   └── PlanningFailed with the planner's explanation
@@ -12,10 +13,11 @@ HarnessError
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
+from harness.core.details import Detail, Details
 from harness.core.printable import columns_of, printable
 
 ErrorCode = Literal[
@@ -135,6 +137,19 @@ class RobotError(HarnessError):
     """A robot's description, or a file it names, cannot be used."""
 
 
+class RobotOptionError(RobotError):
+    """A key of a scenario's `robot` does not fit the robot, or names what does not exist.
+
+    Attributes:
+        key: Dotted path below `robot`, such as `joint_limits.wrist_1_joint.max_velocity`.
+        reason: Why the value cannot be used.
+    """
+
+    def __init__(self, key: str, reason: str) -> None:
+        self.key, self.reason = key, reason
+        super().__init__(f"robot.{key}: {reason}")
+
+
 class ModelRefused(HarnessError):
     """The physics cannot be built.
 
@@ -153,20 +168,23 @@ class StepFailed(HarnessError):
 
     Attributes:
         code: Name of the failure in moveit_msgs/MoveItErrorCodes.
-        facts: Numbers that explain the failure, as plain data for the step's record.
+        details: Typed records that explain the failure.
     """
 
-    def __init__(
-        self, code: ErrorCode, message: str, facts: Mapping[str, Any] | None = None
-    ) -> None:
+    def __init__(self, code: ErrorCode, message: str, *details: Detail) -> None:
         self.code: ErrorCode = code
         self.message = message
-        self.facts: dict[str, Any] = dict(facts or {})
+        self.details = Details(details)
         super().__init__(f"{code}: {message}")
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """The details as plain data for the step's record."""
+        return self.details.plain()
 
 
 class PlanningFailed(StepFailed):
-    """The planner found no verified motion; `facts` explain why."""
+    """The planner found no verified motion; `details` explain why."""
 
 
 class SimulationDiverged(HarnessError):

@@ -19,13 +19,14 @@ import inspect
 import os
 import pkgutil
 import sys
+import traceback
 from collections.abc import Generator, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Generic, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 from harness.core.errors import Problem, SpecError
 
@@ -39,16 +40,42 @@ VARIABLE = "HARNESS_PLUGINS"
 BUILT_IN = {
     "step": "harness.steps",
     "expectation": "harness.expectations",
-    "planner": "",
-    "ik_solver": "",
+    "planner": "harness.planning.search.pipelines",
+    "ik_solver": "harness.planning.ik.solvers",
     "controller": "",
     "robot": "",
-    "world_format": "",
-    "reporter": "",
+    "world_format": "harness.world.formats",
+    "reporter": "harness.reporting.reporters",
 }
 """Every kind of plug-in, and the package whose modules are the built-in ones."""
 
+NOUNS = {
+    "planner": "planning pipeline",
+    "ik_solver": "inverse kinematics solver",
+    "robot": "robot collection",
+}
+"""What messages call the plug-ins of a kind whose key does not say it."""
+
 _package: ContextVar[str] = ContextVar("package", default="")
+
+
+class Plugin:
+    """A class that states the kind of plug-in that it is, and the name that it is registered under.
+
+    The docstring of a subclass with a name is its text in `harness list` and the reference pages.
+
+    Attributes:
+        plugin_kind: One of the keys of `BUILT_IN`.
+        name: The word that selects the plug-in; empty in classes that several plug-ins share.
+    """
+
+    plugin_kind: ClassVar[str] = ""
+    name: ClassVar[str] = ""
+
+    @classmethod
+    def plugin_name(cls) -> str:
+        """The name that this class states itself; a base class's name is not inherited."""
+        return cls.__dict__.get("name", "")
 
 
 class PluginError(SpecError):
@@ -138,7 +165,7 @@ class Registry(Mapping[str, P]):
 
     @property
     def _what(self) -> str:
-        return self.kind.replace("_", " ")
+        return noun(self.kind)
 
     @property
     def _built_in_modules(self) -> dict[str, str]:
@@ -159,6 +186,26 @@ _registries: dict[str, Registry[Any]] = {
 }
 _broken: dict[str, str] = {}
 _is_loaded = False
+
+
+def noun(kind: str) -> str:
+    """What messages call a plug-in of a kind: `ik_solver` is `inverse kinematics solver`."""
+    return NOUNS.get(kind, kind.replace("_", " "))
+
+
+def described(kind: str, name: str) -> str:
+    """A plug-in in a message: ``the planning pipeline `spline` of the package `acme` ``."""
+    package = registry(kind).package_of(name)
+    source = "" if package == OWN_PACKAGE else f" of the package `{package}`"
+    return f"the {noun(kind)} `{name}`{source}"
+
+
+def raised(error: BaseException) -> str:
+    """An exception of a plug-in and where it was raised: `ValueError: no way (spline.py:7)`."""
+    frames = traceback.extract_tb(error.__traceback__)
+    place = f" ({Path(frames[-1].filename).name}:{frames[-1].lineno})" if frames else ""
+    text = f": {error}" if str(error) else ""
+    return f"{type(error).__name__}{text}{place}"
 
 
 def registry(kind: str) -> Registry[Any]:
@@ -189,8 +236,24 @@ def register(plugin: P, *, kind: str = "", name: str = "") -> P:
     name = name or _stated_name(plugin)
     if not name:
         raise PluginError(package, f"{plugin!r} has no name to be registered under")
+    if inspect.isclass(plugin) and issubclass(plugin, Plugin):
+        _check_class(plugin, f"the {noun(kind)} `{name}`", package)
     _registries[kind].add(name, plugin, package)
     return plugin
+
+
+def _check_class(plugin: type[Plugin], what: str, package: str) -> None:
+    """Refuse a class that lacks its text or a method.
+
+    Raises:
+        PluginError: It does.
+    """
+    if not plugin.__doc__:
+        raise PluginError(package, f"{what} has no docstring, which is its reference text")
+    missing = sorted(getattr(plugin, "__abstractmethods__", ()))
+    if missing:
+        names = ", ".join(f"`{each}`" for each in missing)
+        raise PluginError(package, f"{what} needs the method {names}")
 
 
 def register_module(module: ModuleType) -> None:

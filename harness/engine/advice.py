@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 from harness.cell.cell import Cell
 from harness.cell.grasping import least_gap
 from harness.core.errors import StepFailed
+from harness.recording.execution_failures import ControlFailure, GraspFailure, UnrestFailure
 
 
 def advice(failure: StepFailed, cell: Cell) -> str:
     """One sentence for the step's record; empty where the message says it all."""
-    if failure.code == "CONTROL_FAILED" and "contacts" in failure.facts:
-        return _about_contacts(failure.facts, cell)
-    if failure.code == "TIMED_OUT" and "moving" in failure.facts:
+    if failure.details.find(GraspFailure) is not None:
+        return (
+            "bring the TCP to the object first (a `move_to` above it, then `lin`), or give `pick`"
+            f" another `grasp_pose`; the pads of the closed gripper are {1e3 * least_gap(cell):.1f}"
+            " mm apart, and hold nothing thinner"
+        )
+    control = failure.details.find(ControlFailure)
+    if control is not None:
+        return _about_contacts(control, cell)
+    if failure.details.find(UnrestFailure) is not None:
         return (
             "give the step a longer `timeout`, or allow more motion with `max_velocity`; what rolls"
             " or slides for ever needs something to stop it"
@@ -22,14 +29,8 @@ def advice(failure: StepFailed, cell: Cell) -> str:
     return ""
 
 
-def _about_contacts(facts: Mapping[str, Any], cell: Cell) -> str:
-    if "joint" not in facts:  # a grasp: `contacts` are those of the finger sides
-        return (
-            "bring the TCP to the object first (a `move_to` above it, then `lin`), or give `pick`"
-            f" another `grasp_pose`; the pads of the closed gripper are {1e3 * least_gap(cell):.1f}"
-            " mm apart, and hold nothing thinner"
-        )
-    touched = list(_touched_objects(facts, cell))
+def _about_contacts(failure: ControlFailure, cell: Cell) -> str:
+    touched = list(_touched_objects(failure, cell))
     unknown = [name for name in touched if not cell.presence[name].obj.in_planning]
     if unknown:
         return (
@@ -41,6 +42,6 @@ def _about_contacts(facts: Mapping[str, Any], cell: Cell) -> str:
     return "lower the scaling factors in `planning`, or look at the joint's effort limit"
 
 
-def _touched_objects(facts: Mapping[str, Any], cell: Cell) -> Iterator[str]:
-    for contact in facts["contacts"]:
-        yield from (name for name in contact["bodies"] if name in cell.presence)
+def _touched_objects(failure: ControlFailure, cell: Cell) -> Iterator[str]:
+    for contact in failure.contacts:
+        yield from (name for name in contact.bodies if name in cell.presence)

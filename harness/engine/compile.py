@@ -8,7 +8,7 @@ from pathlib import Path
 
 from harness.assertions.placed import as_expectation, check_expectation
 from harness.cell.program import Program, ProgramExpectation, ProgramStep, step_seed
-from harness.cell.scope import At, Part, Problems, Scope
+from harness.cell.scope import At, Prerequisite, Problems, Scope
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh
 from harness.core.spatial import SE3
@@ -65,7 +65,7 @@ class Sources:
     check_planner: CheckPlanner
     checks_per_second: int
     check_mesh: Callable[[Mesh], None]
-    missing: frozenset[Part] = frozenset()
+    missing: frozenset[Prerequisite] = frozenset()
 
 
 def compile_scenario(sources: Sources) -> Program:
@@ -315,9 +315,9 @@ class _Compiler:
             sources.scenario.planning, planning, seed, sources.checks_per_second, self._planner_name
         )
 
-    def _planner_name(self, name: str) -> str:
+    def _planner_name(self, pipeline: str, name: str) -> str:
         try:
-            return self.sources.check_planner(name, {})
+            return self.sources.check_planner(pipeline, name, {})
         except ValueError:  # reported where it is said
             return name
 

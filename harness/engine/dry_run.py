@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -20,6 +19,7 @@ from harness.ports import (
     AnyGoal,
     ArcPoint,
     CartesianPathOptions,
+    CheckedGoal,
     Goal,
     GripperResult,
     JointGoal,
@@ -126,6 +126,7 @@ class DrySimulator:
             stalled=False,
             reached_goal=True,
             contacts=dict.fromkeys(gripper.sides, touched),
+            between=touched,
         )
 
     def start_gripper(self, position: float, max_effort: float) -> None:
@@ -172,14 +173,14 @@ class DryPlanner:
         options: PlanningOptions,
         constraints: PathConstraints | None = None,
     ) -> MotionPlan:
-        facts = self.check_goal(group, start, goal, options, constraints)
-        positions = goal.positions if isinstance(goal, JointGoal) else facts["positions"]
+        checked = self.check_goal(group, start, goal, options, constraints)
+        positions = goal.positions if isinstance(goal, JointGoal) else checked.positions
         names = self._description.groups[group].joint_names
         indices = list(self._description.group_indices(group))
         ends = np.vstack([start[indices], positions])
         still = np.zeros_like(ends)
         trajectory = JointTrajectory(names, np.array([0.0, 1e-3]), ends, still, still)
-        return MotionPlan(trajectory, {}, facts)
+        return MotionPlan(trajectory, {}, checked.explanation)
 
     def plan_joint_motion(
         self,
@@ -243,5 +244,5 @@ class DryPlanner:
         goal: Goal | AnyGoal,
         options: PlanningOptions,
         constraints: PathConstraints | None = None,
-    ) -> Mapping[str, Any]:
+    ) -> CheckedGoal:
         return self._planner.check_goal(group, start, goal, options, constraints)

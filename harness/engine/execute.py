@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import Literal
 
 from harness.cell.cell import Belief, Cell, Presence, StepNotes
 from harness.cell.program import Program, ProgramStep
+from harness.core.details import Details
 from harness.core.errors import StepFailed
 from harness.engine.advice import advice
 from harness.ports import Kinematics, MotionPlanner, PlanningScene, Simulator
+from harness.recording.execution_failures import TimeoutFailure
+from harness.recording.explanation import Explanation
 from harness.recording.run import AttachmentRecord, ObjectRecord, StepRecord, StepStatus
 
 TIMEOUT_SLACK = 0.05  # [s] how often the physics is looked at while something is waited for
@@ -82,7 +85,7 @@ class _Runner:
             end_index=cell.simulator.sample_count,
             trajectory=notes.trajectory,
             planner=notes.planner,
-            explanation={**notes.explanation, **(_facts(failure, cell) if failure else {})},
+            explanation=(notes.explanation + _details(failure, cell)).plain(),
             result=notes.result,
         )
         self.on_step("step_finished", step, self.records[place])
@@ -164,10 +167,12 @@ def _own(failure: StepFailed | _RunEndedError | None) -> StepFailed | None:
     return failure
 
 
-def _facts(failure: StepFailed, cell: Cell) -> dict[str, Any]:
-    """A failure's facts, with what to do about it where that is known."""
+def _details(failure: StepFailed | None, cell: Cell) -> Details:
+    """A failure's details, with what to do about it where that is known."""
+    if failure is None:
+        return Details()
     said = advice(failure, cell)
-    return {**failure.facts, "advice": said} if said else failure.facts
+    return failure.details + Details.of(Explanation(advice=said) if said else None)
 
 
 def _too_long(step: ProgramStep, seconds: float) -> StepFailed | None:
@@ -178,7 +183,7 @@ def _too_long(step: ProgramStep, seconds: float) -> StepFailed | None:
     return StepFailed(
         "TIMED_OUT",
         f"the step took {seconds:.3f} s, its timeout is {timeout:g} s",
-        {"duration": seconds, "timeout": timeout},
+        TimeoutFailure(seconds, timeout),
     )
 
 
@@ -228,7 +233,8 @@ def _object_record(presence: Presence, simulator: Simulator) -> ObjectRecord:
         is_static=obj.is_static,
         in_planning=obj.in_planning,
         in_simulation=obj.in_simulation,
-        shapes=obj.visuals or obj.shapes,
+        shapes=obj.shapes,
+        visuals=obj.visuals,
         present=tuple((start, min(end, simulator.time)) for start, end in presence.intervals),
         pose=tuple(float(value) for value in presence.pose.as_vector()),
         mass=obj.mass,

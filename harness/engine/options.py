@@ -9,12 +9,13 @@ from harness.language.files.source import Loc
 from harness.language.planning import Planning
 from harness.ports import PlanningOptions
 
-CheckPlanner = Callable[[str, Mapping[str, float]], str]
-"""Normalises a planner's name; ValueError, with what there is, for it or its parameters."""
+CheckPlanner = Callable[[str, str, Mapping[str, float]], str]
+"""Normalises the name of a pipeline's planner; ValueError, with what there is, for it or its
+parameters."""
 
 DEFAULT_SCALING = 0.3  # of the joint limits: the course's default plan request
 DEFAULT_PADDING = 0.002  # [m]
-DEFAULT_PLANNER = "auto"
+DEFAULT_PIPELINE = "ompl"
 DEFAULT_STATE_CHECKS = 200_000
 
 
@@ -23,7 +24,7 @@ def merged_options(
     step: Planning | None,
     seed: int,
     checks_per_second: int,
-    planner_name: Callable[[str], str],
+    planner_name: Callable[[str, str], str],
 ) -> PlanningOptions:
     """Options with every number known.
 
@@ -32,21 +33,24 @@ def merged_options(
         step: The step's, which wins key by key.
         seed: The seed of the step.
         checks_per_second: State checks that a second of `planning_time` buys.
-        planner_name: Normalises `planner_id`.
+        planner_name: Normalises a pipeline's `planner_id`; empty is the pipeline's default.
     """
     said = scenario.model_dump(exclude_none=True)
     if step is not None:
         own = step.model_dump(exclude_none=True)
+        said = _inherited(scenario, step).model_dump(exclude_none=True)
         if {"planning_time", "max_state_checks"} & own.keys():
             said.pop("planning_time", None)
             said.pop("max_state_checks", None)
         said.update(own)
+    pipeline = said.get("pipeline", DEFAULT_PIPELINE)
     checks = said.get("max_state_checks")
     if checks is None:
         seconds = said.get("planning_time")
         checks = DEFAULT_STATE_CHECKS if seconds is None else int(seconds * checks_per_second)
     return PlanningOptions(
-        planner_id=planner_name(said.get("planner_id", DEFAULT_PLANNER)),
+        pipeline=pipeline,
+        planner_id=planner_name(pipeline, said.get("planner_id", "")),
         max_state_checks=max(1, checks),
         attempts=said.get("planning_attempts", 1),
         velocity_scaling=said.get("max_velocity_scaling_factor", DEFAULT_SCALING),
@@ -58,6 +62,13 @@ def merged_options(
     )
 
 
+def _inherited(scenario: Planning, step: Planning) -> Planning:
+    """The scenario's planning for a step: a step's own pipeline has its own planners."""
+    if step.pipeline is None or step.pipeline == (scenario.pipeline or DEFAULT_PIPELINE):
+        return scenario
+    return scenario.model_copy(update={"planner_id": None, "parameters": None})
+
+
 def check_planning(
     planning: Planning,
     loc: Loc,
@@ -65,7 +76,7 @@ def check_planning(
     check_planner: CheckPlanner,
     scenario: Planning | None = None,
 ) -> None:
-    """Report a planner that there is not, what it does not take, a pipeline that is steps here.
+    """Report a planner that there is not, what it does not take, two budgets.
 
     Args:
         planning: The scenario's, or a step's.
@@ -74,11 +85,12 @@ def check_planning(
         check_planner: Checks the name and the parameters of a planner.
         scenario: What a step's goes before.
     """
-    inherited = scenario or Planning()
-    planner = planning.planner_id or inherited.planner_id or DEFAULT_PLANNER
+    inherited = _inherited(scenario or Planning(), planning)
+    pipeline = planning.pipeline or inherited.pipeline or DEFAULT_PIPELINE
+    planner = planning.planner_id or inherited.planner_id or ""
     own, said = planning.parameters or {}, (*loc, "planner_id")
     try:
-        check_planner(planner, {})
+        check_planner(pipeline, planner, {})
     except ValueError as error:
         if planning.planner_id is not None:
             problems.add(said, str(error), needs=())
@@ -89,16 +101,9 @@ def check_planning(
             checked = {name: (said, theirs[name]) for name in theirs}
         for name, (place, value) in checked.items():
             try:
-                check_planner(planner, {name: value})
+                check_planner(pipeline, planner, {name: value})
             except ValueError as error:
                 problems.add(place, str(error), needs=())
-    if planning.pipeline == "pilz_industrial_motion_planner":
-        problems.add(
-            (*loc, "pipeline"),
-            "Pilz's planners are steps here",
-            "write `ptp:`, `lin:` or `circ:` instead of `move_to:`",
-            needs=(),
-        )
     if planning.planning_time is not None and planning.max_state_checks is not None:
         problems.add(
             (*loc, "planning_time"),

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from pydantic import Field
 
-from harness.assertions.collision import Pair, colliding
+from harness.assertions.collision import Pair, colliding, why_not_excused
 from harness.assertions.contacts import bodies, could_touch, pairs_of, skipped_contacts
 from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import Evidence, MarginSignal, measured
@@ -31,14 +31,26 @@ FORCE = Quantity(
 LEFT = Quantity(
     "clearance",
     "m",
-    "where nothing collided: what was left, if it was recorded; where bodies overlap at the start:"
-    " their depth, below 0",
+    "where nothing collided: what was left, if it was recorded; where bodies overlap at the start,"
+    " or links that the SRDF excludes: their depth, below 0",
     "clearance",
 )
 
 
 class Collision(Predicate):
     """Two bodies touch that may not: no pair allows it, no grasp, no object on its support.
+
+    What the hand grips, and what it holds (welded or between the fingers) may touch what it stood
+    on until it leaves that, and what it is put down on. Such a contact is excused as far as
+    gripping, carrying and putting down explain it: its force, on average over 50 ms, is at most
+    twice the weight of the object and of what rests on it, plus the grip that the gripper's motor
+    exerts where a link of the hand presses or the gripper moves, plus 1 N (a tenth of a millimetre
+    of position error). An average is an impulse: a blow of a millisecond may peak higher. And the
+    object is dragged along the other body by less than 2 cm. Beyond that it is a collision.
+
+    Planner and physics leave out the contact of links that the SRDF excludes. Those that are apart
+    with every joint at zero, and overlap by more than 1 mm during the run (convex hulls are not
+    exact), are a finding of the run, and a collision where `count_allowed` says so.
 
     It is judged while two of the bodies are in the physics: with an object that only the planner
     knows it is not observable, before an object is there it is not reached.
@@ -56,7 +68,8 @@ class Collision(Predicate):
     )
     count_allowed: Flag = Field(
         default=False,
-        description="Whether pairs that the SRDF or `allow_collisions` permits count too.",
+        description="Whether pairs that the SRDF or `allow_collisions` permits count too; links"
+        " whose contact the SRDF excludes from the physics, by how deep they overlap.",
     )
 
     def check(self, at: At) -> None:
@@ -115,6 +128,9 @@ class Collision(Predicate):
             return _overlapped(forces, overlaps)
         if forces:
             return _collided(window, forces)
+        inside = self._inside_each_other(window) if allowed_too else {}
+        if inside:
+            return _links_overlapped(window, inside)
         distance, name = self._distance(window, pairs)
         if distance is None:
             values = np.full(len(window.times), -1.0)
@@ -138,6 +154,18 @@ class Collision(Predicate):
         return [
             (a, b) for a, b in every if (a in first and b in second) or (b in first and a in second)
         ]
+
+    def _inside_each_other(self, window: Window) -> dict[Pair, FloatArray]:
+        """Depths of links that the expectation names and that the physics lets overlap [m]."""
+        run = window.run
+        words = self.between or ("robot", "any")
+        first, second = (bodies(run, word) for word in words)
+        depths = {
+            (a, b): window.cut(depth)
+            for (a, b), depth in sorted(run.signals.link_overlaps.items())
+            if (a in first and b in second) or (b in first and a in second)
+        }
+        return {pair: depth for pair, depth in depths.items() if not (depth <= 0).all()}
 
     def _distance(self, window: Window, pairs: list[Pair]) -> tuple[FloatArray | None, str]:
         """The smallest recorded distance that the expectation covers and nothing excuses.
@@ -206,6 +234,23 @@ def _overlapped(forces: dict[Pair, FloatArray], depths: dict[Pair, float]) -> Ma
     return MarginSignal(values, "m", evidence)
 
 
+def _links_overlapped(window: Window, depths: dict[Pair, FloatArray]) -> MarginSignal:
+    """Positive where links are inside each other: the largest depth of the window [m]."""
+    deepest = np.max(list(depths.values()), axis=0)
+    pair = max(depths, key=lambda each: float(np.nan_to_num(depths[each]).max()))
+    depth = float(depths[pair].max())
+    names = f"{pair[0]} and {pair[1]}"
+    started = window.time(int(np.argmax(depths[pair] > 0)))
+    measure = measured(LEFT, -depth, 0.0, ">=", started, names)
+
+    def evidence(_: int) -> Evidence:
+        text = f"{names} are up to {amount(depth, 'm')} inside each other from t={started:.3f} s"
+        return Evidence(f"{text}; the SRDF excludes their contact", (measure,), is_moment=False)
+
+    values = np.where(deepest > 0, depth, -LEAST_DISTANCE)
+    return MarginSignal(np.where(np.isnan(deepest), np.nan, values), "m", evidence)
+
+
 def _collided(window: Window, forces: dict[Pair, FloatArray]) -> MarginSignal:
     total = np.max(list(forces.values()), axis=0)
     peak = float(total.max())
@@ -220,10 +265,11 @@ def _collided(window: Window, forces: dict[Pair, FloatArray]) -> MarginSignal:
             largest = float(forces[pair].max())
             lasted = window.time(stop - 1) - window.time(start)
             names = f"{pair[0]} and {pair[1]}"
+            why = why_not_excused(window.run, pair)
             measures.append(measured(FORCE, largest, 0.0, "<=", window.time(start), names))
             texts.append(
                 f"{names} collide from t={window.time(start):.3f} s for {amount(lasted, 's')},"
-                f" with up to {amount(largest, 'N')}"
+                f" with up to {amount(largest, 'N')}{f' ({why})' if why else ''}"
             )
         if total[index] <= 0:
             return Evidence("no collision at this moment", tuple(measures))

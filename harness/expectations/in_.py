@@ -28,7 +28,8 @@ LEAN = Quantity("lean of the container", "rad", "at most `max_lean`")
 class In(ObjectPredicate):
     """The object's origin is inside the outline of a container that has not tipped over.
 
-    The outline is the smallest box along the container's axes that holds all of its shapes.
+    The outline is the smallest box along the container's axes that holds all of its collision
+    shapes; what it looks like does not count.
     """
 
     quantities = (DEPTH, LEAN)
@@ -88,7 +89,7 @@ def outline(record: ObjectRecord) -> tuple[FloatArray, FloatArray]:
         NotObservable: Its extent is not known from the record: it has no shape, a plane or a mesh.
     """
     if not record.shapes:
-        raise NotObservable(f"the shape of '{record.name}' was not recorded")
+        raise NotObservable(f"no collision shape of '{record.name}' was recorded")
     corners = [_corners(shape, record.name) for shape in record.shapes]
     lows, highs = zip(*corners, strict=True)
     return np.min(lows, axis=0), np.max(highs, axis=0)

@@ -7,8 +7,9 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from harness.assertions.contacts import TOUCH_FORCE, in_hand, robot_contact, was_in_robot
+from harness.assertions.contacts import TOUCH_FORCE, robot_contact, was_in_robot
 from harness.assertions.expectation import ObjectPredicate
+from harness.assertions.hold import in_hand
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.observations import Observations
 from harness.assertions.poses import (
@@ -64,9 +65,9 @@ ORIENTATION = Quantity("orientation error", "rad", "with `tolerance`: at most it
 class Placed(ObjectPredicate):
     """The object rests on a support, released and still, at a pose if one is given.
 
-    A `pose` without a rotation allows every turn about the vertical after which the object looks
-    the same, as `place` does. It is still where it was slow for 50 ms, which may begin before the
-    step's window.
+    A `pose` without a rotation allows every turn about the vertical after which the object's
+    collision shapes are the same. It is still where it was slow for 50 ms, which may begin before
+    the step's window.
     """
 
     quantities = (SUPPORT, SPEED, TURNING, CONTACT, ATTACHED, POSITION, LEAN, ORIENTATION)

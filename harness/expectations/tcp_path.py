@@ -17,7 +17,7 @@ from harness.core.types import FloatArray
 from harness.language.base import Fraction, PositiveLength, SpecModel
 from harness.language.expectation import Quantity
 from harness.language.poses import Pose
-from harness.recording.link_poses import link_poses as placed_links
+from harness.recording.link_poses import replayed_link_poses as placed_links
 from harness.recording.run import Measure
 
 SHORTEST = 1e-6

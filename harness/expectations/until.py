@@ -26,7 +26,7 @@ class Until(TemporalWord):
     until: InnerPredicate = Field(description="The predicate that must come true.")
 
     @model_validator(mode="after")
-    def _words_are_of_what_comes(self) -> Until:
+    def _check_words(self) -> Until:
         if self.predicate.for_ is not None or self.predicate.within is not None:
             raise ValueError(
                 "what holds until then has no `for` and no `within`; write them inside `until:`"

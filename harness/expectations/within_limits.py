@@ -13,8 +13,8 @@ from harness.assertions.joints import (
     ROUNDING,
     gripper_joints,
     is_measured,
+    joint_unit,
     resting_joints,
-    unit_of,
 )
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import amounts
@@ -108,7 +108,7 @@ def _position_parts(window: Window, column: int, joint: JointRecord, may_rest: b
         return []
     values = window.cut(recorded)
     softness = STOP_SOFTNESS * (joint.upper - joint.lower) if may_rest else 0.0
-    return _between(POSITION, values, joint, max(softness, POSITION_TOLERANCE[unit_of(joint)]))
+    return _between(POSITION, values, joint, max(softness, POSITION_TOLERANCE[joint_unit(joint)]))
 
 
 def _command_parts(window: Window, column: int, joint: JointRecord) -> list[Part]:
@@ -134,7 +134,7 @@ def _command_parts(window: Window, column: int, joint: JointRecord) -> list[Part
 def _between(
     quantity: Quantity, values: FloatArray, joint: JointRecord, slack: float
 ) -> list[Part]:
-    scale, unit = 0.5 * (joint.upper - joint.lower) or 1.0, unit_of(joint)
+    scale, unit = 0.5 * (joint.upper - joint.lower) or 1.0, joint_unit(joint)
     lower, upper = joint.lower - slack, joint.upper + slack
     return [
         Part(quantity, values, lower, ">=", scale, detail=joint.name, measured_unit=unit),
@@ -143,7 +143,7 @@ def _between(
 
 
 def _rate_part(window: Window, column: int, joint: JointRecord, quantity: Quantity) -> list[Part]:
-    signals, unit = window.run.signals, unit_of(joint)
+    signals, unit = window.run.signals, joint_unit(joint)
     match quantity.name:
         case "velocity":
             values, limit, unit = signals.joint_velocities, joint.velocity, f"{unit}/s"

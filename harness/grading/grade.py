@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from harness.assertions.judge import judge
-from harness.assertions.observations import Observations, merged
 from harness.assertions.placed import PlacedExpectation
 from harness.grading.bag.content import BagTopics
 from harness.grading.bag.recorded_run import DOUBT, Recorded, run_of_bag
@@ -93,24 +92,19 @@ def grade_bag(
     """
     prepared = prepare(scenario, overrides)
     program = prepared.program
-    placed = [
-        PlacedExpectation.of(item.spec, item.step, item.line) for item in program.expectations
-    ]
-    needed = merged(expectation.spec.observations() for expectation in placed)
-    links = set(program.description.link_names)
     known = Recorded(
         robot=robot_record(program.description, prepared.kinematics),
         description=program.description,
         objects=program.all_objects(),
         at_start=frozenset(obj.name for obj in program.world.objects),
-        frames=[name for name in needed.frames if name in links],
+        frames=prepared.observed_links,
         steps=_steps(prepared),
         title=program.title,
         gravity=program.world.gravity,
     )
     run = run_of_bag(bag, topics or BagTopics(), known)
-    if needed.reads_distances:
-        run = _with_distances(prepared, run, needed)
+    if prepared.observations.reads_distances:
+        run = _with_distances(prepared, run)
     notes = tuple(finding.message for finding in run.findings)
     doubts = [
         finding.values
@@ -119,7 +113,9 @@ def grade_bag(
     ]
     rows = [
         _withheld(row, expectation, doubts)
-        for row, expectation in zip(graded(judge(run, placed)), placed, strict=True)
+        for row, expectation in zip(
+            graded(judge(run, prepared.expectations)), prepared.expectations, strict=True
+        )
     ]
     return Grade(run, tuple(rows), notes)
 
@@ -159,7 +155,7 @@ def _steps(prepared: Prepared) -> dict[str, tuple[int, str]]:
     return known
 
 
-def _with_distances(prepared: Prepared, run: Run, needed: Observations) -> Run:
+def _with_distances(prepared: Prepared, run: Run) -> Run:
     """With distances from joints and poses, where all joints are known."""
     if np.isnan(run.signals.joint_positions).any():
         return run
@@ -167,6 +163,7 @@ def _with_distances(prepared: Prepared, run: Run, needed: Observations) -> Run:
 
     there = [obj for obj in run.objects if obj.pose or obj.name in run.signals.object_poses]
     observer = CoalClearance(prepared.program.description)
-    signals = observer.observe(run.signals, there, (), needed.recorded_cutoff)
+    cutoff = prepared.observations.recorded_cutoff
+    signals = observer.observe(run.signals, there, (), cutoff)
     missing = tuple(name for name in run.unrecorded if name != "clearances")
     return replace(run, signals=signals, unrecorded=missing)

@@ -4,6 +4,6 @@
 """
 
 from harness.iktest.kit import IkTest, check_ik, run_ik_test
-from harness.iktest.report import Finding, IkReport, PropertyResult
+from harness.iktest.report import IkFinding, IkReport, PropertyResult
 
-__all__ = ["Finding", "IkReport", "IkTest", "PropertyResult", "check_ik", "run_ik_test"]
+__all__ = ["IkFinding", "IkReport", "IkTest", "PropertyResult", "check_ik", "run_ik_test"]

@@ -17,11 +17,11 @@ import numpy as np
 from harness.core.types import FloatArray
 from harness.iktest.contract import Value
 
-Kind = Literal["answered", "refused", "raised", "unreadable", "hung", "died"]
+OutcomeKind = Literal["answered", "refused", "raised", "unreadable", "hung", "died"]
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
+class CallOutcome:
     """The outcome of a call.
 
     Attributes:
@@ -32,14 +32,14 @@ class Outcome:
         place: File and line where an exception was raised.
     """
 
-    kind: Kind
+    kind: OutcomeKind
     answers: tuple[FloatArray, ...] = ()
     seconds: float = 0.0
     text: str = ""
     place: str = ""
 
 
-def call(function: Callable[..., Any], arguments: Mapping[str, Value], dof: int) -> Outcome:
+def call(function: Callable[..., Any], arguments: Mapping[str, Value], dof: int) -> CallOutcome:
     """Call a function and read what it returns; never raises but for Ctrl-C."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # a NaN is found where it is returned
@@ -54,33 +54,33 @@ def call(function: Callable[..., Any], arguments: Mapping[str, Value], dof: int)
         return read_answers(returned, dof, seconds)
 
 
-def read_answers(returned: Any, dof: int, seconds: float = 0.0) -> Outcome:
+def read_answers(returned: Any, dof: int, seconds: float = 0.0) -> CallOutcome:
     """Joint positions from None, one vector, or a list of vectors."""
     if returned is None:
-        return Outcome("refused", seconds=seconds)
+        return CallOutcome("refused", seconds=seconds)
     try:
         values = np.array(returned, dtype=float)
     except (TypeError, ValueError):
-        return Outcome("unreadable", seconds=seconds, text=f"returned {_short(returned)}")
+        return CallOutcome("unreadable", seconds=seconds, text=f"returned {_short(returned)}")
     if values.size == 0:
-        return Outcome("refused", seconds=seconds)
+        return CallOutcome("refused", seconds=seconds)
     if values.shape == (dof,):
-        return Outcome("answered", (values,), seconds)
+        return CallOutcome("answered", (values,), seconds)
     if values.ndim == 2 and values.shape[1] == dof:
-        return Outcome("answered", tuple(values), seconds)
+        return CallOutcome("answered", tuple(values), seconds)
     shape = " x ".join(map(str, values.shape)) or "one"
-    return Outcome("unreadable", seconds=seconds, text=f"returned {shape} numbers")
+    return CallOutcome("unreadable", seconds=seconds, text=f"returned {shape} numbers")
 
 
-def _raised(error: BaseException, seconds: float) -> Outcome:
+def _raised(error: BaseException, seconds: float) -> CallOutcome:
     """A refusal where the exception's class is neither Python's nor NumPy's."""
     module = type(error).__module__.partition(".")[0]
     if module not in ("numpy", builtins.__name__) and module not in sys.stdlib_module_names:
-        return Outcome("refused", seconds=seconds)
+        return CallOutcome("refused", seconds=seconds)
     frames = traceback.extract_tb(error.__traceback__)[1:]  # the first is the call above
     place = f"{Path(frames[-1].filename).name}:{frames[-1].lineno}" if frames else ""
     words = " ".join(str(error).split())
-    return Outcome("raised", (), seconds, f"{type(error).__name__}: {words[:200]}", place)
+    return CallOutcome("raised", (), seconds, f"{type(error).__name__}: {words[:200]}", place)
 
 
 def _short(value: object) -> str:

@@ -12,7 +12,7 @@ import numpy as np
 
 from harness.core.spatial import SE3, xyzw_from_wxyz
 from harness.core.types import FloatArray
-from harness.strategies.tasks import Task, pitch_of
+from harness.strategies.tasks import Task, pose_pitch
 from harness.suite.discovery import UsageError
 
 Value = float | FloatArray
@@ -23,7 +23,7 @@ class UnusableSolver(UsageError):
 
 
 @dataclass(frozen=True)
-class Word:
+class ParameterWord:
     """A parameter's name.
 
     Attributes:
@@ -37,24 +37,30 @@ class Word:
     value: Callable[[SE3, FloatArray], Value]
 
 
-WORDS: dict[str, Word] = {
-    "x": Word("target's x [m], a float", "x", lambda T, _: float(T.translation[0])),
-    "y": Word("target's y [m], a float", "y", lambda T, _: float(T.translation[1])),
-    "z": Word("target's z [m], a float", "z", lambda T, _: float(T.translation[2])),
-    "position": Word("x, y, z [m], shape (3,)", "x y z", lambda T, _: np.array(T.translation)),
-    "pitch": Word(
+WORDS: dict[str, ParameterWord] = {
+    "x": ParameterWord("target's x [m], a float", "x", lambda T, _: float(T.translation[0])),
+    "y": ParameterWord("target's y [m], a float", "y", lambda T, _: float(T.translation[1])),
+    "z": ParameterWord("target's z [m], a float", "z", lambda T, _: float(T.translation[2])),
+    "position": ParameterWord(
+        "x, y, z [m], shape (3,)", "x y z", lambda T, _: np.array(T.translation)
+    ),
+    "pitch": ParameterWord(
         "angle of the link's x axis below the horizontal [rad], -pi/2 to pi/2, a float",
         "pitch",
-        lambda T, _: pitch_of(T),
+        lambda T, _: pose_pitch(T),
     ),
-    "quat_wxyz": Word("unit quaternion w, x, y, z", "turn", lambda T, _: T.quat_wxyz),
-    "quat_xyzw": Word(
+    "quat_wxyz": ParameterWord("unit quaternion w, x, y, z", "turn", lambda T, _: T.quat_wxyz),
+    "quat_xyzw": ParameterWord(
         "unit quaternion x, y, z, w", "turn", lambda T, _: xyzw_from_wxyz(T.quat_wxyz)
     ),
-    "rotation": Word("rotation matrix, shape (3, 3)", "turn", lambda T, _: np.array(T.rotation)),
-    "matrix": Word("homogeneous matrix, shape (4, 4)", "x y z turn", lambda T, _: T.matrix()),
-    "pose": Word("the same as `matrix`", "x y z turn", lambda T, _: T.matrix()),
-    "seed": Word(
+    "rotation": ParameterWord(
+        "rotation matrix, shape (3, 3)", "turn", lambda T, _: np.array(T.rotation)
+    ),
+    "matrix": ParameterWord(
+        "homogeneous matrix, shape (4, 4)", "x y z turn", lambda T, _: T.matrix()
+    ),
+    "pose": ParameterWord("the same as `matrix`", "x y z turn", lambda T, _: T.matrix()),
+    "seed": ParameterWord(
         "joint positions to start from, shape (dof,); home, or the last answer on a line",
         "",
         lambda _, seed: np.array(seed),
@@ -89,11 +95,11 @@ def parameter_words(function: Callable[..., Any]) -> tuple[str, ...]:
                 f"no argument is known for the parameter `{each.name}`; {hint}"
                 f"names: {', '.join(WORDS)}"
             )
-    task_of(words)
+    task_of_parameters(words)
     return tuple(words)
 
 
-def task_of(words: Sequence[str]) -> Task:
+def task_of_parameters(words: Sequence[str]) -> Task:
     """The task of a function with such parameters.
 
     Raises:
@@ -108,7 +114,7 @@ def task_of(words: Sequence[str]) -> Task:
     return "pose" if "turn" in fixed else "position and pitch" if "pitch" in fixed else "position"
 
 
-def arguments_of(words: Sequence[str], target: SE3, seed: FloatArray) -> dict[str, Value]:
+def call_arguments(words: Sequence[str], target: SE3, seed: FloatArray) -> dict[str, Value]:
     """What a function is called with, made anew for every call."""
     return {word: WORDS[word].value(target, seed) for word in words}
 

@@ -13,10 +13,19 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from harness.core.registry import broken_plugins, registry
 from harness.iktest.contract import UnusableSolver
 
 OWN = "own"
 """In place of a function's name: the solver that this program plans with."""
+
+SOLVERS = "ik_solver"
+"""The kind of plug-in whose names are solvers too."""
+
+
+def is_solver(name: str) -> bool:
+    """Whether a word is `own`, or names a registered inverse kinematics solver."""
+    return name == OWN or name in registry(SOLVERS)
 
 
 def find_function(name: str) -> Callable[..., Any]:
@@ -30,7 +39,11 @@ def find_function(name: str) -> Callable[..., Any]:
     """
     place, colon, attribute = name.rpartition(":")
     if not colon or not place or not attribute:
-        raise UnusableSolver(f"'{name}' is not module:function or file.py:function")
+        known = ", ".join([OWN, *registry(SOLVERS)])
+        raise UnusableSolver(
+            f"'{name}' is not module:function or file.py:function, and no solver has that name; "
+            f"solvers: {'; '.join([known, *broken_plugins()])}"
+        )
     module = _from_file(Path(place)) if place.endswith(".py") else _from_name(place)
     found: Any = module
     for part in attribute.split("."):

@@ -12,16 +12,16 @@ from typing import Any
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.iktest.contract import UnusableSolver, arguments_of, call_text, task_of
+from harness.iktest.contract import UnusableSolver, call_arguments, call_text, task_of_parameters
 from harness.iktest.offset import common_offset
 from harness.iktest.properties import BRANCHES, PROPERTIES, Property, within_reach
-from harness.iktest.report import Finding, IkReport, PropertyResult, Speed
+from harness.iktest.report import IkFinding, IkReport, PropertyResult, Speed
 from harness.iktest.search import draw, shrink
 from harness.iktest.solver import InProcess, Isolated, Solver
 from harness.iktest.text import report_lines
-from harness.iktest.trial import HANGS, Flaw, Trial
+from harness.iktest.trial import HANGS, Flaw, SolverTrial
 from harness.robot.chain import Chain
-from harness.robot_tools.robot_source import RobotSource, load
+from harness.robot_tools.robot_source import RobotSource, load_source
 from harness.strategies.poses import Target
 from harness.strategies.tasks import ROWS
 
@@ -34,8 +34,8 @@ class IkTest:
     """How a function is tested.
 
     Attributes:
-        solver: `module:function`, `file.py:function` or `own`, called in a process of its own
-            that is ended when it hangs; or a function, called in this process.
+        solver: `module:function`, `file.py:function`, the name of a solver or `own`, called in a
+            process of its own that is ended when it hangs; or a function, called in this process.
         robot: A bundled name, a folder, a file; or with more words about it.
         link: The link that is placed; by default the TCP.
         branches: The function claims to answer every way to reach a target.
@@ -73,11 +73,13 @@ def run_ik_test(test: IkTest) -> IkReport:
         RobotError: There is no such robot, group or link.
     """
     started = perf_counter()
-    chain = Chain.of(load(test.source), link=test.link)
+    chain = Chain.of(load_source(test.source), link=test.link)
     solver = _solver(test, chain)
     try:
-        trial = Trial(chain, task_of(solver.words), solver, test.position_tolerance,
-                      test.orientation_tolerance)  # fmt: skip
+        task = task_of_parameters(solver.words)
+        trial = SolverTrial(
+            chain, task, solver, test.position_tolerance, test.orientation_tolerance
+        )
         if test.branches and ROWS[trial.task] != chain.dof:
             raise UnusableSolver(
                 f"a {trial.task} is {ROWS[trial.task]} numbers and the arm has {chain.dof} joints: "
@@ -132,7 +134,7 @@ def _solver(test: IkTest, chain: Chain) -> Solver:
     return Isolated(test.solver, test.source, test.link, chain.dof, test.patience)
 
 
-def _probe(trial: Trial) -> None:
+def _probe(trial: SolverTrial) -> None:
     """Query a few poses within reach, and refuse a function whose answers cannot be read.
 
     Raises:
@@ -155,14 +157,14 @@ def _probe(trial: Trial) -> None:
 class _Search:
     """One pass over the properties; a kind of flaw is shrunk where it first shows."""
 
-    def __init__(self, trial: Trial, test: IkTest) -> None:
+    def __init__(self, trial: SolverTrial, test: IkTest) -> None:
         self._trial, self._test = trial, test
-        self._findings: list[Finding] = []
+        self._findings: list[IkFinding] = []
         self._known: dict[str, int] = {}
 
     def run(
         self, properties: tuple[Property, ...]
-    ) -> tuple[tuple[PropertyResult, ...], tuple[Finding, ...], Speed | None]:
+    ) -> tuple[tuple[PropertyResult, ...], tuple[IkFinding, ...], Speed | None]:
         """Results, findings and speed."""
         speed = self._time()
         self._learn_offset()
@@ -246,10 +248,10 @@ class _Search:
         return shrink(each.cases(trial), shows, lambda case: each.size(trial, case),
                       tried, self._test.seed, trial.take_cost)  # fmt: skip
 
-    def _finding(self, each: Property, flaw: Flaw, shown: int, tried: int) -> Finding:
+    def _finding(self, each: Property, flaw: Flaw, shown: int, tried: int) -> IkFinding:
         trial = self._trial
-        arguments = arguments_of(trial.solver.words, flaw.target.pose, flaw.seed)
-        return Finding(
+        arguments = call_arguments(trial.solver.words, flaw.target.pose, flaw.seed)
+        return IkFinding(
             number=len(self._findings) + 1,
             property=each.name,
             kind=flaw.kind,

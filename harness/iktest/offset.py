@@ -85,10 +85,10 @@ def _error(frame: str, task: Task, target: SE3, reached: SE3) -> FloatArray:
         shift = reached.translation - target.translation
         return shift if frame == "world" else reached.rotation.T @ shift
     change = reached @ target.inverse() if frame == "world" else target.inverse() @ reached
-    return np.concatenate([change.translation, rotation_vector(change.rotation)])
+    return np.concatenate([change.translation, matrix_rotation_vector(change.rotation)])
 
 
-def rotation_vector(rotation: FloatArray) -> FloatArray:
+def matrix_rotation_vector(rotation: FloatArray) -> FloatArray:
     """Axis times angle [rad] of a rotation; of a half turn, the axis whose largest part is > 0."""
     w, *xyz = SE3(rotation, np.zeros(3)).quat_wxyz
     axis = np.array(xyz)

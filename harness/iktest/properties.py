@@ -10,7 +10,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from harness.core.types import FloatArray
-from harness.iktest.trial import Flaw, Trial
+from harness.iktest.trial import Flaw, SolverTrial
 from harness.robot.chain import Chain
 from harness.strategies.paths import StraightLine, straight_lines
 from harness.strategies.poses import Target, poses_around, reachable_poses, unreachable_poses
@@ -42,13 +42,13 @@ class Property:
 
     name: str
     says: str
-    cases: Callable[[Trial], st.SearchStrategy[Any]]
-    flaws: Callable[[Trial, Any], Sequence[Flaw]]
-    size: Callable[[Trial, Any], tuple[float, ...]]
+    cases: Callable[[SolverTrial], st.SearchStrategy[Any]]
+    flaws: Callable[[SolverTrial, Any], Sequence[Flaw]]
+    size: Callable[[SolverTrial, Any], tuple[float, ...]]
     share: float = 1.0
 
 
-def within_reach(trial: Trial) -> st.SearchStrategy[Target]:
+def within_reach(trial: SolverTrial) -> st.SearchStrategy[Target]:
     """Targets from forward kinematics: anywhere, near limits, near singularities."""
     chain = trial.chain
     positions = st.one_of(
@@ -59,20 +59,20 @@ def within_reach(trial: Trial) -> st.SearchStrategy[Target]:
     return reachable_poses(chain, positions)
 
 
-def _beyond_reach(trial: Trial) -> st.SearchStrategy[Target]:
+def _beyond_reach(trial: SolverTrial) -> st.SearchStrategy[Target]:
     return unreachable_poses(trial.chain, any_orientation=trial.task != "pose")
 
 
-def _around(trial: Trial) -> st.SearchStrategy[Target]:
+def _around(trial: SolverTrial) -> st.SearchStrategy[Target]:
     return poses_around(trial.chain)
 
 
-def _reaches(trial: Trial, target: Target) -> list[Flaw]:
+def _reaches(trial: SolverTrial, target: Target) -> list[Flaw]:
     found = (trial.misses(target, answer) for answer in trial.query(target).answers)
     return [flaw for flaw in found if flaw is not None]
 
 
-def _answers(trial: Trial, target: Target) -> list[Flaw]:
+def _answers(trial: SolverTrial, target: Target) -> list[Flaw]:
     outcome = trial.query(target)
     if outcome.kind == "refused":
         return [trial.flaw("refuses a target within reach", "", target)]
@@ -80,13 +80,13 @@ def _answers(trial: Trial, target: Target) -> list[Flaw]:
     return [] if flaw is None else [flaw]
 
 
-def _limits(trial: Trial, target: Target) -> list[Flaw]:
+def _limits(trial: SolverTrial, target: Target) -> list[Flaw]:
     answers = (each for each in trial.query(target).answers if np.all(np.isfinite(each)))
     found = (trial.outside(target, answer) for answer in answers)
     return [flaw for flaw in found if flaw is not None]
 
 
-def _refuses(trial: Trial, target: Target) -> list[Flaw]:
+def _refuses(trial: SolverTrial, target: Target) -> list[Flaw]:
     outcome = trial.query(target)
     flaw = trial.breakdown(target, outcome)
     if flaw is not None:
@@ -98,14 +98,14 @@ def _refuses(trial: Trial, target: Target) -> list[Flaw]:
     return [trial.flaw("answers a target out of reach", wrong.detail, target, wrong.answer)]
 
 
-def _anywhere(trial: Trial, target: Target) -> list[Flaw]:
+def _anywhere(trial: SolverTrial, target: Target) -> list[Flaw]:
     outcome = trial.query(target)
     flaw = trial.breakdown(target, outcome)
     wrong = (trial.misses(target, answer) for answer in outcome.answers)
     return [each for each in (flaw, *wrong) if each is not None]
 
 
-def _repeats(trial: Trial, targets: tuple[Target, Target]) -> list[Flaw]:
+def _repeats(trial: SolverTrial, targets: tuple[Target, Target]) -> list[Flaw]:
     target, other = targets
     first = trial.query(target, afresh=True)
     trial.query(other, afresh=True)
@@ -122,7 +122,7 @@ def _repeats(trial: Trial, targets: tuple[Target, Target]) -> list[Flaw]:
     return [trial.flaw("answers differently when called again", detail, target, answer)]
 
 
-def _follows(trial: Trial, line: StraightLine) -> list[Flaw]:
+def _follows(trial: SolverTrial, line: StraightLine) -> list[Flaw]:
     last: FloatArray | None = None
     before = line.joint_positions[0]
     for positions in line.joint_positions:
@@ -137,7 +137,7 @@ def _follows(trial: Trial, line: StraightLine) -> list[Flaw]:
 
 
 def _jump(
-    trial: Trial, before: FloatArray, after: FloatArray, left: FloatArray, right: FloatArray
+    trial: SolverTrial, before: FloatArray, after: FloatArray, left: FloatArray, right: FloatArray
 ) -> Flaw | None:
     """Halve a step as long as one half holds the jump; what is left is one, or was steep."""
     for _ in range(HALVINGS):
@@ -163,14 +163,14 @@ def _jump(
     return Flaw("jumps along a straight line", detail, target, left, right)
 
 
-def _nearest(trial: Trial, positions: FloatArray, near: FloatArray) -> FloatArray | None:
+def _nearest(trial: SolverTrial, positions: FloatArray, near: FloatArray) -> FloatArray | None:
     """The answer nearest to positions, for the pose of others; None where there is none."""
     target = Target(trial.chain.link_pose(positions), positions)
     answers = [each for each in trial.query(target, near).answers if np.all(np.isfinite(each))]
     return min(answers, key=lambda each: float(np.abs(each - near).max()), default=None)
 
 
-def _all_ways(trial: Trial, target: Target) -> list[Flaw]:
+def _all_ways(trial: SolverTrial, target: Target) -> list[Flaw]:
     way = target.joint_positions
     if way is None or manipulability(trial.chain, trial.task, way[None])[0] < REGULAR:
         return []  # near a singularity solution branches merge
@@ -190,7 +190,7 @@ def is_same_way(chain: Chain, first: FloatArray, second: FloatArray) -> bool:
     return bool(np.all(np.abs(np.where(chain.is_turning, change - turns, change)) < SAME_WAY))
 
 
-def _target_size(trial: Trial, target: Target) -> tuple[float, ...]:
+def _target_size(trial: SolverTrial, target: Target) -> tuple[float, ...]:
     """Joints that are not at home, then how far; or the way from home's pose."""
     home = trial.chain.home
     if target.joint_positions is not None:
@@ -200,11 +200,11 @@ def _target_size(trial: Trial, target: Target) -> tuple[float, ...]:
     return 0.0, shift + turn
 
 
-def _pair_size(trial: Trial, targets: tuple[Target, Target]) -> tuple[float, ...]:
+def _pair_size(trial: SolverTrial, targets: tuple[Target, Target]) -> tuple[float, ...]:
     return tuple(value for target in targets for value in _target_size(trial, target))
 
 
-def _line_size(trial: Trial, line: StraightLine) -> tuple[float, ...]:
+def _line_size(trial: SolverTrial, line: StraightLine) -> tuple[float, ...]:
     away = np.abs(line.joint_positions[0] - trial.chain.home)
     return float(np.count_nonzero(away > 1e-12)), float(away.sum()), len(line.joint_positions)
 

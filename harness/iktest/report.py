@@ -13,7 +13,7 @@ from harness.strategies.tasks import Task
 
 
 @dataclass(frozen=True, eq=False)
-class Finding:
+class IkFinding:
     """A way in which a function is wrong, with its smallest example.
 
     Attributes:
@@ -117,7 +117,7 @@ class IkReport:
     joint_names: tuple[str, ...]
     home: FloatArray
     properties: tuple[PropertyResult, ...]
-    findings: tuple[Finding, ...]
+    findings: tuple[IkFinding, ...]
     speed: Speed | None
     seed: int
     seconds: float

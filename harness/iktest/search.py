@@ -57,7 +57,7 @@ def draw(
         if not visit(case):
             raise _Enough
 
-    with _whatever_is_loaded(), suppress(_Enough):
+    with _independent_of_loaded_modules(), suppress(_Enough):
         run()
 
 
@@ -96,7 +96,7 @@ def shrink(
     limits = settings(QUIET, max_examples=count, phases=[Phase.generate, Phase.shrink])
     # Enough; none; or a function that answers differently when called again.
     ends = (_Enough, HypothesisException, ExceptionGroup)
-    with _whatever_is_loaded(), suppress(*ends):
+    with _independent_of_loaded_modules(), suppress(*ends):
         find(strategy, condition, settings=limits, random=Random(number))
     return best[0][1] if best else None
 
@@ -107,7 +107,7 @@ def _inner_seed(number: int) -> int:
 
 
 @contextmanager
-def _whatever_is_loaded() -> Iterator[None]:
+def _independent_of_loaded_modules() -> Iterator[None]:
     """Draw the same cases whatever modules are loaded.
 
     Hypothesis mixes in numbers that stand in the code of modules that are not installed packages,

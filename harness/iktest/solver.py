@@ -11,9 +11,8 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Protocol
 
-from harness.iktest.calls import Outcome, call
+from harness.iktest.calls import CallOutcome, call
 from harness.iktest.contract import UnusableSolver, Value, parameter_words
-from harness.iktest.find_function import OWN
 from harness.iktest.worker import serve
 from harness.robot_tools.robot_source import RobotSource
 from harness.suite.warm import Ended, WarmServer
@@ -35,7 +34,7 @@ class Solver(Protocol):
     name: str
     words: tuple[str, ...]
 
-    def __call__(self, arguments: Mapping[str, Value]) -> Outcome:
+    def __call__(self, arguments: Mapping[str, Value]) -> CallOutcome:
         """Call it."""
         ...
 
@@ -52,7 +51,7 @@ class InProcess:
         self.words = parameter_words(function)
         self._function, self._dof = function, dof
 
-    def __call__(self, arguments: Mapping[str, Value]) -> Outcome:
+    def __call__(self, arguments: Mapping[str, Value]) -> CallOutcome:
         """Call it."""
         return call(self._function, arguments, self._dof)
 
@@ -70,7 +69,7 @@ class Isolated:
         """Start the process.
 
         Args:
-            name: The name as `find_function` takes it, or `own`.
+            name: The name as `find_function` takes it, that of a registered solver, or `own`.
             robot: The arm to be solved.
             tip: The link that is placed; empty for the TCP.
             dof: The number of the arm's joints.
@@ -91,7 +90,7 @@ class Isolated:
         self._socket.settimeout(POLL_SECONDS)
         modules = ["harness.iktest.worker"]
         self._server = WarmServer(
-            [*modules, "harness.robot_tools.builtin_ik"] if name == OWN else modules
+            [*modules, "harness.robot_tools.builtin_ik"] if ":" not in name else modules
         )
         self._connection: Connection | None = None
         try:
@@ -100,7 +99,7 @@ class Isolated:
             self.close()
             raise
 
-    def __call__(self, arguments: Mapping[str, Value]) -> Outcome:
+    def __call__(self, arguments: Mapping[str, Value]) -> CallOutcome:
         """Call it in its process."""
         if self._connection is None:
             self._start()
@@ -111,10 +110,12 @@ class Isolated:
                 return self._connection.recv()
         except (EOFError, OSError):
             self._server.kill(self._job)  # what has closed its connection is as good as dead
-            return Outcome("died", text=_last_words(self._end()))
+            return CallOutcome("died", text=_last_words(self._end()))
         self._server.kill(self._job)
         self._end()
-        return Outcome("hung", seconds=self._patience, text=f"no answer in {self._patience:g} s")
+        return CallOutcome(
+            "hung", seconds=self._patience, text=f"no answer in {self._patience:g} s"
+        )
 
     def close(self) -> None:
         """End the process and the server that it comes from."""

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.iktest.report import Finding, IkReport, Speed
+from harness.iktest.report import IkFinding, IkReport, Speed
 
 NAME_WIDTH = 13
 
@@ -35,7 +35,7 @@ def report_lines(report: IkReport, folder: Path = Path()) -> list[str]:
     return [*lines, "", f"{count_text} in {report.seconds:.1f} s"]
 
 
-def finding_lines(report: IkReport, finding: Finding, folder: Path = Path()) -> list[str]:
+def finding_lines(report: IkReport, finding: IkFinding, folder: Path = Path()) -> list[str]:
     """A finding with its smallest example."""
     name = report.solver.rpartition(":")[2]
     lines = [f"{finding.number}. {finding.property}: {name} {finding.kind} "

@@ -8,8 +8,8 @@ import numpy as np
 
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.iktest.calls import Outcome
-from harness.iktest.contract import arguments_of
+from harness.iktest.calls import CallOutcome
+from harness.iktest.contract import call_arguments
 from harness.iktest.offset import Offset, numbers_text
 from harness.iktest.solver import Solver
 from harness.robot.chain import Chain
@@ -42,7 +42,7 @@ class Flaw:
 
 
 @dataclass(eq=False)
-class Trial:
+class SolverTrial:
     """A function under test.
 
     Attributes:
@@ -64,11 +64,11 @@ class Trial:
     offset: Offset | None = None
     has_hung: bool = False
     _cost: int = 0
-    _known: dict[bytes, Outcome] = field(default_factory=dict[bytes, Outcome])
+    _known: dict[bytes, CallOutcome] = field(default_factory=dict[bytes, CallOutcome])
 
     def query(
         self, target: Target, seed: FloatArray | None = None, *, afresh: bool = False
-    ) -> Outcome:
+    ) -> CallOutcome:
         """Call the function for a target; the seed is home by default.
 
         Outcomes of earlier calls are remembered, unless `afresh` repeats the call.
@@ -76,7 +76,7 @@ class Trial:
         start = self.chain.home if seed is None else seed
         key = target.pose.matrix().tobytes() + start.tobytes()
         if key not in self._known or afresh:
-            outcome = self.solver(arguments_of(self.solver.words, target.pose, start))
+            outcome = self.solver(call_arguments(self.solver.words, target.pose, start))
             self._known.setdefault(key, outcome)
             self.has_hung = self.has_hung or outcome.kind == "hung"
             self._cost += COSTS.get(outcome.kind, 1)
@@ -122,7 +122,7 @@ class Trial:
             answer,
         )
 
-    def breakdown(self, target: Target, outcome: Outcome) -> Flaw | None:
+    def breakdown(self, target: Target, outcome: CallOutcome) -> Flaw | None:
         """What is neither an answer nor a refusal."""
         match outcome.kind:
             case "raised":

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from harness.iktest.report import Finding, IkReport
+from harness.iktest.report import IkFinding, IkReport
 from harness.reporting.json_text import json_text
 from harness.robot.chain import Chain
 from harness.suite.discovery import UsageError
@@ -36,7 +36,7 @@ def write_report(report: IkReport, chain: Chain, folder: Path) -> IkReport:
     return report
 
 
-def _with_picture(finding: Finding, chain: Chain, folder: Path) -> Finding:
+def _with_picture(finding: IkFinding, chain: Chain, folder: Path) -> IkFinding:
     from harness.robot_tools.ik_pictures import draw_ik_example
 
     target, answer = finding.target, finding.answer

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from harness.language.files.mistakes import MistakeError, describe, nearest
+from harness.language.files.mistakes import MistakeError, nearest, value_text
 
 NAMED = """
     aliceblue=f0f8ff antiquewhite=faebd7 aqua=00ffff aquamarine=7fffd4 azure=f0ffff beige=f5f5dc
@@ -62,7 +62,7 @@ def color_of_name(value: Any) -> Any:
         hint = "write a CSS name (red, steelblue, ...), '#rrggbb', or [red, green, blue, opacity]"
         near = nearest(value, COLORS)
         start = f"did you mean `{near}`? " if near else ""
-        raise MistakeError(f"no colour is called {describe(value)}", start + hint)
+        raise MistakeError(f"no colour is called {value_text(value)}", start + hint)
     parts = [int(digits[place : place + 2], 16) / 255 for place in range(0, len(digits), 2)]
     return (*parts, 1.0)[:4]
 

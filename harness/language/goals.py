@@ -103,7 +103,7 @@ class GoalFields(SpecModel):
         return self
 
 
-class CartesianLimits(SpecModel):
+class CartesianLimitsSpec(SpecModel):
     """Pilz's Cartesian limits; given here they hold as they are, whatever the scaling factors.
 
     What is not given is 1 m/s, 2.25 m/s**2 and 1.57 rad/s times the scaling factors.
@@ -125,7 +125,7 @@ class CartesianLimits(SpecModel):
 class LineFields(GoalFields):
     """A straight line of the link to a goal."""
 
-    cartesian_limits: CartesianLimits | None = Field(
+    cartesian_limits: CartesianLimitsSpec | None = Field(
         default=None, description="Limits of the link's speed and acceleration along the path."
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
@@ -19,24 +19,44 @@ from harness.language.base import (
     Share,
     SpecModel,
 )
+from harness.language.plugin_field import PluginName
 from harness.language.poses import Pose, Position
 
 Scaling = Annotated[Share, Field(ge=0.001, le=1)]
 """Share of a limit; below a thousandth a motion would take hours."""
 
 
+_NOT_HERE = "the pipeline is not part of this program"
+Pipeline = Annotated[
+    Name,
+    PluginName(
+        "planner",
+        refused={
+            "pilz_industrial_motion_planner": (
+                "Pilz's planners are steps here",
+                "write `ptp:`, `lin:` or `circ:` instead of `move_to:`",
+            ),
+            "chomp": (_NOT_HERE, "leave it out, or install a plug-in that provides it"),
+            "stomp": (_NOT_HERE, "leave it out, or install a plug-in that provides it"),
+        },
+    ),
+]
+
+
 class Planning(SpecModel):
     """Planning parameters; what is not given comes from the scenario, then from the defaults."""
 
-    pipeline: Literal["ompl", "pilz_industrial_motion_planner"] | None = Field(
+    pipeline: Pipeline | None = Field(
         default=None,
-        description="The planning pipeline, `ompl` by default; Pilz's planners are the steps "
-        "`ptp`, `lin`, `circ`.",
+        description="The planning pipeline of free motions: `ompl`, the default, or a plug-in, "
+        "whose paths are verified and timed like those of `ompl`; `harness list pipelines` has "
+        "their names. Pilz's planners are the steps `ptp`, `lin`, `circ`.",
     )
     planner_id: Name | None = Field(
         default=None,
-        description="The planner. The default `auto` tries a straight joint motion, then the fast "
-        "planner, then the patient one; `harness list planners` has the others.",
+        description="A planner of the pipeline. The default of `ompl` is `auto`: a straight joint "
+        "motion, else the fast planner, else the patient one; `harness list planners` has the "
+        "others.",
     )
     planning_time: Annotated[Duration, Field(gt=0)] | None = Field(
         default=None,
@@ -75,8 +95,8 @@ class Planning(SpecModel):
     )
     parameters: dict[Name, Number] | None = Field(
         default=None,
-        description="The parameters of the planner, by OMPL's names: `range`, `goal_bias`, "
-        "`max_nearest_neighbors`, `samples_per_batch` ...",
+        description="Parameters of the planner; those of `ompl` have OMPL's names: `range`, "
+        "`goal_bias`, `max_nearest_neighbors`, `samples_per_batch` ...",
     )
 
 
@@ -122,7 +142,7 @@ class JointConstraint(SpecModel):
     )
 
 
-class PathConstraints(SpecModel):
+class PathConstraintsSpec(SpecModel):
     """The moveit_msgs/Constraints that hold along the path; at least one is given."""
 
     orientation: OrientationConstraint | None = Field(
@@ -136,7 +156,7 @@ class PathConstraints(SpecModel):
     )
 
     @model_validator(mode="after")
-    def _some(self) -> PathConstraints:
+    def _some(self) -> PathConstraintsSpec:
         if self.orientation is None and self.position is None and not self.joints:
             raise ValueError("path constraints are at least one of orientation, position, joints")
         return self

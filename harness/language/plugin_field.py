@@ -1,14 +1,16 @@
-"""A field that holds a model of a plug-in: the tag of its value chooses the model."""
+"""Fields that hold a model of a plug-in, or the name of one."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, cast
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
-from harness.core.registry import registry
+from harness.core.registry import broken_plugins, noun, registry
 from harness.language.base import SpecModel
+from harness.language.files.mistakes import MistakeError, did_you_mean
 
 MARK = "plugin"
 """In a field's JSON Schema: the kind of plug-in that it holds."""
@@ -45,3 +47,45 @@ class PluginField:
             raise PydanticCustomError("union_tag_invalid", message)  # pyright: ignore[reportArgumentType]
         model: type[SpecModel] = models[word]
         return model.model_validate({key: item for key, item in given.items() if key != self.tag})
+
+
+class PluginName:
+    """Annotates a field with the name of a plug-in: `Annotated[Name, PluginName("planner")]`.
+
+    Only the name is looked up; the plug-in is imported when it is used.
+    """
+
+    def __init__(
+        self,
+        kind: str,
+        also: tuple[str, ...] = (),
+        refused: Mapping[str, tuple[str, str]] | None = None,
+    ) -> None:
+        """Annotate a field.
+
+        Args:
+            kind: A kind of plug-in.
+            also: Words that are valid too, and name no plug-in.
+            refused: Words that people write -> what is wrong with them, and what to write instead.
+        """
+        self.kind, self.also, self.refused = kind, also, refused or {}
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        return core_schema.no_info_after_validator_function(self._check, handler(source))
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        return {**handler(schema), "enum": [*self.also, *registry(self.kind)]}
+
+    def _check(self, name: str) -> str:
+        known = registry(self.kind)
+        if name in self.also or name in known:
+            return name
+        if name in self.refused:
+            raise MistakeError(*self.refused[name])
+        what = noun(self.kind)
+        hints = [did_you_mean(name, [*self.also, *known], f"{what}s"), *broken_plugins()]
+        raise MistakeError(f"there is no {what} `{name}`", "; ".join(hints))

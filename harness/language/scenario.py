@@ -21,9 +21,10 @@ from harness.language.base import (
 from harness.language.cameras import CameraSpec, VideoSpec
 from harness.language.expectation import AnyExpectation
 from harness.language.planning import Planning
+from harness.language.plugin_field import PluginName
 from harness.language.poses import Pose
 from harness.language.step import AnyStep
-from harness.language.variation import Distribution, Expected, Parametrize
+from harness.language.variation import Distribution, Parametrize, RequiredRate
 from harness.language.world import ObjectSpec
 
 
@@ -72,6 +73,9 @@ class MoveItFiles(SpecModel):
     )
 
 
+IkSolverName = Annotated[Name, PluginName("ik_solver", also=("auto",))]
+
+
 class RobotSpec(SpecModel):
     """The robot: a bundled model or files, with its gripper and its start state."""
 
@@ -117,6 +121,12 @@ class RobotSpec(SpecModel):
     )
     moveit: MoveItFiles = Field(
         default=MoveItFiles(), description="The files of the robot's MoveIt configuration."
+    )
+    ik_solver: IkSolverName | None = Field(
+        default=None,
+        description="The inverse kinematics solver, built-in or a plug-in; `auto` is the closed "
+        "form that fits, else `numeric`. By default the one that the robot's folder names; "
+        "`harness list ik-solvers` has the names.",
     )
     joint_limits: dict[Name, JointLimits] = Field(
         default_factory=dict,
@@ -228,7 +238,7 @@ class Scenario(SpecModel):
         default=None,
         description="Draws a sample again, up to 100 times, while objects overlap at the start.",
     )
-    expect_rate: Expected | None = Field(
+    expect_rate: RequiredRate | None = Field(
         default=None,
         description="The required success rate of the samples; without it every sample must pass.",
     )

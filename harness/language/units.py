@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from harness.core.quantity import constant_of
-from harness.language.files.mistakes import MistakeError, describe, nearest
+from harness.language.files.mistakes import MistakeError, nearest, value_text
 
 DEFINITIONS = (
     "nano- = 1e-9 = n-",
@@ -119,7 +119,7 @@ def in_si(text: str, units: tuple[str, ...]) -> float:
     if not unit:
         if units == SHARE:
             hint = f"write {match['number']} without quotes, or a percentage: `90 %`"
-            raise MistakeError(f"is the text {describe(text)}, not a number", hint)
+            raise MistakeError(f"is the text {value_text(text)}, not a number", hint)
         hint = f"write {match['number']} without quotes for {units[0]}, or give a unit"
         raise MistakeError(f"`{text}` is text without a unit", f"{hint}: {written(units)}")
     if unit == "%":
@@ -158,8 +158,8 @@ def _measures(unit: str, units: tuple[str, ...]) -> bool:
 
 def _no_number(value: Any, units: tuple[str, ...]) -> str:
     if units == SHARE:
-        return f"is a number or a percentage, not {describe(value)}"
-    return f"{expected(units)} is a number, not {describe(value)}"
+        return f"is a number or a percentage, not {value_text(value)}"
+    return f"{expected(units)} is a number, not {value_text(value)}"
 
 
 def expected(units: tuple[str, ...]) -> str:

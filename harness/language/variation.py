@@ -21,18 +21,18 @@ def _is_finite_quantity(value: object) -> object:
     return value
 
 
-Quantity = Annotated[Any, AfterValidator(_is_finite_quantity)]
+FiniteQuantity = Annotated[Any, AfterValidator(_is_finite_quantity)]
 
 
 class Normal(SpecModel):
     """A normal distribution, cut at its bounds where there are some."""
 
-    mean: Quantity = Field(description="The mean: a number, with or without a unit.")
-    std: Quantity = Field(description="The standard deviation, in the unit of the mean.")
-    low: Quantity | None = Field(
+    mean: FiniteQuantity = Field(description="The mean: a number, with or without a unit.")
+    std: FiniteQuantity = Field(description="The standard deviation, in the unit of the mean.")
+    low: FiniteQuantity | None = Field(
         default=None, description="The value is drawn again when it is below this."
     )
-    high: Quantity | None = Field(
+    high: FiniteQuantity | None = Field(
         default=None, description="The value is drawn again when it is above this."
     )
 
@@ -54,7 +54,7 @@ class Normal(SpecModel):
 class Distribution(SpecModel):
     """The distribution of a random value: exactly one of these keys."""
 
-    uniform: tuple[Quantity, Quantity] | None = Field(
+    uniform: tuple[FiniteQuantity, FiniteQuantity] | None = Field(
         default=None,
         description="The value is uniform between two numbers, with or without a unit.",
     )
@@ -76,7 +76,7 @@ class Distribution(SpecModel):
         return self
 
 
-class Expected(SpecModel):
+class RequiredRate(SpecModel):
     """A success rate that random cases must show: `90 %` is short for `{at_least: 90 %}`."""
 
     short = "at_least"

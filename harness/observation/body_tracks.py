@@ -15,12 +15,12 @@ from harness.core.geometry import Shape
 from harness.core.spatial import rotation_from_quat_wxyz
 from harness.core.types import BoolArray, FloatArray
 from harness.planning.collision.geometry import coal_geometry
-from harness.planning.model.forward_kinematics import LinkPoses
 from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
+from harness.robot.forward_kinematics import LinkPoses
 
 
 @dataclass(frozen=True, eq=False)
-class Track:
+class BodyTrack:
     """A rigid body over N samples.
 
     Attributes:
@@ -43,12 +43,12 @@ class Track:
         """Samples with a pose, shape (N,)."""
         return np.isfinite(self.translations[:, 0])
 
-    def part(self, samples: BoolArray) -> Track:
+    def part(self, samples: BoolArray) -> BodyTrack:
         """The same body at some samples only."""
-        return Track(self.rotations[samples], self.translations[samples])
+        return BodyTrack(self.rotations[samples], self.translations[samples])
 
 
-def track_of_poses(poses: FloatArray) -> Track:
+def track_of_poses(poses: FloatArray) -> BodyTrack:
     """A track from recorded poses (N, 7), xyz and quat wxyz, NaN while absent."""
     w, x, y, z = np.moveaxis(poses[:, 3:], 1, 0)
     rotations = np.empty((len(poses), 3, 3))
@@ -61,19 +61,19 @@ def track_of_poses(poses: FloatArray) -> Track:
     rotations[:, 2] = np.column_stack(
         [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]
     )
-    return Track(rotations, np.array(poses[:, :3]))
+    return BodyTrack(rotations, np.array(poses[:, :3]))
 
 
-def link_track(poses: LinkPoses, link: str) -> Track:
+def link_track(poses: LinkPoses, link: str) -> BodyTrack:
     """A link's track."""
-    return Track(poses.rotations[link], poses.translations[link])
+    return BodyTrack(poses.rotations[link], poses.translations[link])
 
 
-def carried_track(link: Track, pose_in_link: Sequence[float]) -> Track:
+def carried_track(link: BodyTrack, pose_in_link: Sequence[float]) -> BodyTrack:
     """Track of something fixed to a link at T_link_object (xyz, quat wxyz)."""
     offset = np.asarray(pose_in_link, dtype=float)
     rotation = rotation_from_quat_wxyz(offset[3:])
-    return Track(link.rotations @ rotation, link.translations + link.rotations @ offset[:3])
+    return BodyTrack(link.rotations @ rotation, link.translations + link.rotations @ offset[:3])
 
 
 def object_track(
@@ -81,7 +81,7 @@ def object_track(
     attachments: Sequence[AttachmentRecord],
     signals: Signals,
     links: LinkPoses,
-) -> Track:
+) -> BodyTrack:
     """An object's track: as the physics recorded it, otherwise as the planning scene assumes it.
 
     An object of the planning scene alone stays where it is added, moves with the link to which it
@@ -153,14 +153,14 @@ def tracked_shapes(body: str, shapes: Sequence[Shape]) -> tuple[TrackedShape, ..
     return tuple(found)
 
 
-def relative(first: Track, second: Track) -> Track:
+def relative_track(first: BodyTrack, second: BodyTrack) -> BodyTrack:
     """Track of the first body in the frame of the second: T_second_first."""
     turned = np.swapaxes(second.rotations, 1, 2)
     offset = (first.translations - second.translations)[:, :, None]
-    return Track(turned @ first.rotations, (turned @ offset)[:, :, 0])
+    return BodyTrack(turned @ first.rotations, (turned @ offset)[:, :, 0])
 
 
-def travel(seen: Track, shape: TrackedShape) -> FloatArray:
+def travel(seen: BodyTrack, shape: TrackedShape) -> FloatArray:
     """Bound the path length of every point of a shape since the first sample [m], shape (N,).
 
     Between two samples a point of the shape moves at most as far as the centre of its sphere plus

@@ -9,13 +9,13 @@ import numpy as np
 
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.observation.body_tracks import (
-    Track,
+    BodyTrack,
     TrackedShape,
     carried_track,
     link_track,
     links_with_shapes,
     object_track,
-    relative,
+    relative_track,
     tracked_shapes,
 )
 from harness.observation.nearest import (
@@ -36,10 +36,10 @@ from harness.observation.sampled_clearance import (
     nearest_measured,
     parts_of,
 )
-from harness.planning.model.forward_kinematics import LinkPoses
 from harness.planning.model.robot_model import RobotModel
 from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
 from harness.robot.description import RobotDescription
+from harness.robot.forward_kinematics import LinkPoses
 
 ROBOT = "robot"
 
@@ -213,7 +213,7 @@ class CoalClearance:
         for later, second in enumerate(names):
             for first in names[:later]:
                 if self._is_self_pair(first, second):
-                    seen = relative(link_track(links, first), link_track(links, second))
+                    seen = relative_track(link_track(links, first), link_track(links, second))
                     pairs += pairs_between(self._shapes[first], self._shapes[second], seen)
         if pairs:
             everywhere = np.ones(found.count, dtype=bool)
@@ -224,7 +224,7 @@ class CoalClearance:
         found: _Clearances,
         links: LinkPoses,
         record: ObjectRecord,
-        track: Track,
+        track: BodyTrack,
         shapes: Sequence[TrackedShape],
         there: BoolArray,
         cutoff: float,
@@ -235,7 +235,7 @@ class CoalClearance:
         pairs: list[ShapePair] = []
         for link, link_shapes in self._shapes.items():
             if link not in standing:
-                seen = relative(link_track(links, link).part(there), track.part(there))
+                seen = relative_track(link_track(links, link).part(there), track.part(there))
                 pairs += pairs_between(link_shapes, shapes, seen)
         if pairs:
             self._measure(found, (ROBOT, record.name), there, pairs, cutoff)
@@ -246,7 +246,7 @@ class CoalClearance:
         links: LinkPoses,
         attachment: AttachmentRecord,
         objects: Sequence[ObjectRecord],
-        tracks: Mapping[str, Track],
+        tracks: Mapping[str, BodyTrack],
         shapes: Mapping[str, Sequence[TrackedShape]],
         signals: Signals,
         cutoff: float,
@@ -255,7 +255,7 @@ class CoalClearance:
         times = signals.times
         during = (times >= attachment.start_time) & (times <= attachment.end_time)
         believed = carried_track(link_track(links, attachment.link), attachment.pose_in_link)
-        held: dict[str, Track] = {attachment.object: believed}
+        held: dict[str, BodyTrack] = {attachment.object: believed}
         for name in (attachment.object, attachment.represents):
             if name in signals.object_poses and name in tracks:
                 held[name] = tracks[name]
@@ -267,7 +267,7 @@ class CoalClearance:
                 there &= ~_held(record.name, (attachment,), signals)
                 if record.name in same or not there.any():
                     continue
-                seen = relative(track.part(there), other.part(there))
+                seen = relative_track(track.part(there), other.part(there))
                 pairs = pairs_between(shapes.get(name, ()), shapes[record.name], seen)
                 if pairs:
                     distances, _ = smallest_distances(pairs, cutoff)

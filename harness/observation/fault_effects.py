@@ -1,21 +1,44 @@
-"""What came of injected faults, read from the record: `landed`, or `no_effect` and why."""
+"""The effect of injected faults, read from the record: `landed`, or `no_effect` and why."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from harness.core.types import BoolArray
+from harness.recording.faults import FaultKind, InjectedFault, faults_of
 from harness.recording.run import Finding, ObjectRecord, RobotRecord, Signals, StepRecord
 
 MOVING = 1e-3
 """A body faster than this moves [m/s]."""
 
 COMMANDED = 1e-4
-"""A set point that changed by more was commanded to move [rad or m]."""
+"""A set point that changes by more is a command to move [rad or m]."""
+
+
+@dataclass(frozen=True)
+class Effect:
+    """Whether a fault had an effect.
+
+    Attributes:
+        landed: Whether it had one.
+        evidence: What shows it, or why there is none.
+        is_over_time: Whether the evidence holds for the time after the fault began.
+    """
+
+    landed: bool
+    evidence: str
+    is_over_time: bool = False
+
+    def sentence(self, *, is_set_again: bool) -> str:
+        """The evidence with the time that it holds for."""
+        if not self.is_over_time:
+            return self.evidence
+        until = "before it was set again" if is_set_again and not self.landed else "afterwards"
+        return f"{self.evidence} {until}"
 
 
 def with_receipts(
@@ -31,39 +54,35 @@ def with_receipts(
     for number, step in enumerate(steps):
         later = steps[number + 1 :]
         faults = [
-            record.receipt(fault, step, _set_again(fault, later))
-            for fault in step.result.get("faults", ())
+            record.with_receipt(fault, step, _set_again(fault, later)) for fault in faults_of(step)
         ]
         if not faults:
             done.append(step)
             continue
-        done.append(replace(step, result={**step.result, "faults": faults}))
+        done.append(
+            replace(step, result={**step.result, "faults": [fault.plain() for fault in faults]})
+        )
         findings += [
             Finding(
                 "fault_without_effect",
-                f"{_words(fault)} had no effect: {fault['evidence']}",
+                f"{fault.name} had no effect: {fault.evidence}",
                 step.start_time,
                 step.id,
-                fault,
+                fault.plain(),
             )
             for fault in faults
-            if fault["receipt"] == "no_effect"
+            if fault.receipt == "no_effect"
         ]
     return tuple(done), tuple(findings)
 
 
-def _set_again(fault: dict[str, Any], later: Sequence[StepRecord]) -> int | None:
+def _set_again(fault: InjectedFault, later: Sequence[StepRecord]) -> int | None:
     """The first sample at which another `inject` has set the same; None if none does."""
     for step in later:
-        for other in step.result.get("faults", ()):
-            if (other["fault"], other["target"]) == (fault["fault"], fault["target"]):
+        for other in faults_of(step):
+            if (other.fault, other.target) == (fault.fault, fault.target):
                 return step.start_index
     return None
-
-
-def _words(fault: dict[str, Any]) -> str:
-    name = str(fault["fault"]).replace("_", " ")
-    return f"{name} of {fault['target']}" if fault["target"] else name
 
 
 class _Record:
@@ -76,87 +95,101 @@ class _Record:
         self.joints = [joint.name for joint in robot.joints]
         self.step_time = float(signals.times[1] - signals.times[0]) if len(signals.times) > 1 else 0
 
-    def receipt(
-        self, fault: dict[str, Any], step: StepRecord, set_again: int | None
-    ) -> dict[str, Any]:
+        self._effects: Mapping[FaultKind, Callable[[InjectedFault, slice], Effect]] = {
+            "friction": self._friction,
+            "gripper_effort": self._gripper_effort,
+            "joint_stall": self._joint_stall,
+            "push": self._push,
+            "sensor_noise": self._sensor_noise,
+            "command_latency": self._command_latency,
+        }
+
+    def with_receipt(
+        self, fault: InjectedFault, step: StepRecord, set_again: int | None
+    ) -> InjectedFault:
         """The fault with `receipt` and `evidence`.
 
         Args:
             fault: What was set, and what it was before.
             step: The record of the `inject` step.
-            set_again: Sample at which the same was set to something else; what happens from there
-                on is none of this fault's doing.
+            set_again: Sample at which the same was set to something else; what happens after it
+                is not an effect of this fault.
         """
-        if fault["before"] == fault["after"]:
-            return {**fault, "receipt": "no_effect", "evidence": "it was so already"}
+        if fault.before == fault.after:
+            return replace(fault, receipt="no_effect", evidence="it was so already")
         first = max(0, step.end_index - 1)
         last = len(self.signals.times) if set_again is None else max(set_again, first + 1)
         rows = slice(first, last)
-        if fault["fault"] == "push":
+        if fault.fault == "push":
             rows = slice(step.start_index, max(step.end_index, step.start_index + 1))
-        landed, evidence = getattr(self, f"_{fault['fault']}")(fault, rows)
-        if not landed and set_again is not None:
-            evidence = evidence.replace("afterwards", "before it was set again")
-        return {**fault, "receipt": "landed" if landed else "no_effect", "evidence": evidence}
+        effect = self._effects[fault.fault](fault, rows)
+        return replace(
+            fault,
+            receipt="landed" if effect.landed else "no_effect",
+            evidence=effect.sentence(is_set_again=set_again is not None),
+        )
 
-    def _friction(self, fault: dict[str, Any], rows: slice) -> tuple[bool, str]:
-        name = fault["target"]
+    def _friction(self, fault: InjectedFault, rows: slice) -> Effect:
+        name = fault.target
         rubbed = self._touched(name, self.robot.link_names, rows)
         moving = self._speed(name, rows) > MOVING
         for pair, force in self.signals.contact_forces.items():
             if name in pair:
                 rubbed |= (force[rows] > 0) & moving
         if not rubbed.any():
-            return False, "nothing pulled at it afterwards"
-        return True, f"it was gripped, or slid in contact, for {self._seconds(rubbed)} afterwards"
+            return Effect(False, "nothing pulled at it", is_over_time=True)
+        evidence = f"it was gripped, or slid in contact, for {self._seconds(rubbed)}"
+        return Effect(True, evidence, is_over_time=True)
 
-    def _gripper_effort(self, fault: dict[str, Any], rows: slice) -> tuple[bool, str]:
+    def _gripper_effort(self, fault: InjectedFault, rows: slice) -> Effect:
         gripper = self.robot.gripper
         fingers = [] if gripper is None else [x for side in gripper.sides.values() for x in side]
         pressed = np.zeros(len(self.signals.times[rows]), dtype=bool)
         for name in self.is_static:
             pressed |= self._touched(name, fingers, rows)
         if not pressed.any():
-            return False, "the gripper pressed on nothing afterwards"
-        seconds, share = self._seconds(pressed), float(fault["after"])
-        return True, f"the gripper pressed for {seconds} with {share:.0%} of its effort"
+            return Effect(False, "the gripper pressed on nothing", is_over_time=True)
+        seconds, share = self._seconds(pressed), float(fault.after)
+        return Effect(True, f"the gripper pressed for {seconds} with {share:.0%} of its effort")
 
-    def _joint_stall(self, fault: dict[str, Any], rows: slice) -> tuple[bool, str]:
-        joint = self.joints.index(fault["target"])
+    def _joint_stall(self, fault: InjectedFault, rows: slice) -> Effect:
+        joint = self.joints.index(fault.target)
         commanded = float(np.ptp(self.signals.joint_commands[rows, joint]))
         if commanded <= COMMANDED:
-            return False, "it was not commanded to move afterwards"
+            return Effect(False, "it was not commanded to move", is_over_time=True)
         moved = float(np.ptp(self.signals.joint_positions[rows, joint]))
         unit = "m" if self.robot.joints[joint].kind == "prismatic" else "rad"
-        return True, f"commanded to move by {commanded:.3g} {unit}, it moved by {moved:.2g} {unit}"
+        return Effect(
+            True, f"commanded to move by {commanded:.3g} {unit}, it moved by {moved:.2g} {unit}"
+        )
 
-    def _push(self, fault: dict[str, Any], rows: slice) -> tuple[bool, str]:
-        speed = self._speed(fault["target"], rows)
+    def _push(self, fault: InjectedFault, rows: slice) -> Effect:
+        speed = self._speed(fault.target, rows)
         before, fastest = float(speed[0]), float(speed.max())
         if fastest - before <= MOVING:
-            return False, "it did not move: friction or a hand held it"
-        return True, f"it reached {fastest:.3g} m/s"
+            return Effect(False, "it did not move: friction or a hand held it")
+        return Effect(True, f"it reached {fastest:.3g} m/s")
 
-    def _sensor_noise(self, fault: dict[str, Any], rows: slice) -> tuple[bool, str]:
-        if fault["after"] == 0.0:
-            return True, "set back"
+    def _sensor_noise(self, fault: InjectedFault, rows: slice) -> Effect:
+        if fault.after == 0.0:
+            return Effect(True, "set back")
         errors = np.abs(self.signals.joint_positions - self.signals.joint_commands)[rows][1:]
         if not len(errors):
-            return False, "no time passed afterwards"
-        return True, f"joints were up to {float(np.nanmax(errors)):.3g} rad off their set points"
+            return Effect(False, "no time passed", is_over_time=True)
+        return Effect(
+            True, f"joints were up to {float(np.nanmax(errors)):.3g} rad off their set points"
+        )
 
-    def _command_latency(self, fault: dict[str, Any], rows: slice) -> tuple[bool, str]:
-        if fault["after"] == 0.0:
-            return True, "set back"
+    def _command_latency(self, fault: InjectedFault, rows: slice) -> Effect:
+        if fault.after == 0.0:
+            return Effect(True, "set back")
         commands = self.signals.joint_commands[rows]
         moved = np.nan_to_num(np.ptp(commands, axis=0)) > COMMANDED
         if not moved.any():
-            return False, "no joint was commanded to move afterwards"
+            return Effect(False, "no joint was commanded to move", is_over_time=True)
         errors = np.abs(self.signals.joint_positions[rows] - commands)[:, moved]
-        return (
-            True,
-            f"joints lagged up to {float(np.nanmax(errors)):.3g} rad behind their set points",
-        )
+        lag = float(np.nanmax(errors))
+        return Effect(True, f"joints lagged up to {lag:.3g} rad behind their set points")
 
     def _touched(self, name: str, others: Sequence[str], rows: slice) -> BoolArray:
         touched = np.zeros(len(self.signals.times[rows]), dtype=bool)

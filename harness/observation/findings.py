@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from harness.cell.program import Program
 from harness.core.errors import Problem
 from harness.ports import Touch
+from harness.recording.explanation import lowered_margins_of
 from harness.recording.run import Finding, StepRecord
 
 NOTHING_EXPECTED = (
@@ -69,10 +69,9 @@ def findings_of(steps: Sequence[StepRecord]) -> tuple[Finding, ...]:
     """
     found: list[Finding] = []
     for step in steps:
-        lowered: Sequence[dict[str, Any]] = step.explanation.get("lowered_margins", ())
-        for entry in lowered:
-            first, second = entry["pair"]
-            distance = float(entry["start_distance"]) * 1e3
+        for entry in lowered_margins_of(step.explanation):
+            first, second = entry.pair
+            distance = entry.start_distance * 1e3
             stood = f"{-distance:.1f} mm deep" if distance < 0 else f"{distance:.1f} mm apart"
             found.append(
                 Finding(
@@ -81,7 +80,7 @@ def findings_of(steps: Sequence[StepRecord]) -> tuple[Finding, ...]:
                     " let stay so near, no nearer",
                     time=step.start_time,
                     step=step.id,
-                    values=entry,
+                    values=entry.plain(),
                 )
             )
     return tuple(found)

@@ -11,7 +11,7 @@ import coal
 import numpy as np
 
 from harness.core.types import FloatArray, IntArray
-from harness.observation.body_tracks import Track, TrackedShape, travel
+from harness.observation.body_tracks import BodyTrack, TrackedShape, travel
 
 STILL = 1e-6
 """Relative travel below which a distance is not measured again [m]."""
@@ -32,7 +32,7 @@ class ShapePair:
 
     first: TrackedShape
     second: TrackedShape
-    seen: Track
+    seen: BodyTrack
     travel: FloatArray
 
     def distance(self, sample: int) -> float:
@@ -47,7 +47,7 @@ _REQUEST, _RESULT = coal.DistanceRequest(), coal.DistanceResult()
 
 
 def pairs_between(
-    first: Sequence[TrackedShape], second: Sequence[TrackedShape], seen: Track
+    first: Sequence[TrackedShape], second: Sequence[TrackedShape], seen: BodyTrack
 ) -> list[ShapePair]:
     """Every shape of one body against every shape of another."""
     return [

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from harness.assertions.contacts import held_by_fingers
 from harness.assertions.drift import drift_in_hand
+from harness.assertions.hold import held_by_fingers
 from harness.assertions.joints import gripper_joints
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, NotReached

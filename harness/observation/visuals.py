@@ -30,7 +30,7 @@ def mesh_records(run: Run) -> tuple[MeshRecord, ...]:
 def _meshes(run: Run) -> Iterator[Mesh]:
     looks: Iterable[tuple[Shape, ...]] = (
         *run.robot.link_visuals.values(),
-        *(obj.shapes for obj in run.objects),
+        *(obj.looks for obj in run.objects),
     )
     for shapes in looks:
         yield from (shape.geometry for shape in shapes if isinstance(shape.geometry, Mesh))

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
+from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.cartesian.curve_timing import RatedCurve, time_curve
-from harness.planning.ik.numeric import random_positions
+from harness.planning.ik.numeric import sample_group_positions
 from harness.planning.task import PlanningTask
 from harness.planning.timing.joint_spline import JointSpline
 from harness.planning.timing.limits import TimingError
@@ -21,6 +21,7 @@ from harness.planning.timing.timing import time_stopping, time_straight
 from harness.planning.verification.path_constraints import HeldConstraints
 from harness.planning.verification.verify import FINAL_RESOLUTION, Defect
 from harness.ports import MotionPlan
+from harness.recording.motion_failures import SearchFailure
 
 PLANNER_ID = "RRTConnect, projected"
 
@@ -40,7 +41,7 @@ def find_constrained_motion(
     task: PlanningTask,
     held: HeldConstraints,
     goals: Sequence[FloatArray],
-    explanation: dict[str, Any],
+    explanation: Details,
 ) -> MotionPlan:
     """Plan a verified motion to a goal that satisfies the constraints at every sample.
 
@@ -83,13 +84,15 @@ def find_constrained_motion(
         raise PlanningFailed(
             "INVALID_MOTION_PLAN",
             "paths were found, but none passes verification: " + defect.message,
-            {**explanation, **defect.facts},
+            *explanation,
+            *defect.details,
         )
     raise PlanningFailed(
         "PLANNING_FAILED",
         "no free path that satisfies the constraints was found in at most "
         f"{task.options.max_state_checks} state checks",
-        {**explanation, "state_checks": task.checker.checks + held.checks},
+        *explanation,
+        SearchFailure(task.checker.checks + held.checks),
     )
 
 
@@ -157,7 +160,7 @@ class _Search:
         for _ in range(_MOST_ROUNDS):
             if self._is_over:
                 return None
-            sample = random_positions(space, self.rng)
+            sample = sample_group_positions(space, self.rng)
             reached = self._extend(first, first.nearest(sample, metric), sample)
             target = first.nodes[reached]
             met = self._extend(second, second.nearest(target, metric), target)

@@ -5,16 +5,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
 
+from harness.core.details import Details
 from harness.core.quantity import distinct
 from harness.core.types import FloatArray
 from harness.planning.collision.scene import Payload
 from harness.planning.model.robot_model import GroupSpace, pin_from_se3
+from harness.recording.motion_failures import OverloadFailure, TrajectoryFailure
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,11 +67,10 @@ class InverseDynamics:
             found[row] = space.matrix.T @ efforts[columns]
         return found
 
-    def standing_overload(self, positions: FloatArray) -> tuple[str, dict[str, Any]]:
-        """Message and facts of the joint with the largest static overload at positions (dof,).
+    def standing_overload(self, positions: FloatArray) -> tuple[str, Details]:
+        """Message and details of the joint with the largest static overload at positions (dof,).
 
-        `effort` and `limit` are the joint's; `unloaded` is its effort without the payload, and
-        `most_mass` is the mass that the robot can hold there [kg].
+        They are a TrajectoryFailure and an OverloadFailure.
         """
         still = np.zeros((1, len(positions)))
         standing = self.efforts(positions[None], still, still)[0]
@@ -83,12 +83,7 @@ class InverseDynamics:
             f"the arm cannot hold {what or 'itself'} still on the way: {name} needs {needed} {unit}"
             f" and has at most {most} {unit}"
         )
-        facts: dict[str, Any] = {
-            "broken": "standing effort",
-            "joint": name,
-            "effort": float(abs(effort)),
-            "limit": limit,
-        }
+        overload = OverloadFailure(float(abs(effort)), limit)
         if self.payloads:
             bare = InverseDynamics(
                 self.joint_names, self.limits, self._space, self._space.robot.model
@@ -96,7 +91,10 @@ class InverseDynamics:
             unloaded = bare.efforts(positions[None], still, still)[0][joint]
             message += f"; without the load it needs {abs(unloaded):.1f} {unit}"
             share = (np.sign(effort) * limit - unloaded) / (effort - unloaded)
-            facts["held"] = [load.name for load in self.payloads]
-            facts["unloaded"] = float(abs(unloaded))
-            facts["most_mass"] = float(share * sum(load.mass for load in self.payloads))
-        return message, facts
+            overload = replace(
+                overload,
+                held=tuple(load.name for load in self.payloads),
+                unloaded=float(abs(unloaded)),
+                most_mass=float(share * sum(load.mass for load in self.payloads)),
+            )
+        return message, Details.of(TrajectoryFailure("standing effort", name), overload)

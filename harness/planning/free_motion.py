@@ -9,11 +9,14 @@ from typing import Any
 
 import numpy as np
 
+from harness.core.details import Details
 from harness.core.errors import PlanningFailed
+from harness.core.registry import described
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.collision import wording
-from harness.planning.collision.checker import touch_facts
+from harness.planning.collision.checker import touch_records
+from harness.planning.search.find_pipeline import is_built_in
 from harness.planning.search.path_search import Effort, FoundPath, verified_paths
 from harness.planning.search.shortening import shorten
 from harness.planning.task import PlanningTask
@@ -23,9 +26,12 @@ from harness.planning.verification.verify import (
     Defect,
     distances_to_path,
     find_departure,
+    path_collision,
     verified_resolution,
 )
-from harness.ports import MotionPlan, PlanningOptions
+from harness.ports import MotionPlan, PathPlanner, PlanningOptions
+from harness.recording.goal_failures import IkStudy
+from harness.recording.motion_failures import BlockedWay, PipelineFailure, SearchFailure
 
 BLEND_DEVIATIONS = (0.05, 0.01)
 """Largest deviations of the blends at the corners [rad]; after these, the motion stops there."""
@@ -49,7 +55,7 @@ class _Motion:
 
 
 def find_motion(
-    task: PlanningTask, goals: Sequence[FloatArray], explanation: dict[str, Any]
+    task: PlanningTask, goals: Sequence[FloatArray], explanation: Details
 ) -> MotionPlan:
     """Plan a verified motion from the task's start to the goal with the least effort.
 
@@ -69,7 +75,7 @@ def find_motion(
     try:
         found = _straight(task, goals) or _searched(task, goals, explanation)
         found = _cheapest(task, goals, found)
-    except ValueError as problem:  # a planner or a parameter is unknown
+    except ValueError as problem:  # a pipeline, a planner or a parameter is unknown
         raise PlanningFailed("PLANNING_FAILED", str(problem)) from problem
     statistics = {**found.statistics, "state_checks": task.checker.checks}
     return MotionPlan(found.trajectory, statistics, _chosen(explanation, found.end))
@@ -88,15 +94,13 @@ def _straight(task: PlanningTask, goals: Sequence[FloatArray]) -> _Motion | None
     return None
 
 
-def _searched(
-    task: PlanningTask, goals: Sequence[FloatArray], explanation: dict[str, Any]
-) -> _Motion:
+def _searched(task: PlanningTask, goals: Sequence[FloatArray], explanation: Details) -> _Motion:
     """Search, shorten, time and verify; with a finer resolution after a failed verification."""
     effort = Effort()
     found = _first_verified_motion(task, goals, task.options, effort)
     if isinstance(found, _Motion):
         return found
-    raise _search_failure(task, goals, explanation, effort.checks, effort.gaps, found)
+    raise _search_failure(task, goals, explanation, effort, found)
 
 
 def _cheapest(task: PlanningTask, goals: Sequence[FloatArray], found: _Motion) -> _Motion:
@@ -188,46 +192,54 @@ def _timed(task: PlanningTask, waypoints: FloatArray) -> JointTrajectory | Defec
 def _search_failure(
     task: PlanningTask,
     goals: Sequence[FloatArray],
-    explanation: dict[str, Any],
-    used: int,
-    gaps: list[float],
+    explanation: Details,
+    effort: Effort,
     defect: Defect | None,
 ) -> PlanningFailed:
+    pipeline = task.options.pipeline
+    who = described(PathPlanner.plugin_kind, pipeline)
+    owner = Details.of(None if is_built_in(pipeline) else PipelineFailure(pipeline))
+    is_plugin = bool(owner.parts)
+    if defect is None and effort.refused is not None and not effort.is_used_up:
+        defect = path_collision(effort.refused, task.checker)
     if defect is not None:
+        whose = f"paths of {who}" if is_plugin else "paths"
         return PlanningFailed(
             "INVALID_MOTION_PLAN",
-            "paths were found, but none passes verification: " + defect.message,
-            {**explanation, **defect.facts},
+            f"{whose} were found, but none passes verification: {defect.message}",
+            *explanation,
+            *owner,
+            *defect.details,
         )
     options = task.options
     attempts = "" if options.attempts == 1 else f"{options.attempts} searches with "
+    by_whom = f" by {who}" if is_plugin else ""
     message = (
-        f"no free path to the goal was found in {attempts}at most {options.max_state_checks} "
-        "state checks"
+        f"no free path to the goal was found{by_whom} in {attempts}at most "
+        f"{options.max_state_checks} state checks"
     )
-    facts: dict[str, Any] = {**explanation, "state_checks": used}
-    if gaps:
-        facts["gap"] = min(gaps)
+    straight_way = None
     blocked = task.checker.first_block(task.start, goals[0], FINAL_RESOLUTION)
     if blocked is not None:
         share, touches = blocked
-        facts["straight_way"] = {"free_share": share, "touches": touch_facts(touches)}
+        straight_way = BlockedWay(share, touch_records(touches))
         message += (
             f"; the straight path is blocked after {100 * share:.0f} % by "
             f"{wording.touches(touches)}"
         )
-    return PlanningFailed("PLANNING_FAILED", message, facts)
+    search = SearchFailure(effort.checks, min(effort.gaps, default=None), straight_way)
+    return PlanningFailed("PLANNING_FAILED", message, *explanation, *owner, search)
 
 
-def _chosen(explanation: dict[str, Any], end: FloatArray) -> dict[str, Any]:
+def _chosen(explanation: Details, end: FloatArray) -> Details:
     """The explanation, with the status `chosen` for the solution at the end of the motion."""
-    solutions = explanation.get("ik_solutions")
-    if not solutions:
+    study = explanation.find(IkStudy)
+    if study is None:
         return explanation
-    marked = [
-        {**solution, "status": "chosen"}
-        if np.allclose(solution["joint_positions"], end, atol=1e-9)
+    marked = tuple(
+        replace(solution, status="chosen")
+        if np.allclose(solution.joint_positions, end, atol=1e-9)
         else solution
-        for solution in solutions
-    ]
-    return {**explanation, "ik_solutions": marked}
+        for solution in study.ik_solutions
+    )
+    return explanation.replaced(replace(study, ik_solutions=marked))

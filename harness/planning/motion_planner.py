@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -29,6 +28,7 @@ from harness.ports import (
     AnyGoal,
     ArcPoint,
     CartesianPathOptions,
+    CheckedGoal,
     Goal,
     JointGoal,
     MotionPlan,
@@ -38,6 +38,7 @@ from harness.ports import (
     PositionGoal,
     SequenceItem,
 )
+from harness.recording.motion_failures import DurationFailure
 from harness.robot.description import RobotDescription
 
 STATE_CHECKS_PER_SECOND = 20_000
@@ -72,7 +73,7 @@ class VerifiedPlanner:
         """Plan a collision-free motion to a goal; `start` in description order."""
         task = self._task(group, start, options, constraints)
         found = choose_goals(self.kinematics, task, np.asarray(start), goal, task.held)
-        explanation = {**found.explanation, "lowered_margins": list(task.checker.lowered)}
+        explanation = found.explanation + task.lowered_margins
         try:
             if task.held is not None:
                 return find_constrained_motion(task, task.held, found.positions, explanation)
@@ -107,9 +108,8 @@ class VerifiedPlanner:
             task = replace(task, limits=_unscaled_limits(task))
             trajectory = _timed_to_duration(task, end, duration)
         task.accept(trajectory, end, "the straight joint motion")
-        explanation = {"lowered_margins": list(task.checker.lowered)}
         statistics = task.statistics("PTP", trajectory, [task.start, end])
-        return MotionPlan(trajectory, statistics, explanation)
+        return MotionPlan(trajectory, statistics, task.lowered_margins)
 
     @explained
     def plan_linear(
@@ -169,14 +169,11 @@ class VerifiedPlanner:
         goal: Goal | AnyGoal,
         options: PlanningOptions,
         constraints: PathConstraints | None = None,
-    ) -> Mapping[str, Any]:
-        """Explain a goal without planning to it: the status of each solution of inverse kinematics.
-
-        `positions` are the group's at the free solution that would be tried first.
-        """
+    ) -> CheckedGoal:
+        """Explain a goal without planning to it: each solution of inverse kinematics."""
         task = self._task(group, start, options, constraints)
         found = choose_goals(self.kinematics, task, np.asarray(start), goal, task.held)
-        return {**found.explanation, "positions": found.positions[0].tolist()}
+        return CheckedGoal(found.positions[0], found.explanation)
 
     def _task(
         self,
@@ -198,7 +195,7 @@ def _unscaled_limits(task: PlanningTask) -> Limits:
 
 
 def _untimed(problem: TimingError) -> PlanningFailed:
-    return PlanningFailed("INVALID_MOTION_PLAN", str(problem), problem.facts)
+    return PlanningFailed("INVALID_MOTION_PLAN", str(problem), *problem.details)
 
 
 def _timed_to_duration(task: PlanningTask, end: FloatArray, duration: float) -> JointTrajectory:
@@ -231,7 +228,7 @@ def _timed_to_duration(task: PlanningTask, end: FloatArray, duration: float) -> 
             f"second and {peaks[1] * way / total**2:.2f} of at most "
             f"{limits.acceleration[slowest]:.2f} per second squared{jerk if is_smooth else ''}; "
             f"give it at least {shortest[slowest]:.3f} s",
-            {"joint": name, "shortest_duration": float(shortest[slowest]), "duration": duration},
+            DurationFailure(name, float(shortest[slowest]), duration),
         )
     curve = (quintic_curve if is_smooth else cubic_curve)(task.start, end, total)
     return sample(task.space.joint_names, curve, total)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
@@ -20,6 +21,8 @@ from harness.planning.timing.profiles import SAMPLE_PERIOD
 from harness.planning.verification.path_constraints import HeldConstraints
 from harness.planning.verification.verify import Defect, find_defect
 from harness.ports import MotionPlan, PathConstraints, PlanningOptions
+from harness.recording.explanation import LoweredMargins
+from harness.recording.goal_failures import StartLimitFailure
 
 START_SLACK = 0.01
 """How far outside its limit a joint may start; a motion never extends that distance [rad or m]."""
@@ -60,12 +63,15 @@ class PlanningTask:
             raise PlanningFailed(
                 "INVALID_MOTION_PLAN",
                 f"{what} cannot be executed: {defect.message}",
-                dict(defect.facts),
+                *defect.details,
             )
 
-    def jump(
-        self, end: FloatArray, explanation: Mapping[str, Any], result: Mapping[str, Any]
-    ) -> MotionPlan:
+    @property
+    def lowered_margins(self) -> Details:
+        """The pairs that start nearer than their margin, for the record."""
+        return Details.of(LoweredMargins(tuple(self.checker.lowered)))
+
+    def jump(self, end: FloatArray, explanation: Details, result: Details) -> MotionPlan:
         """The plan of a motion of which only the path is requested: its start and its end."""
         ends = np.vstack([self.start, end])
         still = np.zeros_like(ends)
@@ -144,7 +150,7 @@ def _held(
         raise PlanningFailed(
             "START_STATE_VIOLATES_PATH_CONSTRAINTS",
             f"the path constraints do not hold at the start: {broken.what}",
-            broken.facts,
+            broken.record,
         )
     return held
 
@@ -163,7 +169,7 @@ def _widen_for_start(space: GroupSpace, positions: FloatArray) -> None:
             "START_STATE_INVALID",
             f"{name} starts at {positions[worst]:.4f}, {outside[worst]:.4f} outside its limits "
             f"{space.lower[worst]:.4f} to {space.upper[worst]:.4f}",
-            {"joint": name, "value": float(positions[worst]), "excess": float(outside[worst])},
+            StartLimitFailure(name, float(positions[worst]), float(outside[worst])),
         )
     space.lower = np.minimum(space.lower, positions)
     space.upper = np.maximum(space.upper, positions)

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from harness.pytest_plugin.running import report_root, server_of, shown
+from harness.pytest_plugin.session_options import hard_cap, report_root, server_of, shown
 from harness.reporting.result import CaseResult
+from harness.session.run_request import RunRequest
 from harness.suite.api import ScenarioResult, run_in_process, run_scenario
-from harness.suite.cases import CaseJob, run_isolated
+from harness.suite.cases import run_isolated
 
 if TYPE_CHECKING:
     from harness.language.scenario import Scenario
@@ -23,11 +24,8 @@ def runner_of(request: pytest.FixtureRequest) -> Callable[..., ScenarioResult]:
     config = request.config
     count = 0
 
-    def isolated(job: CaseJob) -> CaseResult:
-        cap = config.getini("harness_hard_cap")
-        [(_index, result)] = run_isolated(
-            [job], server_of(config), hard_cap=float(cap) if cap else None
-        )
+    def isolated(job: RunRequest) -> CaseResult:
+        [(_index, result)] = run_isolated([job], server_of(config), hard_cap=hard_cap(config))
         return result
 
     def run(

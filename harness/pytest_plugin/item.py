@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from harness.core.printable import printable, terminal_text
-from harness.suite.header import Header, read_header
+from harness.suite.header import ScenarioHeader, read_header
 
 PYTEST_MARKS = frozenset(
     (
@@ -51,7 +51,7 @@ class ScenarioItem(pytest.Item):
         number: Position of the case in its file, from 0.
     """
 
-    def __init__(self, *, header: Header, case: str, number: int, **keywords: Any) -> None:
+    def __init__(self, *, header: ScenarioHeader, case: str, number: int, **keywords: Any) -> None:
         super().__init__(**keywords)
         self.header = header
         self.case = case
@@ -66,7 +66,7 @@ class ScenarioItem(pytest.Item):
     def runtest(self) -> None:
         from harness.pytest_plugin.running import run_item  # imports the rest of the harness
 
-        run_item(self)
+        run_item(self, self.header, self.case, self.number)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         from harness.pytest_plugin.running import SELF_EXPLANATORY_ERRORS

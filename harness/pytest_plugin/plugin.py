@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from harness.pytest_plugin.session import RECORD, SessionResults
+from harness.pytest_plugin.session import SessionResults
+from harness.pytest_plugin.session_options import RECORD
 
 if TYPE_CHECKING:
     from harness.pytest_plugin.item import ScenarioFile

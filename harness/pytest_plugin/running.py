@@ -8,23 +8,27 @@ from pathlib import Path
 import pytest
 
 from harness.core.printable import printable, terminal_text
-from harness.pytest_plugin.item import ScenarioItem
-from harness.pytest_plugin.session import RECORD
 from harness.pytest_plugin.session_files import ItemRecord, as_plain
+from harness.pytest_plugin.session_options import (
+    RECORD,
+    hard_cap,
+    report_root,
+    server_of,
+    shown,
+)
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate, rate_text
 from harness.reporting.suite.junit import case_properties, sample_properties
 from harness.reporting.suite.record import SuiteCase
 from harness.reporting.terminal import causes
 from harness.suite.cases import run_here, run_isolated
-from harness.suite.header import source_lines
+from harness.suite.header import ScenarioHeader, source_lines
 from harness.suite.leftovers import clean_report_folder
-from harness.suite.plan import PlannedCase, RunRequest, planned_cases
+from harness.suite.plan import PlannedCase, SuiteRequest, planned_cases
 from harness.suite.sampling import Sampling
-from harness.suite.warm import ServerStartError, WarmServer
+from harness.suite.warm import ServerStartError
 
 LISTED_SAMPLES = 3
-SERVER = pytest.StashKey[WarmServer]()
 CLEANED = pytest.StashKey[bool]()
 
 
@@ -56,8 +60,14 @@ SELF_EXPLANATORY_ERRORS = (ScenarioNotPassed, RateNotShown, ServerStartError)
 """Errors that pytest prints without a traceback, because their text is complete."""
 
 
-def run_item(item: ScenarioItem) -> None:
+def run_item(item: pytest.Item, header: ScenarioHeader, case: str, number: int) -> None:
     """Run a case, or all samples of a case.
+
+    Args:
+        item: The pytest item, at the scenario's file.
+        header: ScenarioHeader of the file.
+        case: Name of the case; for samples, the name that they share.
+        number: Position of the case in its file, from 0.
 
     Raises:
         ScenarioNotPassed: The case, or one of the samples, is invalid or did not pass.
@@ -67,34 +77,35 @@ def run_item(item: ScenarioItem) -> None:
     if root is not None and not item.config.stash.get(CLEANED, False):
         item.config.stash[CLEANED] = True
         clean_report_folder(root)
-    request = RunRequest(report_root=root, strict=bool(item.config.getoption("--harness-strict")))
+    request = SuiteRequest(report_root=root, strict=bool(item.config.getoption("--harness-strict")))
     plan = [
         each
         for each in planned_cases([shown(item.path)], request)
-        if item.case == (each.case.name if each.case.sample is None else each.case.group)
+        if case == (each.case.name if each.case.sample is None else each.case.group)
     ]
     sampling = Sampling(plan)
     results = _run(item, plan, sampling)
-    if item.header.variation.samples:
-        _judge_samples(item, plan, sampling, results)
+    if header.variation.samples:
+        _judge_samples(item, number, plan, sampling, results)
         return
     [(index, result)] = results.items()
-    case = _suite_case(plan[index], result)
-    _keep(item, [case])
-    _add_properties(item, case)
+    suite_case = _suite_case(plan[index], result)
+    _keep(item, number, [suite_case])
+    _add_properties(item, suite_case)
     if result.outcome != "passed":
         raise ScenarioNotPassed(result)
 
 
 def _judge_samples(
-    item: ScenarioItem,
+    item: pytest.Item,
+    number: int,
     plan: Sequence[PlannedCase],
     sampling: Sampling,
     results: Mapping[int, CaseResult],
 ) -> None:
     counted = dict(sorted(sampling.counted(results).items()))
     cases = [_suite_case(plan[index], result) for index, result in counted.items()]
-    _keep(item, cases, sampling.groups())
+    _keep(item, number, cases, sampling.groups())
     item.user_properties += sample_properties(cases)
     broken = [each for each in counted.values() if each.outcome in ("invalid", "error")]
     if broken:
@@ -109,17 +120,16 @@ def _judge_samples(
 
 
 def _run(
-    item: ScenarioItem, plan: Sequence[PlannedCase], sampling: Sampling
+    item: pytest.Item, plan: Sequence[PlannedCase], sampling: Sampling
 ) -> dict[int, CaseResult]:
     jobs = [each.job for each in plan]
     if item.config.getoption("--harness-in-process"):
         arriving = run_here(jobs, is_needless=sampling.is_needless)
     else:
-        cap = item.config.getini("harness_hard_cap")
         arriving = run_isolated(
             jobs,
             server_of(item.config),
-            hard_cap=float(cap) if cap else None,
+            hard_cap=hard_cap(item.config),
             is_needless=sampling.is_needless,
         )
     results: dict[int, CaseResult] = {}
@@ -130,14 +140,17 @@ def _run(
 
 
 def _keep(
-    item: ScenarioItem, cases: Sequence[SuiteCase], rates: Sequence[SampledRate] = ()
+    item: pytest.Item,
+    number: int,
+    cases: Sequence[SuiteCase],
+    rates: Sequence[SampledRate] = (),
 ) -> None:
     """Attach the record to the item, from which the test's report carries it to the session."""
-    record = ItemRecord(item.nodeid, item.number, tuple(cases), tuple(rates))
+    record = ItemRecord(item.nodeid, number, tuple(cases), tuple(rates))
     setattr(item, RECORD, as_plain(record))
 
 
-def _add_properties(item: ScenarioItem, case: SuiteCase) -> None:
+def _add_properties(item: pytest.Item, case: SuiteCase) -> None:
     """Add the case's properties, report path and notes to the test's report."""
     result = case.result
     item.user_properties += case_properties(case)
@@ -150,25 +163,3 @@ def _add_properties(item: ScenarioItem, case: SuiteCase) -> None:
 def _suite_case(planned_case: PlannedCase, result: CaseResult) -> SuiteCase:
     header = planned_case.header
     return SuiteCase(result, planned_case.values, header.tags, header.verifies)
-
-
-def report_root(config: pytest.Config) -> Path | None:
-    """The folder for the session's reports; None when no reports are written."""
-    if config.getoption("--harness-no-report"):
-        return None
-    folder = config.getoption("--harness-report-dir")
-    return Path(folder) if folder else config.rootpath / config.getini("harness_report_dir")
-
-
-def server_of(config: pytest.Config) -> WarmServer:
-    """The fork server of this pytest process, which ends together with pytest."""
-    if SERVER not in config.stash:
-        config.stash[SERVER] = server = WarmServer()
-        config.add_cleanup(server.close)
-    return config.stash[SERVER]
-
-
-def shown(path: Path) -> Path:
-    """The path relative to the working directory where that is possible."""
-    here = Path.cwd()
-    return path.relative_to(here) if path.is_relative_to(here) else path

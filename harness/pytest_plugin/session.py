@@ -7,8 +7,7 @@ from typing import Any
 
 import pytest
 
-RECORD = "harness_record"
-"""Attribute of a test report that holds an item's record as plain data."""
+from harness.pytest_plugin.session_options import RECORD, report_root
 
 
 class SessionResults:
@@ -33,12 +32,11 @@ class SessionResults:
             return
         from harness.core.errors import HarnessError
         from harness.core.printable import printable, terminal_text
-        from harness.pytest_plugin.running import report_root
         from harness.pytest_plugin.session_files import (
             from_plains,
             small_margins,
             suite_of,
-            write_files,
+            write_session_files,
         )
         from harness.reporting.suite.github import annotations_for_action, append_summary
 
@@ -47,7 +45,7 @@ class SessionResults:
         folder, suite = report_root(self._config), suite_of(records)
         earlier = self._config.getoption("--harness-history")
         history = Path(earlier) if earlier else None
-        if folder is not None and (line := write_files(folder, suite, history)):
+        if folder is not None and (line := write_session_files(folder, suite, history)):
             self._lines.append(line)
         try:
             append_summary(suite)

@@ -67,7 +67,7 @@ def suite_of(records: Sequence[ItemRecord]) -> SuiteRecord:
     )
 
 
-def write_files(folder: Path, suite: SuiteRecord, history: Path | None) -> str:
+def write_session_files(folder: Path, suite: SuiteRecord, history: Path | None) -> str:
     """Write `index.html`, `junit.xml` and `results.json` if there is more than one case.
 
     Args:

@@ -1,9 +1,9 @@
 """Recorded arrays under flat names, and a file of them with the same bytes every time.
 
 `times`, `tcp_pose` ... as they are; those of a mapping as `frames/<link>`, `object_poses/<object>`,
-`contact_forces/<body>|<body>`, `presses/<link>|<body>`,
+`contact_forces/<body>|<body>`, `presses/<link>|<body>`, `frictions/<link>|<body>`,
 `support_forces/<a>|<b>`, `clearances/<a>|<b>`, `clearance_links/<a>|<b>`,
-`planned_clearances/<a>|<b>`.
+`planned_clearances/<a>|<b>`, `link_overlaps/<a>|<b>`.
 """
 
 from __future__ import annotations
@@ -24,10 +24,12 @@ BY_NAME = ("frames", "object_poses")
 BY_PAIR = (
     "contact_forces",
     "presses",
+    "frictions",
     "support_forces",
     "clearances",
     "clearance_links",
     "planned_clearances",
+    "link_overlaps",
 )
 GROUPS = frozenset(entry.name for entry in fields(Signals)) - {"clearance_cutoff"}
 COMPRESSION = 1

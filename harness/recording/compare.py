@@ -60,7 +60,7 @@ class FirstDifference:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class RunComparison:
     """Two runs side by side.
 
     Attributes:
@@ -76,7 +76,7 @@ class Comparison:
     warnings: tuple[str, ...] = ()
 
 
-def compare(first: StoredRun, second: StoredRun) -> Comparison:
+def compare(first: StoredRun, second: StoredRun) -> RunComparison:
     """Everything that differs, the outcome first."""
     one, two = first.run, second.run
     changes = [
@@ -94,7 +94,7 @@ def compare(first: StoredRun, second: StoredRun) -> Comparison:
         *(f"second run: {each}" for each in second.changes()),
     )
     is_same = first.content_digest == second.content_digest
-    return Comparison(is_same, tuple(changes), first_difference(one, two), warnings)
+    return RunComparison(is_same, tuple(changes), first_difference(one, two), warnings)
 
 
 def first_difference(one: Run, two: Run) -> FirstDifference | None:

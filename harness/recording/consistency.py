@@ -10,12 +10,12 @@ import numpy as np
 
 from harness.core.types import FloatArray
 from harness.recording.arrays import BY_NAME, BY_PAIR
-from harness.recording.npz_file import Header
+from harness.recording.npz_file import ArrayHeader
 from harness.recording.run import MeshRecord, RobotRecord, Run, Signals, StepRecord
 
-Flaw = tuple[str, str]
+Inconsistency = tuple[str, str]
 """Key, and what is wrong there."""
-COLUMNS = {"tcp_pose": 7, "frames": 7, "object_poses": 7, "presses": 6}
+COLUMNS = {"tcp_pose": 7, "frames": 7, "object_poses": 7, "presses": 6, "frictions": 3}
 """Numbers per sample; the joint signals have one per joint, others one."""
 PER_SAMPLE = tuple(
     entry.name
@@ -29,13 +29,13 @@ TRAJECTORY = ("joint_names", "times", "positions")
 
 
 @dataclass(frozen=True)
-class Expected:
+class ExpectedArray:
     """What an array should be."""
 
     shape: tuple[int, ...]
     kind: str
 
-    def flaw(self, name: str, header: Header) -> Iterator[Flaw]:
+    def flaw(self, name: str, header: ArrayHeader) -> Iterator[Inconsistency]:
         """What a header has against it."""
         if header.dtype != np.dtype(self.kind):
             yield name, f"expected {np.dtype(self.kind)}, found {header.dtype}"
@@ -43,7 +43,7 @@ class Expected:
             yield name, f"expected the shape {self.shape}, found {header.shape}"
 
 
-def signal_flaws(headers: Mapping[str, Header], robot: RobotRecord) -> Iterator[Flaw]:
+def signal_flaws(headers: Mapping[str, ArrayHeader], robot: RobotRecord) -> Iterator[Inconsistency]:
     """What is wrong with the headers of a run's signals."""
     for name in PER_SAMPLE:
         if name not in headers:
@@ -61,14 +61,14 @@ def signal_flaws(headers: Mapping[str, Header], robot: RobotRecord) -> Iterator[
             yield from _expected(group, count, len(robot.joints)).flaw(name, header)
 
 
-def _expected(group: str, samples: int, joints: int) -> Expected:
+def _expected(group: str, samples: int, joints: int) -> ExpectedArray:
     if group == "clearance_links":
-        return Expected((samples,), "int64")
+        return ExpectedArray((samples,), "int64")
     columns = joints if group.startswith("joint_") else COLUMNS.get(group)
-    return Expected((samples,) if columns is None else (samples, columns), "float64")
+    return ExpectedArray((samples,) if columns is None else (samples, columns), "float64")
 
 
-def run_flaws(run: Run) -> Iterator[Flaw]:
+def run_flaws(run: Run) -> Iterator[Inconsistency]:
     """What in a run refers to something that is not there, or has a length of its own."""
     times = run.signals.times
     if not np.isfinite(times).all() or (np.diff(times) <= 0).any():
@@ -87,7 +87,7 @@ def run_flaws(run: Run) -> Iterator[Flaw]:
     yield from _camera_flaws(run)
 
 
-def _robot_flaws(robot: RobotRecord) -> Iterator[Flaw]:
+def _robot_flaws(robot: RobotRecord) -> Iterator[Inconsistency]:
     joints = {joint.name for joint in robot.joints}
     for name, members in robot.groups.items():
         yield from _unknown(f"robot.groups.{name}", members, joints, "joint")
@@ -106,7 +106,7 @@ def _robot_flaws(robot: RobotRecord) -> Iterator[Flaw]:
         yield from _unknown("robot.gripper.group", [robot.gripper.group], robot.groups, "group")
 
 
-def _step_flaws(key: str, step: StepRecord, samples: int) -> Iterator[Flaw]:
+def _step_flaws(key: str, step: StepRecord, samples: int) -> Iterator[Inconsistency]:
     if not 0 <= step.start_index <= step.end_index <= samples:
         span = f"{step.start_index} to {step.end_index}"
         yield f"{key}.start_index", f"expected indices within 0 to {samples}, found {span}"
@@ -116,7 +116,7 @@ def _step_flaws(key: str, step: StepRecord, samples: int) -> Iterator[Flaw]:
         yield from _trajectory_flaws(f"{key}.trajectory", step.trajectory)
 
 
-def _trajectory_flaws(key: str, trajectory: Mapping[str, Any]) -> Iterator[Flaw]:
+def _trajectory_flaws(key: str, trajectory: Mapping[str, Any]) -> Iterator[Inconsistency]:
     missing = [name for name in TRAJECTORY if name not in trajectory]
     if missing:
         yield from ((f"{key}.{name}", "this key is missing") for name in missing)
@@ -139,17 +139,17 @@ def _are_texts(value: Any) -> bool:
     return isinstance(value, list) and all(isinstance(item, str) for item in value)  # pyright: ignore[reportUnknownVariableType]
 
 
-def _table_flaws(key: str, value: Any, shape: tuple[int, ...]) -> Iterator[Flaw]:
+def _table_flaws(key: str, value: Any, shape: tuple[int, ...]) -> Iterator[Inconsistency]:
     if not isinstance(value, np.ndarray):
         yield key, "expected the name of an array"
     else:
         array = cast("np.ndarray[Any, Any]", value)
-        yield from Expected(shape, "float64").flaw(key, Header(array.shape, array.dtype))
+        yield from ExpectedArray(shape, "float64").flaw(key, ArrayHeader(array.shape, array.dtype))
         if array.dtype.kind == "f" and not np.isfinite(array).all():
             yield key, "expected finite numbers"
 
 
-def _camera_flaws(run: Run) -> Iterator[Flaw]:
+def _camera_flaws(run: Run) -> Iterator[Inconsistency]:
     cameras, samples = {camera.name for camera in run.cameras}, len(run.signals.times)
     for index, capture in enumerate(run.captures):
         key = f"captures[{index}]"
@@ -161,7 +161,7 @@ def _camera_flaws(run: Run) -> Iterator[Flaw]:
         yield from _unknown(f"videos[{index}].camera", [video.camera], cameras, "camera")
 
 
-def mesh_header_flaws(headers: Mapping[str, Header], count: int) -> Iterator[Flaw]:
+def mesh_header_flaws(headers: Mapping[str, ArrayHeader], count: int) -> Iterator[Inconsistency]:
     """What is wrong with the headers of the triangles of so many meshes."""
     for index in range(count):
         for name, kind in MESH_ARRAYS.items():
@@ -170,10 +170,10 @@ def mesh_header_flaws(headers: Mapping[str, Header], count: int) -> Iterator[Fla
             if header is None:
                 yield name, "this array is missing"
             else:
-                yield from Expected((*header.shape[:1], 3), kind).flaw(name, header)
+                yield from ExpectedArray((*header.shape[:1], 3), kind).flaw(name, header)
 
 
-def mesh_flaws(meshes: Iterable[MeshRecord]) -> Iterator[Flaw]:
+def mesh_flaws(meshes: Iterable[MeshRecord]) -> Iterator[Inconsistency]:
     """Faces that name vertices which are not there."""
     for index, mesh in enumerate(meshes):
         if mesh.faces.size and not 0 <= mesh.faces.min() <= mesh.faces.max() < len(mesh.vertices):
@@ -184,7 +184,7 @@ def mesh_flaws(meshes: Iterable[MeshRecord]) -> Iterator[Flaw]:
 
 def _length(
     key: str, numbers: Iterable[float], length: int, *, may_be_empty: bool = False
-) -> Iterator[Flaw]:
+) -> Iterator[Inconsistency]:
     values: FloatArray = np.array(tuple(numbers), dtype=float)
     if len(values) == length or (may_be_empty and not len(values)):
         if not np.isfinite(values).all():
@@ -193,7 +193,9 @@ def _length(
         yield key, f"expected {length} numbers, found {len(values)}"
 
 
-def _unknown(key: str, names: Iterable[str], known: Iterable[str], what: str) -> Iterator[Flaw]:
+def _unknown(
+    key: str, names: Iterable[str], known: Iterable[str], what: str
+) -> Iterator[Inconsistency]:
     for name in names:
         if name not in known:
             yield key, f"there is no {what} '{name}' in this run"

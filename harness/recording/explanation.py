@@ -1,10 +1,15 @@
-"""Why a motion was not found: the stages of planning in order, and what became of each."""
+"""Why a motion was not found: the stages of planning in order, a state to draw, and advice."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal, cast
+from typing import Any, Literal
+
+from harness.core.details import Detail
+from harness.recording.goal_failures import TouchRecord
+from harness.recording.plain import PlainError, from_plain
+from harness.recording.run import Floats, Pair
 
 StageName = Literal["reach", "inverse kinematics", "start state", "path", "time parameterisation"]
 StageStatus = Literal["passed", "failed", "not reached"]
@@ -20,44 +25,198 @@ STAGES: tuple[StageName, ...] = (
 
 
 @dataclass(frozen=True)
-class Stage:
+class Stage(Detail):
     """One stage of planning a motion.
 
     Attributes:
-        name: The name of the stage.
+        stage: The name of the stage.
         status: The outcome of the stage.
         text: The result in one sentence, with its numbers.
-        code: Its failure's name in moveit_msgs/MoveItErrorCodes; empty unless it failed.
-        details: A line each: an inverse kinematics' branch and what removed it, a pair too near.
+        code: The failure's name in moveit_msgs/MoveItErrorCodes; empty unless it failed.
+        details: A line each: a branch of inverse kinematics and what removed it, a pair too near.
     """
 
-    name: StageName
+    stage: StageName
     status: StageStatus
     text: str
     code: str = ""
     details: tuple[str, ...] = ()
 
-    def plain(self) -> dict[str, Any]:
-        """As plain data for a step's record."""
-        return {
-            "stage": self.name,
-            "status": self.status,
-            "code": self.code,
-            "text": self.text,
-            "details": list(self.details),
-        }
+
+@dataclass(frozen=True)
+class FreeShift(Detail):
+    """The shortest move along an axis of the world that frees a goal [m], and the robot there."""
+
+    shift: Floats
+    joint_positions: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class NearestState(Detail):
+    """A state of the robot that shows why a motion was not found.
+
+    Attributes:
+        shows: What the state is, in words.
+        joint_positions: Every joint of the robot by name.
+        link: The link that has a goal; empty without one.
+        target: T_world_link of the goal (xyz, quat wxyz), or its point (xyz).
+        pose: T_world_link in the state.
+        position_error: Between pose and target [m].
+        orientation_error: Between pose and target [rad].
+        touches: Bodies that are too near in the state.
+        nearest_free: Where the goal would be free.
+    """
+
+    shows: str
+    joint_positions: Mapping[str, float]
+    link: str | None = None
+    target: Floats | None = None
+    pose: Floats | None = None
+    position_error: float | None = None
+    orientation_error: float | None = None
+    touches: tuple[TouchRecord, ...] | None = None
+    nearest_free: FreeShift | None = None
+
+
+@dataclass(frozen=True)
+class Explanation(Detail):
+    """The explanation of a failed motion.
+
+    Attributes:
+        stages: The stages of planning in order.
+        nearest: A state to draw.
+        advice: What the user can do about the failure.
+        picture: File of the drawn state in the run's folder.
+    """
+
+    stages: tuple[Stage, ...] | None = None
+    nearest: NearestState | None = None
+    advice: str | None = None
+    picture: str | None = None
+
+
+@dataclass(frozen=True)
+class LoweredMargin(Detail):
+    """A pair that may stay nearer than its margin, because it starts nearer [m]."""
+
+    pair: Pair
+    start_distance: float
+    margin: float
+
+
+@dataclass(frozen=True)
+class LoweredMargins(Detail):
+    """Every pair whose margin is lowered during a motion."""
+
+    lowered_margins: tuple[LoweredMargin, ...]
+
+
+@dataclass(frozen=True)
+class StraightResult(Detail):
+    """How far a link moved in a straight line [m or rad], and what stopped it."""
+
+    stopped_by: str
+    distance: float | None = None
+
+
+@dataclass(frozen=True)
+class DistanceResult(Detail):
+    """How far a relative motion goes [m or rad]."""
+
+    distance: float
+
+
+@dataclass(frozen=True)
+class SequenceResult(Detail):
+    """How many motions a sequence has, and between how many of them it stops or blends."""
+
+    items: int
+    stops: int
+    blends: int
+
+
+@dataclass(frozen=True)
+class ArcResult(Detail):
+    """The circle of an arc [m], and the angle that it sweeps [rad]."""
+
+    center: Floats
+    radius: float
+    sweep: float
+
+
+@dataclass(frozen=True)
+class CartesianPathResult(Detail):
+    """What a Cartesian path reaches.
+
+    Attributes:
+        fraction: The share of its length.
+        largest_joint_step: Between two states [rad or m].
+        deviation: The largest distance from its lines [m]; None until it is timed.
+        min_fraction: The share that is required, where less is reached.
+    """
+
+    fraction: float
+    largest_joint_step: float
+    deviation: float | None = None
+    min_fraction: float | None = None
+
+
+@dataclass(frozen=True)
+class Alternative(Detail):
+    """One of several goals: its solutions, or its failure."""
+
+    error_code: str
+    message: str | None = None
+    ways: int | None = None
+
+
+@dataclass(frozen=True)
+class Alternatives(Detail):
+    """The goals of which one is enough."""
+
+    alternatives: tuple[Alternative, ...]
+
+
+@dataclass(frozen=True)
+class GoalRegion(Detail):
+    """How many poses of a goal's region have a solution."""
+
+    poses_of_region: int
+
+
+@dataclass(frozen=True)
+class ApproachFailure(Detail):
+    """Which end of a straight approach cannot be reached."""
+
+    is_start_of_approach: bool
+
+
+def recorded_explanation(explanation: Mapping[str, Any]) -> Explanation:
+    """The stages, the state and the advice in a step's record; what does not fit is left out."""
+    found: dict[str, Any] = {}
+    for name, kind in _KINDS.items():
+        try:
+            if name in explanation:
+                found[name] = from_plain(explanation[name], kind, name)
+        except PlainError:
+            continue
+    return Explanation(**found)
+
+
+_KINDS: Mapping[str, Any] = {
+    "stages": tuple[Stage, ...],
+    "nearest": NearestState,
+    "advice": str,
+    "picture": str,
+}
+
+
+def lowered_margins_of(explanation: Mapping[str, Any]) -> tuple[LoweredMargin, ...]:
+    """The pairs whose margin was lowered during a step."""
+    entries = explanation.get("lowered_margins", [])
+    return from_plain(entries, tuple[LoweredMargin, ...], "lowered_margins")
 
 
 def stages_of(explanation: Mapping[str, Any]) -> tuple[Stage, ...]:
-    """The stages in a step's explanation; none where it has none."""
-    entries = cast(Iterable[Mapping[str, Any]], explanation.get("stages", ()))
-    return tuple(
-        Stage(
-            name=entry["stage"],
-            status=entry["status"],
-            text=str(entry["text"]),
-            code=str(entry["code"]),
-            details=tuple(map(str, entry["details"])),
-        )
-        for entry in entries
-    )
+    """The stages in a step's explanation; empty where it has none."""
+    return recorded_explanation(explanation).stages or ()

@@ -11,7 +11,7 @@ from harness.core.types import FloatArray
 from harness.recording.run import LinkPlacement, RobotRecord
 
 
-def link_poses(
+def replayed_link_poses(
     robot: RobotRecord, joint_positions: FloatArray, links: Collection[str] | None = None
 ) -> dict[str, FloatArray]:
     """T_world_link at every sample, shape (N, 7) each; (1, 7) of links that cannot move.

@@ -37,7 +37,7 @@ def looks_of_steps(steps: Iterable[StepRecord]) -> tuple[Look, ...]:
     )
 
 
-def merged(looks: Iterable[Look]) -> tuple[Look, ...]:
+def merged_looks(looks: Iterable[Look]) -> tuple[Look, ...]:
     """One look for each camera and sample, of every kind that any of them needs, in time order."""
     together: dict[tuple[int, str], Look] = {}
     for look in looks:

@@ -33,7 +33,7 @@ class NpzError(ValueError):
 
 
 @dataclass(frozen=True)
-class Header:
+class ArrayHeader:
     """What an array is, before it is loaded."""
 
     shape: tuple[int, ...]
@@ -93,7 +93,7 @@ class NpzFile:
                 raise NpzError(name, "more data than its header says")
         return array
 
-    def _headers(self) -> Iterator[tuple[str, Header]]:
+    def _headers(self) -> Iterator[tuple[str, ArrayHeader]]:
         seen: set[str] = set()
         total = sum(entry.file_size for entry in self._archive.infolist())
         if total > LARGEST:
@@ -116,13 +116,13 @@ class NpzFile:
             yield name, header
 
 
-def _header(member: IO[bytes]) -> Header:
+def _header(member: IO[bytes]) -> ArrayHeader:
     version = np.lib.format.read_magic(member)
     if version == (1, 0):
         shape, _, dtype = np.lib.format.read_array_header_1_0(member)
     else:
         shape, _, dtype = np.lib.format.read_array_header_2_0(member)
-    return Header(shape, dtype)
+    return ArrayHeader(shape, dtype)
 
 
 @contextmanager

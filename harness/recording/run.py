@@ -139,10 +139,12 @@ class ObjectRecord:
     """An object that took part.
 
     Attributes:
+        shapes: Its collision shapes; planner, physics and verdicts know no others.
         present: Intervals [(from, to)] of simulation time in which it was in the scene [s].
         pose: T_world_object when it was added or put somewhere last (xyz, quat wxyz); empty when
             unknown.
         mass: The mass [kg]; NaN when unknown.
+        visuals: Shapes that pictures show, where they differ from `shapes`.
     """
 
     name: str
@@ -153,6 +155,12 @@ class ObjectRecord:
     present: tuple[tuple[float, float], ...]
     pose: tuple[float, ...] = ()
     mass: float = float("nan")
+    visuals: tuple[Shape, ...] = ()
+
+    @property
+    def looks(self) -> tuple[Shape, ...]:
+        """Shapes that pictures show."""
+        return self.visuals or self.shapes
 
 
 @dataclass(frozen=True)
@@ -435,6 +443,8 @@ class Signals:
         presses: Where a robot link presses on another body, and how: mean of the contact points,
             weighted by their normal forces (world xyz), and the sum of these forces on the other
             body (world xyz) [N], (N, 6) each; NaN without force; keys as in `contact_forces`.
+        frictions: Friction force of a robot link on another body (world xyz) [N], (N, 3) each; zero
+            without contact; keys as in `presses`. A pair that is not in it was recorded without.
         support_forces: Upward part of the normal force [N] that the first of two objects exerts on
             the second; negative where the second carries the first. (N,) each; keys as in
             `contact_forces`, of objects alone. A pair that is not in it was recorded without.
@@ -443,6 +453,9 @@ class Signals:
             `clearance_cutoff`: a value there means "at least that far".
         clearance_links: The robot link that was nearest, as an index into the robot's link_names,
             (N,) each, for keys of `clearances` that start with `robot`; -1 where none.
+        link_overlaps: How deep two links are inside each other [m] whose contact the SRDF excludes
+            from the physics, (N,) each; only pairs that overlap in the run and do not with every
+            joint at zero.
         planned_clearances: The clearances had the arm been at its commands; recorded when an
             expectation needs them.
     """
@@ -460,6 +473,7 @@ class Signals:
         default_factory=dict[tuple[str, str], FloatArray]
     )
     presses: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
+    frictions: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
     support_forces: Mapping[Pair, FloatArray] = field(
         default_factory=dict[tuple[str, str], FloatArray]
     )
@@ -468,6 +482,9 @@ class Signals:
         default_factory=dict[tuple[str, str], np.ndarray]
     )
     planned_clearances: Mapping[Pair, FloatArray] = field(
+        default_factory=dict[tuple[str, str], FloatArray]
+    )
+    link_overlaps: Mapping[Pair, FloatArray] = field(
         default_factory=dict[tuple[str, str], FloatArray]
     )
     clearance_cutoff: float = 0.15
@@ -530,3 +547,8 @@ class Run:
     captures: tuple[CaptureRecord, ...] = ()
     videos: tuple[VideoRecord, ...] = ()
     files: Mapping[str, bytes] = field(default_factory=dict[str, bytes], repr=False)
+
+    @property
+    def duration(self) -> float:
+        """Length of the run in simulation time [s]."""
+        return float(self.signals.times[-1])

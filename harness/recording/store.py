@@ -20,7 +20,7 @@ from harness.core.geometry import Rgba
 from harness.core.printable import json_printable
 from harness.recording.arrays import arrays_of, is_signal, signals_from, write_npz
 from harness.recording.consistency import (
-    Flaw,
+    Inconsistency,
     mesh_flaws,
     mesh_header_flaws,
     run_flaws,
@@ -91,23 +91,13 @@ class StoredRun:
 
 
 def write_run(
-    folder: Path,
-    run: Run,
-    verdicts: Sequence[Verdict],
-    outcome: Outcome,
-    digest: str,
-    wall_times: Mapping[str, float],
-    extra: Callable[[Path], tuple[str, ...]] | None = None,
+    folder: Path, stored: StoredRun, extra: Callable[[Path], tuple[str, ...]] | None = None
 ) -> tuple[str, ...]:
-    """Write a run's folder under a temporary name next to it, then move it into place.
+    """Write a run's folder under a temporary name next to it, then put it in its place.
 
     Args:
         folder: Its final name; an older run there is replaced, anything else is not touched.
-        run: The run with its recorded signals.
-        verdicts: The verdicts about the run.
-        outcome: The outcome of the case.
-        digest: The digest of run and verdicts.
-        wall_times: Seconds of each part.
+        stored: The judged run that is written.
         extra: Adds more files to the folder it is given, before anyone sees it; returns notes.
 
     Returns:
@@ -117,12 +107,12 @@ def write_run(
         HarnessError: The disk is full, the place is not writable, or is no place for a run.
     """
     _refuse_foreign(folder)
-    temporary: Path | None = None
+    run, temporary = stored.run, None
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
         temporary = _fresh_sibling(folder, "writing")
         arrays = arrays_of(run.signals)
-        document = _document(run, verdicts, outcome, digest, wall_times, arrays)
+        document = _document(stored, arrays)
         document[CHECKSUM] = _checksum(document, run.resolved)
         text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
         (temporary / RUN).write_text(json_printable(text) + "\n", encoding="utf-8")
@@ -325,7 +315,7 @@ def _damage(path: Path, reason: str, line: int = 0, column: int = 0) -> SpecErro
     return SpecError([Problem(str(path), line, column, f"damaged run: {reason}")])
 
 
-def _refuse(path: Path, flaws: Iterable[Flaw]) -> None:
+def _refuse(path: Path, flaws: Iterable[Inconsistency]) -> None:
     """Raise what is wrong, all of it at once."""
     problems = [
         Problem(str(path), 0, 0, ": ".join(filter(None, ["damaged run", key, reason])))
@@ -335,28 +325,22 @@ def _refuse(path: Path, flaws: Iterable[Flaw]) -> None:
         raise SpecError(problems[:MOST_FLAWS])
 
 
-def _document(
-    run: Run,
-    verdicts: Sequence[Verdict],
-    outcome: Outcome,
-    digest: str,
-    wall_times: Mapping[str, float],
-    arrays: dict[str, np.ndarray[Any, Any]],
-) -> dict[str, Any]:
+def _document(stored: StoredRun, arrays: dict[str, np.ndarray[Any, Any]]) -> dict[str, Any]:
     """The content of run.json; arrays of trajectories go into `arrays`."""
+    run = stored.run
     first = ("scenario", "file", "case")
     rest = [entry.name for entry in fields(run) if entry.name not in (*first, *APART)]
     return {
         "format": FORMAT,
         **{name: getattr(run, name) for name in first},
-        "outcome": outcome,
-        "digest": digest,
+        "outcome": stored.outcome,
+        "digest": stored.digest,
         "seed": run.seed,
         "steps": [_step(step, index, arrays) for index, step in enumerate(run.steps)],
-        "verdicts": to_plain(tuple(verdicts)),
+        "verdicts": to_plain(stored.verdicts),
         "findings": to_plain(run.findings),
         "versions": to_plain(run.versions),
-        "wall_times": to_plain(wall_times),
+        "wall_times": to_plain(stored.wall_times),
         "clearance_cutoff": run.signals.clearance_cutoff,
         **{name: to_plain(getattr(run, name)) for name in rest},
         "meshes": [

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import groupby
 
-from harness.recording.compare import Change, Comparison, FirstDifference
+from harness.recording.compare import Change, FirstDifference, RunComparison
 from harness.reporting.terminal import PLAIN, Style
 
 HEADINGS = {
@@ -23,7 +23,7 @@ HEADINGS = {
 }
 
 
-def comparison_lines(comparison: Comparison, style: Style = PLAIN) -> Iterator[str]:
+def comparison_lines(comparison: RunComparison, style: Style = PLAIN) -> Iterator[str]:
     """What changed, in groups; one line when nothing did."""
     if comparison.is_same:
         yield f"{style.good('same')}  equal digests: commands, signals and verdicts are the same"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from harness.recording.explanation import stages_of
+from harness.recording.explanation import recorded_explanation
 
 INDENT = "    "
 
@@ -18,14 +18,15 @@ def explanation_lines(explanation: Mapping[str, Any], message: str = "") -> tupl
         message: What was said of the failure already; a stage does not repeat it.
     """
     lines: list[str] = []
-    for stage in stages_of(explanation):
+    found = recorded_explanation(explanation)
+    for stage in found.stages or ():
         text = "" if stage.text == message else stage.text
         if stage.status == "not reached":
             text = f"not reached, {text}" if text else "not reached"
-        lines.append(": ".join(part for part in (stage.name, stage.code, text) if part))
+        lines.append(": ".join(part for part in (stage.stage, stage.code, text) if part))
         lines += [f"{INDENT}{detail}" for detail in stage.details]
-    if explanation.get("advice"):
-        lines.append(f"what to do: {explanation['advice']}")
-    if explanation.get("picture"):
-        lines.append(f"picture: {explanation['picture']} ({explanation['nearest']['shows']})")
+    if found.advice:
+        lines.append(f"what to do: {found.advice}")
+    if found.picture and found.nearest is not None:
+        lines.append(f"picture: {found.picture} ({found.nearest.shows})")
     return tuple(lines)

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from harness.core.errors import Problem
-from harness.recording.run import Outcome, StepStatus, Verdict
+from harness.recording.run import Outcome, StepRecord, StepStatus, Verdict
+from harness.reporting.explanation import explanation_lines
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,22 @@ class StepLine:
     line: int = 0
     explanation: tuple[str, ...] = ()
     path: str = ""
+
+    @classmethod
+    def of(cls, step: StepRecord) -> StepLine:
+        """A recorded step in one line."""
+        return cls(
+            id=step.id,
+            verb=step.verb,
+            summary=step.summary,
+            status=step.status,
+            error_code=step.error_code,
+            message=step.message,
+            sim_time=step.end_time - step.start_time,
+            line=step.line,
+            explanation=explanation_lines(step.explanation, step.message),
+            path=step.path,
+        )
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ class GroupLine:
 
 
 @dataclass(frozen=True)
-class Finding:
+class RobotFinding:
     """One thing that was looked at.
 
     Attributes:
@@ -74,7 +74,7 @@ class RobotReport:
     arm_group: str
     tcp_link: str
     gripper: str
-    findings: tuple[Finding, ...]
+    findings: tuple[RobotFinding, ...]
     notes: tuple[str, ...] = ()
     proposal: Mapping[str, tuple[tuple[str, str], ...]] = field(
         default_factory=dict[str, tuple[tuple[str, str], ...]]

@@ -20,7 +20,7 @@ MOST_ROWS = 12
 
 
 @dataclass(frozen=True)
-class Rate:
+class SuccessRate:
     """How many samples passed, and what that shows.
 
     Attributes:
@@ -68,11 +68,11 @@ class SampledRate:
 
     file: str
     group: str
-    rate: Rate
+    rate: SuccessRate
     outcome: Outcome
 
 
-def with_starts(rate: Rate, results: Sequence[CaseResult]) -> Rate:
+def with_starts(rate: SuccessRate, results: Sequence[CaseResult]) -> SuccessRate:
     """A rate with how many of its samples have overlapping objects at the start."""
     return replace(
         rate,
@@ -91,12 +91,12 @@ def missed(rates: Sequence[SampledRate]) -> str:
     return f"{count} of {len(rates)} success rates not confirmed" if count else ""
 
 
-def rate_line(name: str, rate: Rate, style: Style = PLAIN) -> str:
+def rate_line(name: str, rate: SuccessRate, style: Style = PLAIN) -> str:
     """A mark and the text of a rate under its name."""
     return f"{style.mark(rate.verdict == 'shown')} {rate_text(name, rate)}"
 
 
-def rate_text(name: str, rate: Rate) -> str:
+def rate_text(name: str, rate: SuccessRate) -> str:
     """`pick: 187 of 200 samples passed, 93.5% (...): at least 90% is confirmed`."""
     count = f"{rate.invalid} sample{'s' if rate.invalid != 1 else ''}"
     if not rate.total:

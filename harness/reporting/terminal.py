@@ -205,7 +205,7 @@ def root_failures(steps: Sequence[StepLine]) -> list[StepLine]:
 def step_failure(file: str, step: StepLine, source: Sequence[str] = ()) -> str:
     """Place, step, error code, message, source line, and the explanation where there is one."""
     place = f"{file}:{step.line}" if step.line else file
-    said = step.message.removeprefix(f"{step.error_code}: ")
+    said = step.message
     why = ": ".join(part for part in (step.error_code, said) if part)
     explained = [f"    {line}" for line in step.explanation]
     return _joined([f"{place}: {step.summary}: {why}", *_excerpt(source, step.line), *explained])

@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 
 from harness.core.spatial import SE3
-from harness.robot.compose import Part
+from harness.robot.compose import RobotPart
 from harness.robot.description import Joint, Link
 from harness.robot.srdf.srdf import Srdf
 
 FLANGE = "flange"
 
 
-def without_gripper(part: Part) -> Part:
+def without_gripper(part: RobotPart) -> RobotPart:
     """The arm without its fingers and TCP, with the flange of its robot.yaml.
 
     The arm's chain ends at the flange; groups, states and pairs of the gripper are removed. An arm

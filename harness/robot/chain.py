@@ -10,6 +10,7 @@ from harness.core.errors import RobotError
 from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray
 from harness.robot.description import Joint, RobotDescription
+from harness.robot.forward_kinematics import motion, rotations_about
 
 HOME = "home"
 """Named state that counterexamples shrink towards, if the arm has it."""
@@ -163,21 +164,6 @@ class Chain:
             else:
                 p = p + axes * samples[:, index, None]
         return R @ self.tip.rotation, p + R @ self.tip.translation, carried
-
-
-def motion(joint: Joint, position: float) -> SE3:
-    """Transform of a joint's frame by its position."""
-    if joint.kind == "prismatic":
-        return SE3(np.eye(3), position * joint.axis)
-    return SE3(rotations_about(joint.axis, np.array([position]))[0], np.zeros(3))
-
-
-def rotations_about(axis: FloatArray, angles: FloatArray) -> FloatArray:
-    """Rotation matrices about a unit axis, shape (N, 3, 3): Rodrigues' formula."""
-    x, y, z = axis
-    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    sine, cosine = np.sin(angles)[:, None, None], np.cos(angles)[:, None, None]
-    return np.eye(3) + sine * K + (1.0 - cosine) * (K @ K)
 
 
 def _way_to(description: RobotDescription, link: str) -> tuple[Joint, ...]:

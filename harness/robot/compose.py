@@ -33,7 +33,7 @@ WORLD = "world"
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class RobotPart:
     """The content of one robot folder: an arm or a gripper.
 
     Attributes:
@@ -53,7 +53,7 @@ class Part:
     notes: tuple[str, ...] = ()
 
 
-def compose(arm: Part | None, gripper: Part | None, base: SE3) -> RobotDescription:
+def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -> RobotDescription:
     """One description of an arm, a gripper on its flange, or a gripper alone, fixed in the world.
 
     Args:
@@ -120,7 +120,7 @@ def _fixed(name: str, parent: str, child: str, pose: SE3) -> Joint:
     return Joint(name, "fixed", parent, child, pose, np.array([1.0, 0.0, 0.0]))
 
 
-def _flange(arm: Part, gripper: Part) -> str:
+def _flange(arm: RobotPart, gripper: RobotPart) -> str:
     if not arm.facts.flange_link:
         raise RobotError(
             f"'{arm.name}' has no flange that the gripper '{gripper.name}' could be mounted on; "
@@ -129,7 +129,7 @@ def _flange(arm: Part, gripper: Part) -> str:
     return arm.facts.flange_link
 
 
-def _mounted(gripper: Part, mount: Mount, flange: str) -> tuple[Link, list[Joint]]:
+def _mounted(gripper: RobotPart, mount: Mount, flange: str) -> tuple[Link, list[Joint]]:
     """The gripper's TCP frame, and the joints that attach it and the gripper's root."""
     root = gripper.urdf.root
     on_root = SE3.from_xyz_rpy(mount.tcp.xyz, mount.tcp.rpy)
@@ -143,7 +143,7 @@ def _mounted(gripper: Part, mount: Mount, flange: str) -> tuple[Link, list[Joint
     ]
 
 
-def _joined(arm: Part, gripper: Part, flange: str, tcp_link: str) -> Srdf:
+def _joined(arm: RobotPart, gripper: RobotPart, flange: str, tcp_link: str) -> Srdf:
     """Groups of both; chains that ended at the flange end at the gripper's TCP."""
     groups = tuple(
         replace(
@@ -207,7 +207,7 @@ def _gripper(facts: GripperFacts) -> Gripper:
     )
 
 
-def _cameras(parts: list[Part], links: tuple[Link, ...]) -> dict[str, Camera]:
+def _cameras(parts: list[RobotPart], links: tuple[Link, ...]) -> dict[str, Camera]:
     """Cameras of every part's robot.yaml, by name."""
     cameras: dict[str, Camera] = {}
     names = [link.name for link in links]
@@ -225,7 +225,7 @@ def _cameras(parts: list[Part], links: tuple[Link, ...]) -> dict[str, Camera]:
     return cameras
 
 
-def _start_state(parts: list[Part], srdf: Srdf) -> Mapping[str, float]:
+def _start_state(parts: list[RobotPart], srdf: Srdf) -> Mapping[str, float]:
     """Start positions of robot.yaml: a named state, overridden by single joints."""
     positions: dict[str, float] = {}
     for part in parts:

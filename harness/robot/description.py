@@ -19,7 +19,6 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 
 JointKind = Literal["fixed", "revolute", "continuous", "prismatic"]
-IkSolver = Literal["ur", "open_manipulator_x", "numeric", "auto"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,7 +188,8 @@ class RobotDescription:
         start_state: Joint positions by name at the start of a run.
         cameras: Cameras on links, by name.
         tracking: Tolerances of the trajectory controller.
-        ik_solver: `ur`, `open_manipulator_x`, `numeric`, or `auto`: the first of these that fits.
+        ik_solver: A plug-in of the kind `ik_solver`, such as `ur`, `open_manipulator_x` or
+            `numeric`; or `auto`: the first of these that fits.
         position_only_groups: Groups whose pose goals fix the position alone, as with MoveIt's
             `position_only_ik`.
         notes: Notes on ignored elements and assumptions.
@@ -210,7 +210,7 @@ class RobotDescription:
     start_state: Mapping[str, float]
     cameras: Mapping[str, Camera] = field(default_factory=dict)
     tracking: TrackingTolerances = field(default_factory=TrackingTolerances)
-    ik_solver: IkSolver = "numeric"
+    ik_solver: str = "numeric"
     position_only_groups: frozenset[str] = frozenset()
     notes: tuple[str, ...] = ()
 

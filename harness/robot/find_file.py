@@ -6,7 +6,7 @@ import difflib
 from collections.abc import Sequence
 from pathlib import Path
 
-from harness.core.errors import RobotError
+from harness.core.errors import RobotOptionError
 from harness.robot.packages import NotFoundError, PackagePath
 
 
@@ -20,12 +20,12 @@ def find_file(name: str, key: str, base_dir: Path, given: Sequence[Path]) -> Pat
         try:
             return PackagePath.of_file(base_dir / "scenario", given).file(name, base_dir)
         except NotFoundError as error:
-            raise RobotError(f"robot.{key}: {error}") from error
+            raise RobotOptionError(key, str(error)) from error
     path = base_dir / Path(name).expanduser()
     if not path.is_file():
         near = difflib.get_close_matches(path.name, _names(path.parent), 1)
         hint = f"; did you mean '{near[0]}'?" if near else ""
-        raise RobotError(f"robot.{key}: there is no file {path}{hint}")
+        raise RobotOptionError(key, f"there is no file {path}{hint}")
     return path
 
 
@@ -41,5 +41,5 @@ def find_folder(name: str, base_dir: Path) -> Path:
     """
     folder = base_dir / Path(name).expanduser()
     if not folder.is_dir():
-        raise RobotError(f"robot.packages: there is no folder {folder}")
+        raise RobotOptionError("packages", f"there is no folder {folder}")
     return folder

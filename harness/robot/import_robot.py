@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from harness.core.errors import RobotError
+from harness.core.errors import RobotError, RobotOptionError
 from harness.language.files.xml_file import read_bounded
 from harness.language.scenario import RobotSpec
-from harness.robot.compose import WORLD, Part
+from harness.robot.compose import WORLD, RobotPart
 from harness.robot.description import NamedState
 from harness.robot.find_file import find_file, find_folder
 from harness.robot.imported_part import imported_part
@@ -26,7 +26,7 @@ RENAMED_ROOT = "robot_world"
 """New name of a robot's root link that is named `world`, like the root of every composed robot."""
 
 
-def read_robot(spec: RobotSpec, base_dir: Path) -> Part:
+def read_robot(spec: RobotSpec, base_dir: Path) -> RobotPart:
     """The robot of `urdf:`, `xacro:` or `mjcf:`, with its SRDF or a default one.
 
     Args:
@@ -42,7 +42,7 @@ def read_robot(spec: RobotSpec, base_dir: Path) -> Part:
     path = find_file(getattr(spec, key), key, base_dir, given)
     packages = PackagePath.of_file(path, given)
     if spec.args and key != "xacro":
-        raise RobotError(f"robot.args: a `{key}` takes no arguments; a `xacro` does")
+        raise RobotOptionError("args", f"a `{key}` takes no arguments; a `xacro` does")
     if key == "mjcf":
         mjcf = read_mjcf(path, packages)
         urdf, states, excluded = mjcf.urdf, mjcf.states, mjcf.disabled

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
-from harness.core.errors import RobotError
+from harness.core.errors import RobotError, RobotOptionError
 from harness.language.scenario import RobotSpec, StartState
-from harness.robot.compose import Part
+from harness.robot.compose import RobotPart
 from harness.robot.description import Joint, Link, PlanningGroup
 from harness.robot.gripper.inferred_gripper import NoGripperError, recognise
-from harness.robot.gripper.inferred_tcp import with_own_gripper
+from harness.robot.gripper.inferred_tcp import with_integrated_gripper
 from harness.robot.groups import planning_groups
 from harness.robot.robot_yaml import RobotYaml
 from harness.robot.srdf.default_pairs import touching_pairs
@@ -37,7 +37,7 @@ START_STATES = ("home", "ready", "start", "default", "init", "rest")
 """Names of start states of an imported arm, in order of preference."""
 
 
-def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: str) -> Part:
+def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: str) -> RobotPart:
     """The robot in the form of a folder with a robot.yaml.
 
     Args:
@@ -71,13 +71,13 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
     if hand is not None:
         try:
             own = recognise(urdf, srdf, hand)
-            urdf, srdf, tcp_link = with_own_gripper(own, urdf, srdf, arm, tip, spec.tcp_link)
+            urdf, srdf, tcp_link = with_integrated_gripper(own, urdf, srdf, arm, tip, spec.tcp_link)
             gripper = own.facts
             notes += own.notes
         except NoGripperError as error:
             if spec.gripper is not None:
-                raise RobotError(
-                    f"robot.gripper: '{spec.gripper}' is not a gripper: {error}"
+                raise RobotOptionError(
+                    "gripper", f"'{spec.gripper}' is not a gripper: {error}"
                 ) from error
             notes.append(f"'{hand.name}' is not used as a gripper: {error}")
     facts = RobotYaml(
@@ -94,10 +94,10 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
         start_state=StartState(joints=start),
         gripper=gripper,
     )
-    return Part(path.stem, facts, urdf, srdf, source, tuple(notes))
+    return RobotPart(path.stem, facts, urdf, srdf, source, tuple(notes))
 
 
-def names_own_gripper(name: str | None, srdf: Srdf) -> bool:
+def names_integrated_gripper(name: str | None, srdf: Srdf) -> bool:
     """Whether a scenario's `gripper` is a group or an end effector of the robot itself."""
     return name in {group.name for group in srdf.groups} | {t.name for t in srdf.end_effectors}
 
@@ -107,7 +107,7 @@ def _hand(
 ) -> PlanningGroup | None:
     """The group of the hand: the named one, or that of the arm's end effector."""
     if spec.gripper is not None:
-        if not names_own_gripper(spec.gripper, srdf):
+        if not names_integrated_gripper(spec.gripper, srdf):
             return None
         tools = {tool.name: tool.group for tool in srdf.end_effectors}
         hand = groups[tools.get(spec.gripper, spec.gripper)]
@@ -151,9 +151,10 @@ def _arm_group(
         if spec.group not in movable:
             near = difflib.get_close_matches(spec.group, list(movable), 1)
             hint = f"did you mean '{near[0]}'? " if near else ""
-            raise RobotError(
-                f"robot.group: there is no group '{spec.group}' with joints that move; {hint}"
-                f"known are {', '.join(movable) or 'none'}"
+            raise RobotOptionError(
+                "group",
+                f"there is no group '{spec.group}' with joints that move; {hint}"
+                f"known are {', '.join(movable) or 'none'}",
             )
         return movable[spec.group]
     parents = [tool.parent_group for tool in srdf.end_effectors if tool.parent_group in movable]
@@ -173,8 +174,8 @@ def _refuse_unknown_link(name: str | None, key: str, links: Sequence[Link]) -> N
     if name is not None and name not in names:
         near = difflib.get_close_matches(name, names, 1)
         hint = f"did you mean '{near[0]}'? " if near else ""
-        raise RobotError(
-            f"robot.{key}: the robot has no link '{name}'; {hint}links: {', '.join(names)}"
+        raise RobotOptionError(
+            key, f"the robot has no link '{name}'; {hint}links: {', '.join(names)}"
         )
 
 

@@ -10,7 +10,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from harness.core.errors import RobotError
+from harness.core.errors import RobotOptionError
+from harness.core.registry import broken_plugins
 from harness.core.resources import data_folder
 from harness.language.files.xml_file import LARGEST_FILE, read_xml
 from harness.language.files.yaml_file import read_text
@@ -18,14 +19,15 @@ from harness.language.scenario import RobotSpec
 from harness.robot.acceleration import with_possible_accelerations
 from harness.robot.bare_arm import without_gripper
 from harness.robot.calibration import calibrated
-from harness.robot.compose import Part, compose
+from harness.robot.compose import RobotPart, compose_robot
 from harness.robot.description import Joint, RobotDescription
 from harness.robot.find_file import find_file, find_folder
 from harness.robot.folder_names import refuse_incomplete_states, unknown_names
 from harness.robot.import_robot import read_robot
-from harness.robot.imported_part import names_own_gripper
+from harness.robot.imported_part import names_integrated_gripper
 from harness.robot.options import with_moveit_files, with_options
 from harness.robot.packages import PackagePath
+from harness.robot.robot_collection import collected_robots
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml, robot_yaml_error
 from harness.robot.srdf.srdf import parse_srdf
 from harness.robot.urdf.urdf import parse_urdf
@@ -46,8 +48,14 @@ def _catalogue() -> dict[str, tuple[Path, RobotYaml]]:
 
 
 def robot_names() -> tuple[str, ...]:
-    """Names of the bundled robots that `model` accepts, grippers included."""
-    return tuple(_catalogue())
+    """Names of the robots that `model` accepts, grippers included: bundled, then installed ones."""
+    return tuple(_every_model())
+
+
+def _every_model() -> dict[str, tuple[Path, RobotYaml]]:
+    """Bundled models, then those of installed collections, which cannot replace a bundled one."""
+    bundled = _catalogue()
+    return {**bundled, **{k: v for k, v in collected_robots().items() if k not in bundled}}
 
 
 def read_bundled(names: Collection[str]) -> None:
@@ -62,8 +70,8 @@ def read_bundled(names: Collection[str]) -> None:
 
 
 def gripper_names() -> tuple[str, ...]:
-    """Names of the bundled grippers that `gripper` accepts."""
-    return tuple(name for name, (_, facts) in _catalogue().items() if facts.kind == "gripper")
+    """Names of the grippers that `gripper` accepts: bundled, then installed ones."""
+    return tuple(name for name, (_, facts) in _every_model().items() if facts.kind == "gripper")
 
 
 def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
@@ -77,63 +85,69 @@ def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
         RobotError: The robot is unknown, its files cannot be used, or an option does not fit it.
     """
     if spec.base.frame != "world":
-        raise RobotError(f"robot.base is a pose in the frame 'world', not in '{spec.base.frame}'")
+        raise RobotOptionError(
+            "base", f"it is a pose in the frame 'world', not in '{spec.base.frame}'"
+        )
     main = _main(spec, base_dir)
     tool = None
     if spec.gripper is not None and not (main and _is_own(main, spec.gripper)):
         tool = _part(spec.gripper, "gripper", {}, base_dir)
     if tool is not None and tool.facts.kind != "gripper":
-        raise RobotError(f"robot.gripper: '{spec.gripper}' is an arm; {_known(gripper_names())}")
+        raise RobotOptionError("gripper", f"'{spec.gripper}' is an arm; {_known(gripper_names())}")
     if main is not None and main.facts.kind == "gripper":
         if tool is not None:
-            raise RobotError(f"robot.model: '{spec.model}' is a gripper and carries no other one")
+            raise RobotOptionError("model", f"'{spec.model}' is a gripper and carries no other one")
         main, tool = None, main
     if main is not None and tool is not None:
         main = without_gripper(main)
     if spec.kinematics is not None:
         main = _calibrated(main, find_file(spec.kinematics, "kinematics", base_dir, ()))
-    description = compose(main, tool, spec.base.se3())
+    description = compose_robot(main, tool, spec.base.se3())
     description, known = with_moveit_files(description, spec.moveit, base_dir)
     if spec.model is None and main is not None:
         description = with_possible_accelerations(description, known)
     return with_options(description, spec)
 
 
-def _calibrated(main: Part | None, path: Path) -> Part:
+def _calibrated(main: RobotPart | None, path: Path) -> RobotPart:
     if main is None:
-        raise RobotError("robot.kinematics: a gripper alone has no calibration")
+        raise RobotOptionError("kinematics", "a gripper alone has no calibration")
     return replace(main, urdf=replace(main.urdf, joints=calibrated(main.urdf.joints, path)))
 
 
-def _main(spec: RobotSpec, base_dir: Path) -> Part | None:
+def _main(spec: RobotSpec, base_dir: Path) -> RobotPart | None:
     """The arm, or a gripper without an arm; None when only `gripper` is given."""
     if spec.urdf is not None or spec.xacro is not None or spec.mjcf is not None:
         return read_robot(spec, base_dir)
     for key in OF_FILES:
         if getattr(spec, key):
-            raise RobotError(f"robot.{key} requires a robot's file: `urdf`, `xacro` or `mjcf`")
+            raise RobotOptionError(key, "it requires a robot's file: `urdf`, `xacro` or `mjcf`")
     return None if spec.model is None else _part(spec.model, "model", spec.args, base_dir)
 
 
-def _is_own(main: Part, gripper: str) -> bool:
+def _is_own(main: RobotPart, gripper: str) -> bool:
     """Whether a name is that of an imported arm's integrated gripper."""
-    return main.facts.gripper is not None and names_own_gripper(gripper, main.srdf)
+    return main.facts.gripper is not None and names_integrated_gripper(gripper, main.srdf)
 
 
-def _part(name: str, key: str, args: Mapping[str, Any], base_dir: Path) -> Part:
+def _part(name: str, key: str, args: Mapping[str, Any], base_dir: Path) -> RobotPart:
     """A bundled robot or gripper, or the one in a folder."""
     if name in _catalogue():
         return _bundled(name, tuple(sorted((k, str(v)) for k, v in args.items())))
     folder = base_dir / name
     if (folder / "robot.yaml").is_file():
         return _read(folder, read_robot_yaml(folder), "", args)
+    if name in collected_robots():
+        folder, facts = collected_robots()[name]
+        return _read(folder, facts, name if facts.variants else "", args)
     names = gripper_names() if key == "gripper" else robot_names()
     hint = ""
     if "/" in name or name.startswith(".") or folder.is_dir():
         hint = f"{folder} has no robot.yaml; "
     elif near := difflib.get_close_matches(name.lower(), names, 1):
         hint = f"did you mean '{near[0]}'? "
-    raise RobotError(f"robot.{key}: '{name}' is not known; {hint}{_known(names)}")
+    known = "; ".join([_known(names), *broken_plugins()])
+    raise RobotOptionError(key, f"'{name}' is not known; {hint}{known}")
 
 
 def _known(names: tuple[str, ...]) -> str:
@@ -141,7 +155,7 @@ def _known(names: tuple[str, ...]) -> str:
 
 
 @lru_cache(maxsize=32)
-def _bundled(name: str, args: tuple[tuple[str, str], ...]) -> Part:
+def _bundled(name: str, args: tuple[tuple[str, str], ...]) -> RobotPart:
     folder, facts = _catalogue()[name]
     return _read(folder, facts, name if facts.variants else "", dict(args), is_bundled=True)
 
@@ -153,7 +167,7 @@ def _read(
     args: Mapping[str, Any],
     *,
     is_bundled: bool = False,
-) -> Part:
+) -> RobotPart:
     """URDF and SRDF of a folder, with the limits of its robot.yaml."""
     name = variant or facts.robot
     if facts.xacro is not None:
@@ -163,7 +177,7 @@ def _read(
         path = folder / (facts.urdf or "")
         text = _text(path)
         if args:
-            raise RobotError(f"robot.args: '{name}' is not a xacro file and takes no arguments")
+            raise RobotOptionError("args", f"'{name}' is not a xacro file and takes no arguments")
     packages = PackagePath.of_file(path, [find_folder(each, folder) for each in facts.packages])
     urdf = parse_urdf(text, folder, str(path), packages)
     urdf = replace(urdf, joints=tuple(_with_facts(joint, facts) for joint in urdf.joints))
@@ -173,7 +187,7 @@ def _read(
     if unknown:
         raise robot_yaml_error(folder, unknown)
     refuse_incomplete_states(srdf, urdf, facts)
-    return Part(name, facts, urdf, srdf, str(folder))
+    return RobotPart(name, facts, urdf, srdf, str(folder))
 
 
 def _text(path: Path) -> str:
@@ -188,8 +202,8 @@ def _rendered(
     for key in args:
         if key not in declared or key == xacro_file.variant_arg:
             known = ", ".join(sorted(filter(None, declared - {xacro_file.variant_arg})))
-            raise RobotError(
-                f"robot.args: {path.name} takes no argument '{key}'; known are {known}"
+            raise RobotOptionError(
+                "args", f"{path.name} takes no argument '{key}'; known are {known}"
             )
     mappings = {key: str(value) for key, value in args.items()}
     if xacro_file.variant_arg and variant:

@@ -90,7 +90,7 @@ def _load(geometry: Mesh) -> Any:
     import coal  # here: most robots are loaded without their meshes
 
     path = geometry.path
-    scale = np.array(geometry.scale, dtype=float) * unit_of(geometry)
+    scale = np.array(geometry.scale, dtype=float) * metres_per_unit(geometry)
     try:
         model = coal.MeshLoader().load(str(path), scale)
     except (RuntimeError, ValueError) as error:
@@ -103,7 +103,7 @@ def _load(geometry: Mesh) -> Any:
     return model
 
 
-def unit_of(geometry: Mesh) -> float:
+def metres_per_unit(geometry: Mesh) -> float:
     """Metres of a COLLADA file's unit; 1 for other files, which are in metres.
 
     Raises:

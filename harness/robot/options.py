@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from harness.core.errors import RobotError
+from harness.core.errors import RobotOptionError
 from harness.language.scenario import JointLimits, MoveItFiles, RobotSpec, StartState
 from harness.robot.description import Joint, NamedState, RobotDescription
 from harness.robot.find_file import find_file
@@ -18,7 +18,7 @@ from harness.robot.urdf.write import write_urdf
 
 
 def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescription:
-    """The robot with a scenario's joint limits, named states and start state.
+    """The robot with a scenario's joint limits, named states, start state and solver.
 
     Raises:
         RobotError: An option refers to an unknown name, or exceeds the robot's limits.
@@ -43,6 +43,8 @@ def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescrip
     if spec.start_state is not None:
         start = {**description.start_state, **_start(description, spec.start_state)}
         description = replace(description, start_state=start)
+    if spec.ik_solver is not None:
+        description = replace(description, ik_solver=spec.ik_solver)
     for name, position in description.start_state.items():
         _within(description, name, position, "start_state")
     return description
@@ -75,9 +77,10 @@ def _movable(description: RobotDescription, name: str, where: str) -> Joint:
     if name not in description.joint_index:
         near = difflib.get_close_matches(name, description.joint_names, 1)
         hint = f"did you mean '{near[0]}'? " if near else ""
-        raise RobotError(
-            f"robot.{where}: '{description.name}' has no joint '{name}'; {hint}"
-            f"joints: {', '.join(description.joint_names)}"
+        raise RobotOptionError(
+            where,
+            f"'{description.name}' has no joint '{name}'; {hint}"
+            f"joints: {', '.join(description.joint_names)}",
         )
     return description.joint_by_name[name]
 
@@ -85,9 +88,10 @@ def _movable(description: RobotDescription, name: str, where: str) -> Joint:
 def _within(description: RobotDescription, name: str, position: float, where: str) -> None:
     joint = _movable(description, name, where)
     if not joint.lower <= position <= joint.upper:
-        raise RobotError(
-            f"robot.{where}: joint '{name}' at {position:.6g} is outside its limits "
-            f"[{joint.lower:.6g}, {joint.upper:.6g}]"
+        raise RobotOptionError(
+            where,
+            f"joint '{name}' at {position:.6g} is outside its limits "
+            f"[{joint.lower:.6g}, {joint.upper:.6g}]",
         )
 
 
@@ -99,19 +103,22 @@ def _narrowed(joint: Joint, limits: JointLimits) -> Joint:
         ("max_effort", limits.max_effort, joint.effort),
     ):
         if value is not None and value > widest:
-            raise RobotError(
-                f"robot.joint_limits.{joint.name}.{key}: {value:.6g} is more than the robot's "
-                f"{widest:.6g}; limits can be narrowed only"
+            raise RobotOptionError(
+                f"joint_limits.{joint.name}.{key}",
+                f"{value:.6g} is more than the robot's {widest:.6g}; limits can be narrowed only",
             )
     if limits.min_position is not None and limits.min_position < joint.lower:
-        raise RobotError(
-            f"robot.joint_limits.{joint.name}.min_position: {limits.min_position:.6g} is less than "
-            f"the robot's {joint.lower:.6g}; limits can be narrowed only"
+        raise RobotOptionError(
+            f"joint_limits.{joint.name}.min_position",
+            f"{limits.min_position:.6g} is less than "
+            f"the robot's {joint.lower:.6g}; limits can be narrowed only",
         )
     lower = joint.lower if limits.min_position is None else limits.min_position
     upper = joint.upper if limits.max_position is None else limits.max_position
     if lower >= upper:
-        raise RobotError(f"robot.joint_limits.{joint.name}: nothing is between {lower} and {upper}")
+        raise RobotOptionError(
+            f"joint_limits.{joint.name}", f"nothing is between {lower} and {upper}"
+        )
     bounded = joint.kind == "continuous" and np.isfinite([lower, upper]).all()
     return replace(
         joint,
@@ -130,9 +137,10 @@ def _with_states(description: RobotDescription, spec: RobotSpec) -> tuple[NamedS
     states = {(state.group, state.name): state for state in description.named_states}
     for group, named in spec.named_states.items():
         if group not in description.groups:
-            raise RobotError(
-                f"robot.named_states: '{description.name}' has no group '{group}'; "
-                f"groups: {', '.join(description.groups)}"
+            raise RobotOptionError(
+                "named_states",
+                f"'{description.name}' has no group '{group}'; "
+                f"groups: {', '.join(description.groups)}",
             )
         for name, positions in named.items():
             for joint, position in positions.items():
@@ -147,9 +155,9 @@ def _start(description: RobotDescription, start: StartState) -> dict[str, float]
         found = [s for s in description.named_states if s.name == start.named_target]
         if not found:
             names = ", ".join(state.name for state in description.named_states)
-            raise RobotError(
-                f"robot.start_state: '{description.name}' has no state '{start.named_target}'; "
-                f"states: {names}"
+            raise RobotOptionError(
+                "start_state",
+                f"'{description.name}' has no state '{start.named_target}'; states: {names}",
             )
         preferred = [state for state in found if state.group == description.arm_group]
         positions |= (preferred or found)[0].positions

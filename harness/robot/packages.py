@@ -148,7 +148,7 @@ def environment_folders() -> tuple[Path, ...]:
 
 
 @contextmanager
-def searched_too(folders: Sequence[Path]) -> Iterator[None]:
+def additional_package_folders(folders: Sequence[Path]) -> Iterator[None]:
     """Search additional folders, in this process and in processes that start meanwhile."""
     before = os.environ.get(SEARCH_VARIABLE)
     listed = [*(str(folder.resolve()) for folder in folders), *([before] if before else [])]

@@ -10,13 +10,13 @@ from typing import Any
 
 import yaml
 
-from harness.core.errors import RobotError
+from harness.core.errors import RobotOptionError
 from harness.core.geometry import Mesh
 from harness.language.scenario import RobotSpec
-from harness.robot.compose import Part
+from harness.robot.compose import RobotPart
 from harness.robot.description import Joint
 from harness.robot.import_robot import read_robot
-from harness.robot.imported_part import names_own_gripper
+from harness.robot.imported_part import names_integrated_gripper
 from harness.robot.load import load_robot
 from harness.robot.srdf.srdf import write_srdf
 from harness.robot.urdf.write import package_name, write_urdf
@@ -56,10 +56,11 @@ def robot_folder(spec: RobotSpec, base_dir: Path, folder: Path) -> RobotFolder:
         RobotError: A file is not found, or an option does not fit it.
     """
     part = read_robot(spec, base_dir)
-    if spec.gripper is not None and not names_own_gripper(spec.gripper, part.srdf):
-        raise RobotError(
-            f"robot.gripper: the SRDF has no group '{spec.gripper}'; a bundled gripper is named"
-            " by the scenario, next to `model`"
+    if spec.gripper is not None and not names_integrated_gripper(spec.gripper, part.srdf):
+        raise RobotOptionError(
+            "gripper",
+            f"the SRDF has no group '{spec.gripper}'; a bundled gripper is named"
+            " by the scenario, next to `model`",
         )
     description = load_robot(spec, base_dir)
     name = part.urdf.name or part.name
@@ -87,7 +88,9 @@ def _sources(spec: RobotSpec) -> str:
     return " and ".join(each for each in given if each)
 
 
-def _facts(part: Part, name: str, joints: Iterable[Joint], outside: list[str]) -> dict[str, Any]:
+def _facts(
+    part: RobotPart, name: str, joints: Iterable[Joint], outside: list[str]
+) -> dict[str, Any]:
     """The content of robot.yaml, in the order for readers."""
     facts = part.facts
     gripper = None if facts.gripper is None else facts.gripper.model_dump(mode="json")
@@ -128,12 +131,12 @@ def _short(value: Any) -> Any:
             return value
 
 
-def _outside(part: Part) -> tuple[Path, ...]:
+def _outside(part: RobotPart) -> tuple[Path, ...]:
     """Folders of mesh files outside packages, sorted."""
     return tuple(sorted({path.parent for path in _meshes(part) if not package_name(path)}))
 
 
-def _meshes(part: Part) -> Iterator[Path]:
+def _meshes(part: RobotPart) -> Iterator[Path]:
     for link in part.urdf.links:
         for shape in (*link.visuals, *link.collisions):
             if isinstance(shape.geometry, Mesh):

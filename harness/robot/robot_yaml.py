@@ -8,14 +8,14 @@ from typing import Annotated, Any, Literal
 
 import yaml
 from pydantic import Field, ValidationError, model_validator
+from pydantic_core import ErrorDetails
 
 from harness.core.errors import Problem, SpecError
 from harness.language.base import Length, Name, Rpy, SpecModel, Xyz
 from harness.language.cameras import CameraFields
 from harness.language.files.source import Loc, Source, SourceMap
 from harness.language.files.yaml_file import LOADER, parse_yaml, read_text
-from harness.language.scenario import JointLimits, StartState
-from harness.robot.description import IkSolver
+from harness.language.scenario import IkSolverName, JointLimits, StartState
 
 FILE = "robot.yaml"
 
@@ -129,7 +129,7 @@ class RobotYaml(SpecModel):
     tcp_link: Name | None = None
     flange_link: Name | None = None
     flange: Flange | None = None
-    ik_solver: IkSolver = "numeric"
+    ik_solver: IkSolverName = "numeric"
     start_state: StartState = StartState()
     max_acceleration: Annotated[float, Field(gt=0)] = Field(
         5.0, description="Acceleration limit of joints without one in `joints` [rad/s^2 or m/s^2]."
@@ -164,8 +164,14 @@ def read_robot_yaml(folder: Path) -> RobotYaml:
         return RobotYaml.model_validate(content)
     except (yaml.YAMLError, RecursionError, ValueError) as error:
         errors = error.errors(include_url=False) if isinstance(error, ValidationError) else []
-        problems = [(item["loc"], item["msg"]) for item in errors]
+        problems = [(item["loc"], _message(item)) for item in errors]
         raise robot_yaml_error(folder, problems or [((), str(error))]) from error
+
+
+def _message(error: ErrorDetails) -> str:
+    """A mistake with what to do instead, where its validator says that."""
+    hint = getattr(error.get("ctx", {}).get("error"), "hint", "")
+    return f"{error['msg']}; {hint}" if hint else error["msg"]
 
 
 def robot_yaml_error(folder: Path, problems: Iterable[tuple[Loc, str]]) -> SpecError:

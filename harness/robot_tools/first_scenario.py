@@ -14,10 +14,10 @@ from string import Template
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.planning.collision.pair_statistics import random_positions
+from harness.planning.collision.pair_statistics import sample_robot_positions
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.description import RobotDescription
-from harness.robot_tools.robot_source import RobotSource, load
+from harness.robot_tools.robot_source import RobotSource, load_source
 from harness.session.check import check_file
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -63,7 +63,7 @@ def first_scenario(source: RobotSource, file: Path) -> FirstScenario:
         SpecError: A file of the robot is invalid.
         RobotError: The robot is not known, or its files cannot be used.
     """
-    description = load(source)
+    description = load_source(source)
     words = {
         "name": description.name,
         "title": _text(f"First steps of {description.name}"),
@@ -116,7 +116,7 @@ def _text(value: str) -> str:
 
 def _candidates(description: RobotDescription) -> Iterator[tuple[str, dict[str, str]]]:
     """Templates and what fills them, the likeliest first."""
-    positions = random_positions(description, SAMPLES, np.random.default_rng(0))
+    positions = sample_robot_positions(description, SAMPLES, np.random.default_rng(0))
     kinematics = PinocchioKinematics(description)
     links = (description.base_link, description.tcp_link)
     poses = kinematics.link_poses(positions, links)[:, :, :3]

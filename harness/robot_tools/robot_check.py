@@ -11,12 +11,12 @@ from harness.core.types import FloatArray
 from harness.planning.collision.pair_statistics import (
     REASONS,
     SelfTouches,
-    random_positions,
+    sample_robot_positions,
     self_touches,
 )
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.trial import try_ik
-from harness.reporting.robot_report import Finding, GroupLine, RobotReport
+from harness.reporting.robot_report import GroupLine, RobotFinding, RobotReport
 from harness.robot.description import Joint, RobotDescription
 from harness.robot_tools import robot_findings as look_at
 from harness.session.record import robot_record
@@ -55,7 +55,7 @@ def check_robot(
         seed: The seed of the configurations, and of numeric inverse kinematics.
         propose: Whether the report proposes pairs that need not be checked.
     """
-    positions = random_positions(description, samples, np.random.default_rng(seed))
+    positions = sample_robot_positions(description, samples, np.random.default_rng(seed))
     kinematics = PinocchioKinematics(description)
     touches = self_touches(description, positions)
     findings = tuple(_findings(description, kinematics, touches, positions, seed))
@@ -84,7 +84,7 @@ def _findings(
     touches: SelfTouches,
     positions: FloatArray,
     seed: int,
-) -> Iterator[Finding]:
+) -> Iterator[RobotFinding]:
     yield look_at.forward_kinematics(description, kinematics, positions[:KINEMATIC_SAMPLES])
     yield look_at.masses(description)
     yield look_at.limits(description)

@@ -9,7 +9,7 @@ from harness.planning.collision.pair_statistics import SelfTouches
 from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.trial import IkTrial
-from harness.reporting.robot_report import Finding
+from harness.reporting.robot_report import RobotFinding
 from harness.robot.description import RobotDescription
 from harness.robot.link_masses import mass_notes, mass_problems
 from harness.simulation.agreement import link_poses_in_physics
@@ -26,7 +26,7 @@ PLACEHOLDER_EFFORT = 1000.0
 
 def forward_kinematics(
     description: RobotDescription, kinematics: PinocchioKinematics, positions: FloatArray
-) -> Finding:
+) -> RobotFinding:
     """Link poses and the mass in Pinocchio's model and in MuJoCo's, positions (N, n)."""
     links = description.link_names[1:]  # `world` is in no description
     ours = kinematics.link_poses(positions, links)
@@ -49,10 +49,10 @@ def forward_kinematics(
     if not weighs:
         details.append(f"MuJoCo has {mass:.9g} kg, the description {said:.9g} kg")
     values = {"position_error": most, "mass_in_physics": mass}
-    return Finding("forward kinematics", text, agrees and weighs, tuple(details), values)
+    return RobotFinding("forward kinematics", text, agrees and weighs, tuple(details), values)
 
 
-def masses(description: RobotDescription) -> Finding:
+def masses(description: RobotDescription) -> RobotFinding:
     """Whether masses and inertias are those of bodies, and what looks like a placeholder."""
     problems, notes = mass_problems(description), mass_notes(description)
     moving = [link for link in description.links if link.name not in description.static_links]
@@ -63,10 +63,10 @@ def masses(description: RobotDescription) -> Finding:
         notes.append(f"no <inertial>: {', '.join(weightless)}")
     text = f"{total:.4g} kg, {heavy:.4g} kg of it moving"
     values = {"mass": total, "moving_mass": heavy, "problems": len(problems)}
-    return Finding("masses", text, not problems, (*problems, *notes), values)
+    return RobotFinding("masses", text, not problems, (*problems, *notes), values)
 
 
-def limits(description: RobotDescription) -> Finding:
+def limits(description: RobotDescription) -> RobotFinding:
     """Which limits are missing, or stand for "I do not know"; readers refuse those without room."""
     notes: list[str] = []
     for joint in description.movable_joints:
@@ -78,10 +78,10 @@ def limits(description: RobotDescription) -> Finding:
             notes.append(f"{joint.name}: an effort of {joint.effort:g} is a placeholder")
     count = len(description.movable_joints)
     text = f"{count} joint{'s move' if count != 1 else ' moves'}"
-    return Finding("limits", text, details=tuple(notes))
+    return RobotFinding("limits", text, details=tuple(notes))
 
 
-def states(description: RobotDescription) -> Finding:
+def states(description: RobotDescription) -> RobotFinding:
     """Whether the start and the named states are free of self-collision, inside the limits."""
     scene = CoalScene(description)
     start = description.start_positions()
@@ -104,10 +104,10 @@ def states(description: RobotDescription) -> Finding:
     if problems:
         text = f"{len(problems)} of {len(looked_at)} cannot be taken"
     details = tuple(f"{name}: {each}" for name, found in problems.items() for each in found)
-    return Finding("named states", text, not problems, details)
+    return RobotFinding("named states", text, not problems, details)
 
 
-def self_collisions(touches: SelfTouches) -> Finding:
+def self_collisions(touches: SelfTouches) -> RobotFinding:
     """How often the robot touches itself, and where most."""
     allowed = len(touches.description.allowed_collisions)
     frequent = touches.most_frequent(3)
@@ -121,15 +121,15 @@ def self_collisions(touches: SelfTouches) -> Finding:
         "allowed_pairs": allowed,
     }
     details = tuple(f"{first} - {second}: {rate:.1%}" for (first, second), rate in frequent)
-    return Finding("self-collisions", text, touches.rate < TOO_OFTEN, details, values)
+    return RobotFinding("self-collisions", text, touches.rate < TOO_OFTEN, details, values)
 
 
 def reach(
     description: RobotDescription, kinematics: PinocchioKinematics, positions: FloatArray
-) -> Finding:
+) -> RobotFinding:
     """How far the TCP comes, at positions free of self-collision, shape (N, n)."""
     if not len(positions):
-        return Finding("reach", "no configuration is free of self-collision", is_good=False)
+        return RobotFinding("reach", "no configuration is free of self-collision", is_good=False)
     links = (description.base_link, description.tcp_link)
     poses = kinematics.link_poses(positions, links)[:, :, :3]
     away = float(np.linalg.norm(poses[:, 1] - poses[:, 0], axis=1).max())
@@ -138,16 +138,16 @@ def reach(
     box = ", ".join(f"{axis} {first:.2f} to {last:.2f}" for axis, first, last in sides)
     text = f"{description.tcp_link} comes {away:.3g} m from {description.base_link}; {box} m"
     values = {"reach": away, "workspace": [low.tolist(), high.tolist()]}
-    return Finding("reach", text, details=(), values=values)
+    return RobotFinding("reach", text, details=(), values=values)
 
 
-def inverse_kinematics(trial: IkTrial) -> Finding:
+def inverse_kinematics(trial: IkTrial) -> RobotFinding:
     """How many of the poses that can be taken are solved, and by what."""
     text = f"{trial.solver} solves {trial.solved} of {trial.poses} poses that can be taken"
     if trial.solved:
         text += f", to {trial.worst:.1g} m"
     values = {"solver": trial.solver, "success_rate": trial.rate}
-    return Finding("inverse kinematics", text, trial.rate >= ENOUGH_SOLVED, (), values)
+    return RobotFinding("inverse kinematics", text, trial.rate >= ENOUGH_SOLVED, (), values)
 
 
 def _mass(description: RobotDescription) -> float:

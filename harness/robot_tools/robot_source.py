@@ -111,7 +111,7 @@ class RobotSource:
         return read_xml(path)
 
 
-def load(source: RobotSource) -> RobotDescription:
+def load_source(source: RobotSource) -> RobotDescription:
     """The robot, composed.
 
     Raises:

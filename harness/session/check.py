@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from harness.assertions.wording import describe
+from harness.assertions.expectation_text import describe
 from harness.cell.program import Program
 from harness.core.errors import Problem, SpecError
 from harness.engine.explain import explain
@@ -15,9 +15,10 @@ from harness.language.files.source import Loc
 from harness.language.reading.load import LoadedScenario
 from harness.language.reading.varied_paths import as_json, choices
 from harness.ports import Touch
+from harness.recording.execution_failures import not_held_object
 from harness.reporting.explanation import explanation_lines
-from harness.session.physics import overlap_note, start_physics
 from harness.session.prepare import prepare
+from harness.session.start import overlap_note, start_physics
 from harness.steps.grasp import Grasp
 from harness.steps.pick import Pick
 
@@ -67,7 +68,7 @@ def check_file(
         spec = specs.get(record.path)
         if isinstance(spec, Pick | Grasp):
             not_taken.add(spec.object)
-        if record.explanation.get("not_held") in not_taken:
+        if not_held_object(record.explanation) in not_taken:
             continue  # it follows from the pick that is reported
         said = f"{record.error_code}: {record.message}"
         problem = prepared.loaded.lines.problem(_loc(program, record.path), said)
@@ -82,7 +83,7 @@ def check_file(
             *(finding.message for finding in prepared.about_file),
             *prepared.notes,
             *(overlap_note(prepared, touch) for touch in overlaps),
-            *(_told(touch) for touch in touches if not _is_among(touch, overlaps)),
+            *(_touch_note(touch) for touch in touches if not _is_among(touch, overlaps)),
         ),
     )
 
@@ -106,7 +107,7 @@ def _problems_of_choices(
     return tuple(found)
 
 
-def _told(touch: Touch) -> str:
+def _touch_note(touch: Touch) -> str:
     depth = -1000 * touch.distance
     return f"where the robot starts, {touch.first} and {touch.second} touch ({depth:.1f} mm deep)"
 

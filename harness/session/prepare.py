@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
+from harness.assertions.observations import Observations, merged
+from harness.assertions.placed import PlacedExpectation
 from harness.cell.program import Program
-from harness.cell.scope import Part
-from harness.core.errors import Problem, RobotError, SpecError
+from harness.cell.scope import Prerequisite
+from harness.core.errors import Problem, RobotError, RobotOptionError, SpecError
 from harness.core.geometry import Mesh
 from harness.engine.compile import Sources, compile_scenario
-from harness.language.files.source import Loc
 from harness.language.reading.load import (
-    SDF_SUFFIXES,
     LoadedScenario,
     Reading,
     file_path,
+    is_foreign_world,
     load_world,
     read_scenario,
     world_path,
@@ -27,15 +28,16 @@ from harness.language.scenario import RobotSpec
 from harness.observation.findings import about_file
 from harness.planning.backend import make_planning
 from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
-from harness.planning.search.planner_names import check_planner
+from harness.planning.search.find_pipeline import check_planner
 from harness.ports import Kinematics, MotionPlanner, PlanningScene
 from harness.recording.run import Finding
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
 from harness.world.imported import ImportedWorld
+from harness.world.world_format import read_foreign_world
 
-ROBOT: frozenset[Part] = frozenset({"robot"})
-WORLD: frozenset[Part] = frozenset({"world"})
+ROBOT: frozenset[Prerequisite] = frozenset({"robot"})
+WORLD: frozenset[Prerequisite] = frozenset({"world"})
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +45,7 @@ class Prepared:
     """A scenario ready to be executed, checked or explained.
 
     Attributes:
+        expectations: What will be judged, in file order.
         notes: What of the robot's and the world's files was left out or assumed.
         about_file: What the scenario file allows and probably does not intend.
     """
@@ -52,8 +55,20 @@ class Prepared:
     scene: PlanningScene
     kinematics: Kinematics
     planner: MotionPlanner
+    expectations: tuple[PlacedExpectation, ...] = ()
     notes: tuple[str, ...] = ()
     about_file: tuple[Finding, ...] = ()
+
+    @cached_property
+    def observations(self) -> Observations:
+        """Everything that the expectations read of a run."""
+        return merged(each.spec.observations() for each in self.expectations)
+
+    @property
+    def observed_links(self) -> list[str]:
+        """Links whose poses the expectations read."""
+        links = set(self.program.description.link_names)
+        return [name for name in self.observations.frames if name in links]
 
 
 def prepare(
@@ -105,7 +120,7 @@ def _together(reading: Reading, more: Sequence[Problem]) -> list[Problem]:
     ]
 
 
-def _prepared(loaded: LoadedScenario, missing: frozenset[Part]) -> Prepared:
+def _prepared(loaded: LoadedScenario, missing: frozenset[Prerequisite]) -> Prepared:
     problems: list[Problem] = []
     try:
         description = _robot(loaded)
@@ -141,32 +156,32 @@ def _prepared(loaded: LoadedScenario, missing: frozenset[Part]) -> Prepared:
         raise SpecError([*problems, *error.problems]) from error
     if problems:
         raise SpecError(problems)
+    placed = tuple(
+        PlacedExpectation.of(item.spec, item.step, item.line) for item in program.expectations
+    )
     about = about_file(program, loaded.notes)
-    return Prepared(loaded, program, scene, kinematics, planner, notes, about)
+    return Prepared(loaded, program, scene, kinematics, planner, placed, notes, about)
 
 
 def _robot(loaded: LoadedScenario) -> RobotDescription:
     try:
         return load_robot(loaded.scenario.robot, loaded.path.parent)
+    except RobotOptionError as error:
+        loc = ("robot", error.key.split(".")[0])
+        raise SpecError([loaded.lines.problem(loc, str(error))]) from error
     except RobotError as error:
-        raise SpecError([loaded.lines.problem(_place(str(error)), str(error))]) from error
-
-
-def _place(message: str) -> Loc:
-    """Where the scenario says what a robot's error is about: `robot.gripper: ...`, or its robot."""
-    key = re.match(r"robot\.(\w+)\b", message)
-    return ("robot", key[1]) if key else ("robot",)
+        raise SpecError([loaded.lines.problem(("robot",), str(error))]) from error
 
 
 def _world(loaded: LoadedScenario) -> ImportedWorld:
     """The world; one that cannot be found is a mistake of the scenario's line."""
     choice, folder = loaded.scenario.world, loaded.path.parent
     try:
-        if Path(choice.name).suffix.lower() in SDF_SUFFIXES:
-            from harness.world.sdf.world import load_sdf  # few scenarios have such a world
-
+        if is_foreign_world(choice.name):
             searched = [file_path(each, folder) for each in choice.model_path]
-            return load_sdf(world_path(choice.name, folder), searched)
+            foreign = read_foreign_world(world_path(choice.name, folder), searched)
+            if foreign is not None:
+                return foreign
         world = load_world(choice.name, folder)
     except SpecError as error:
         raise SpecError(

@@ -6,13 +6,12 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.metadata import version
 
-from harness.cell.program import Program
 from harness.engine.execute import Execution
+from harness.language.reading.resolve import resolved_text
 from harness.observation.fault_effects import with_receipts
 from harness.observation.findings import findings_of, notes_of_files, overlap_findings
 from harness.ports import Kinematics, Touch
 from harness.recording.run import (
-    Finding,
     GripperRecord,
     JointRecord,
     LinkPlacement,
@@ -21,6 +20,8 @@ from harness.recording.run import (
     Signals,
 )
 from harness.robot.description import RobotDescription
+from harness.session.prepare import Prepared
+from harness.session.run_request import RunRequest
 
 LIBRARIES = ("armharness", "mujoco", "pin", "coal", "ompl", "toppra", "numpy")
 
@@ -99,26 +100,30 @@ def library_versions() -> Mapping[str, str]:
     return {name: version(name) for name in LIBRARIES}
 
 
-def run_record(
-    program: Program,
-    kinematics: Kinematics,
+def executed_run(
+    request: RunRequest,
+    prepared: Prepared,
     execution: Execution,
     signals: Signals,
-    *,
-    file: str,
-    source: str,
-    resolved: str,
-    notes: tuple[str, ...] = (),
-    overlaps: Sequence[Touch] = (),
-    about_file: tuple[Finding, ...] = (),
+    overlaps: Sequence[Touch],
 ) -> Run:
-    """Everything that happened, in one noun."""
-    robot = robot_record(program.description, kinematics)
-    steps, findings = with_receipts(execution.steps, signals, robot, execution.objects)
+    """What was executed and recorded, without what is observed on it afterwards.
+
+    Args:
+        request: Of the case.
+        prepared: The scenario.
+        execution: What its steps did.
+        signals: What the physics recorded, with distances.
+        overlaps: Bodies that overlap at the start.
+    """
+    program = prepared.program
+    robot = robot_record(program.description, prepared.kinematics)
+    steps, faults = with_receipts(execution.steps, signals, robot, execution.objects)
+    seeds = {program.step_locs[step.path]: step.options.seed for step in program.all_steps()}
     return Run(
         scenario=program.title,
-        file=file,
-        case="",
+        file=str(request.file),
+        case=request.case,
         seed=program.seed,
         robot=robot,
         objects=execution.objects,
@@ -129,14 +134,14 @@ def run_record(
         timestep=program.world.timestep,
         allowed_contacts=tuple(sorted(program.description.allowed_collisions)),
         findings=(
-            *about_file,
-            *notes_of_files(notes),
+            *prepared.about_file,
+            *notes_of_files(prepared.notes),
             *overlap_findings(overlaps),
             *findings_of(steps),
-            *findings,
+            *faults,
         ),
-        source=source,
-        resolved=resolved,
+        source=prepared.loaded.text,
+        resolved=resolved_text(prepared.loaded, seeds, folder=request.report_dir),
         versions=library_versions(),
         ended_early=execution.ended_early,
         cameras=tuple(program.cameras.values()),

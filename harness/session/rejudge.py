@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from harness.assertions.expectation_text import describe
 from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
-from harness.assertions.wording import describe
 from harness.language.reading.load import LoadedScenario, load_scenario
 from harness.language.step import Block
 from harness.recording.run import Verdict

@@ -1,4 +1,4 @@
-"""Records every contact of every sample: the geoms, the point, the normal and the force."""
+"""Records every contact of every sample: the geoms, the point, the normal, force and friction."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -22,7 +22,7 @@ CONTACTS_PER_ROW = 24
 BLOCK = 2**19
 """Contacts that are sorted at a time."""
 
-BYTES = 40
+BYTES = 52
 """Memory that one contact takes in the arrays."""
 
 BodyPair = tuple[str, str]
@@ -40,6 +40,7 @@ class ContactRecord:
         self._forces = np.empty(size)
         self._normals = np.empty((size, 3), dtype=np.float32)
         self._points = np.empty((size, 3), dtype=np.float32)
+        self._frictions = np.empty((size, 3), dtype=np.float32)
         self.count = 0
 
     def reserve(self, rows: int) -> None:
@@ -58,12 +59,13 @@ class ContactRecord:
             self._forces = _doubled(self._forces)
             self._normals = _doubled(self._normals)
             self._points = _doubled(self._points)
+            self._frictions = _doubled(self._frictions)
         if end > begin:
             contact = data.contact
             self._geoms[begin:end] = contact.geom
             self._normals[begin:end] = contact.frame[:, :3]
             self._points[begin:end] = contact.pos
-            _normal_forces(data, self._forces[begin:end])
+            _contact_forces(data, self._forces[begin:end], self._frictions[begin:end])
 
     def forces(self, first: int, last: int) -> dict[BodyPair, FloatArray]:
         """Normal force [N] of pairs that touch in samples first to last - 1, (samples,) each."""
@@ -73,35 +75,46 @@ class ContactRecord:
             _add(sums, rows, self._forces[contacts])
         return {pair: found[pair] for pair in sorted(found)}
 
-    def presses(self, count: int) -> dict[BodyPair, FloatArray]:
-        """Contact points and forces between a link of the robot and any other body.
-
-        Args:
-            count: Number of samples, counted from the first.
+    def presses(self, first: int, last: int) -> dict[BodyPair, FloatArray]:
+        """Contact points and normal forces between a link of the robot and any other body.
 
         Returns:
-            The presses by link and other body, shape (count, 6): the mean of the contact points,
-            weighted by their normal forces, in the world; then the sum of these forces on the other
-            body, in world axes [N]. NaN where there is no force.
+            The presses by link and other body in samples first to last - 1, shape (samples, 6): the
+            mean of the contact points, weighted by their normal forces, in the world; then the sum
+            of these forces on the other body, in world axes [N]. NaN where there is no force.
         """
-        robot = self._physics.robot_bodies
         found: dict[BodyPair, FloatArray] = {}
-        for (first, second), rows, contacts in self._by_pair(0, count):
-            if (first in robot) == (second in robot):
-                continue
-            sums = found.setdefault(self._pair(first, second), np.zeros((count, 7)))
+        for pair, link, rows, contacts in self._by_link(first, last):
+            sums = found.setdefault(pair, np.zeros((last - first, 7)))
             force = self._forces[contacts]
-            signed = self._signs(contacts, first if first in robot else second) * force
+            signed = self._signs(contacts, link) * force
             weighted = [*(self._points[contacts] * force[:, None]).T]
             vectors = [*(self._normals[contacts] * signed[:, None]).T]
             for column, values in enumerate((*weighted, *vectors, force)):
                 _add(sums[:, column], rows, values)
         for pair, sums in found.items():
-            pressed = np.full((count, 6), np.nan)
+            pressed = np.full((last - first, 6), np.nan)
             there = sums[:, 6] > 0
             pressed[there] = sums[there, :6]
             pressed[there, :3] /= sums[there, 6:]
             found[pair] = pressed
+        return {pair: found[pair] for pair in sorted(found)}
+
+    def frictions(self, count: int) -> dict[BodyPair, FloatArray]:
+        """Friction forces of a link of the robot on any other body, in world axes [N].
+
+        Args:
+            count: Number of samples, counted from the first.
+
+        Returns:
+            The friction forces by link and other body, shape (count, 3); zero without contact.
+        """
+        found: dict[BodyPair, FloatArray] = {}
+        for pair, link, rows, contacts in self._by_link(0, count):
+            sums = found.setdefault(pair, np.zeros((count, 3)))
+            on_other = self._frictions[contacts] * self._signs(contacts, link)[:, None]
+            for column in range(3):
+                _add(sums[:, column], rows, on_other[:, column])
         return {pair: found[pair] for pair in sorted(found)}
 
     def support_forces(self, count: int) -> dict[BodyPair, FloatArray]:
@@ -121,6 +134,17 @@ class ContactRecord:
             sums = found.setdefault(pair, np.zeros(count))
             _add(sums, rows, self._signs(contacts, below) * upward)
         return {pair: found[pair] for pair in sorted(found)}
+
+    def _by_link(self, first: int, last: int) -> Iterator[tuple[BodyPair, int, Array, Array]]:
+        """Contacts of a link of the robot with any other body, as `_by_pair` yields them.
+
+        Yields:
+            The names of the two, the id of the link, the samples, and the contacts' indices.
+        """
+        robot = self._physics.robot_bodies
+        for (one, other), rows, contacts in self._by_pair(first, last):
+            if (one in robot) != (other in robot):
+                yield self._pair(one, other), one if one in robot else other, rows, contacts
 
     def _by_pair(self, first: int, last: int) -> Iterator[tuple[tuple[int, int], Array, Array]]:
         """Contacts of each pair of bodies in samples first to last - 1.
@@ -184,15 +208,22 @@ def _doubled(values: Array) -> Array:
     return larger
 
 
-def _normal_forces(data: mujoco.MjData, forces: FloatArray) -> None:
-    """Write the normal force [N] of every contact; an inactive contact has no force.
+def _contact_forces(data: mujoco.MjData, forces: FloatArray, frictions: Array) -> None:
+    """Write the normal force and the friction force of every contact [N]; none where inactive.
 
     MuJoCo gives an inactive contact no constraint row and the address -1. Without any other
-    constraint, as for an arm without a gripper, there are no rows at all.
+    constraint, as for an arm without a gripper, there are no rows at all. Every contact has
+    `CONTACT_DIMENSIONS`: its first row is the normal force, the next two are friction along the
+    second and third axis of its frame.
     """
     if not data.nefc:
         forces[:] = 0.0
+        frictions[:] = 0.0
         return
-    address = data.contact.efc_address
-    data.efc_force.take(address, 0, forces, "clip")
+    contact, force = data.contact, data.efc_force
+    address = contact.efc_address
+    force.take(address, 0, forces, "clip")
     forces[address < 0] = 0.0
+    along = force.take(address[:, None] + (1, 2), mode="clip")
+    along[address < 0] = 0.0
+    frictions[:] = along[:, :1] * contact.frame[:, 3:6] + along[:, 1:] * contact.frame[:, 6:]

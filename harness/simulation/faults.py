@@ -27,7 +27,7 @@ class Holding(Protocol):
     def renew_grip_limit(self) -> None: ...
 
 
-class Faults:
+class MujocoFaults:
     """The active faults; the simulator passes its controls through `distorted`."""
 
     def __init__(self, simulator: Holding, physics: PhysicsModel, data: mujoco.MjData) -> None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import combinations
 from typing import Protocol
 
 import numpy as np
 
+from harness.core.antipodal import combined_press, is_antipodal, least_thickness
 from harness.core.types import FloatArray, IntArray
 from harness.ports import GripperResult
 from harness.robot.description import Gripper, RobotDescription
@@ -113,6 +115,7 @@ class GripperDrive:
             stalled=stalled and not reached,
             reached_goal=reached,
             contacts=self._contacts(),
+            between=self._between(),
         )
 
     def _ramp(self, position: float) -> SetPoints:
@@ -146,6 +149,23 @@ class GripperDrive:
             )
             for side, links in self._gripper.sides.items()
         }
+
+    def _between(self) -> tuple[str, ...]:
+        """Objects that two finger sides have pressed from opposite sides in the last samples."""
+        presses = self._recording.presses(max(0, self._recording.count - CHECK_EVERY))
+        found: list[str] = []
+        for name, place in self._simulator.physics.objects.items():
+            sides = [
+                combined_press(
+                    [row[None] for link in links for row in presses.get((link, name), ())]
+                )
+                for links in self._gripper.sides.values()
+                if any((link, name) in presses for link in links)
+            ]
+            thickness = least_thickness(place.obj.shapes)
+            if any(is_antipodal(*pair, thickness)[0] for pair in combinations(sides, 2)):
+                found.append(name)
+        return tuple(sorted(found))
 
 
 def joint_speed(description: RobotDescription, gripper: Gripper) -> float:

@@ -15,10 +15,11 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
 from harness.ports import GripperResult
+from harness.recording.execution_failures import ContactForce, ControlFailure, UnrestFailure
 from harness.recording.run import Signals
 from harness.robot.description import RobotDescription
 from harness.simulation.contact_record import BodyPair
-from harness.simulation.faults import Faults
+from harness.simulation.faults import MujocoFaults
 from harness.simulation.gripper_drive import GripperDrive
 from harness.simulation.model import build_model
 from harness.simulation.objects import Objects, overlaps
@@ -85,7 +86,7 @@ class MujocoSimulator:
         self._control = self._controls(self._still(self._command))[0]
         self._data.ctrl[:] = self._control
         self._grip: tuple[int, float] | None = None  # actuator, effort limit
-        self.faults = Faults(self, self.physics, self._data)
+        self.faults = MujocoFaults(self, self.physics, self._data)
         self._recording = Recording(self.physics, self._data)
         refresh(self._model, self._data)
         self._refuse_unusable_start()
@@ -196,7 +197,7 @@ class MujocoSimulator:
             "TIMED_OUT",
             f"{name} still moves with {speed:.3g} after {timeout:g} s;"
             f" at rest is slower than {max_velocity:g} m/s (or rad/s) for {SETTLE_FOR:g} s",
-            {"moving": name, "speed": speed, "limit": max_velocity, "timeout": timeout},
+            UnrestFailure(name, speed, max_velocity, timeout),
         )
 
     def add_object(self, name: str, pose: SE3) -> None:
@@ -342,16 +343,14 @@ class MujocoSimulator:
             "CONTROL_FAILED",
             f"{joint.name} {message.format(error)} at t={time:.3f} s "
             f"(tolerance {tolerance:g} {unit}); {_contact_clause(contacts)}",
-            {
-                "joint": joint.name,
-                "error": float(errors[worst]),
-                "tolerance": tolerance,
-                "unit": unit,
-                "time": time,
-                "contacts": [
-                    {"bodies": list(pair), "force": force} for pair, force in contacts.items()
-                ],
-            },
+            ControlFailure(
+                joint=joint.name,
+                error=float(errors[worst]),
+                tolerance=tolerance,
+                unit=unit,
+                time=time,
+                contacts=tuple(ContactForce(pair, force) for pair, force in contacts.items()),
+            ),
         )
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from harness.core.errors import SimulationDiverged, StepFailed
 from harness.core.types import FloatArray
 from harness.ports import LONGEST_RUN
+from harness.recording.execution_failures import LengthFailure
 from harness.recording.run import Signals
 from harness.simulation.contact_record import BYTES, ROWS, BodyPair, ContactRecord
 from harness.simulation.model import PhysicsModel
@@ -108,7 +109,7 @@ class Recording:
                 "TIMED_OUT",
                 f"the run would go on to t={end:.0f} s; it may take {LONGEST_RUN:g} s of simulated"
                 " time: shorten it, or make it several scenarios",
-                {"end": end, "limit": LONGEST_RUN},
+                LengthFailure(LONGEST_RUN, end=end),
             )
         rows = (self._qpos, self._qvel, self._sensors, self._commands, self._command_velocities)
         per_row = 8 * (1 + sum(array.shape[1] for array in rows))
@@ -119,7 +120,7 @@ class Recording:
                 f"the record of the run would grow to {size / 2**20:.0f} MiB by t={end:.1f} s, and"
                 f" {MOST_BYTES / 2**20:.0f} MiB are the limit: use fewer objects that move, a"
                 " longer time step, or several scenarios",
-                {"bytes": size, "limit": MOST_BYTES},
+                LengthFailure(MOST_BYTES, bytes=size),
             )
 
     def _record_forces_of_last_row(self) -> None:
@@ -187,6 +188,10 @@ class Recording:
         """Normal force [N] of pairs that touch in samples first to last - 1, (samples,) each."""
         return self._contacts.forces(first, last)
 
+    def presses(self, first: int) -> Mapping[BodyPair, FloatArray]:
+        """Contact points and normal forces of the robot's links from a sample on, (N, 6) each."""
+        return self._contacts.presses(first, self.count)
+
     def strongest_robot_contacts(self, row: int) -> dict[BodyPair, float]:
         """Largest force [N] of each pair with a robot link just before a sample, largest first."""
         links = set(self._physics.description.link_names)
@@ -225,7 +230,8 @@ class Recording:
             object_poses=dict(object_poses),
             contact_forces=contacts,
             support_forces=self._contacts.support_forces(count),
-            presses=self._contacts.presses(count),
+            presses=self._contacts.presses(0, count),
+            frictions=self._contacts.frictions(count),
         )
 
     def free_poses(self, qpos: int) -> FloatArray:

@@ -12,16 +12,15 @@ from harness.cell.goals import group_of, link_limits, resolve_goal
 from harness.cell.scope import At
 from harness.core.errors import PlanningFailed
 from harness.language.base import Angle, Fraction, Length, Name, PositiveLength, SpecModel
-from harness.language.goals import CartesianLimits, GoalFields
+from harness.language.goals import CartesianLimitsSpec, GoalFields
 from harness.language.poses import Pose, Position
 from harness.language.step import Step
 from harness.ports import CartesianPathOptions, JointGoal, PoseGoal, PositionGoal
 from harness.ports import JumpThreshold as PlannedJumpThreshold
+from harness.recording.explanation import CartesianPathResult
 
-REPORTED = ("fraction", "largest_joint_step", "deviation")
 
-
-class JumpThreshold(SpecModel):
+class JumpThresholdSpec(SpecModel):
     """Largest joint step between neighbouring waypoints."""
 
     revolute: Annotated[Angle, Field(gt=0)] = Field(
@@ -66,10 +65,11 @@ class CartesianPath(Step):
     min_fraction: Fraction = Field(
         default=1.0, description="The step fails when a smaller share of the path can be followed."
     )
-    jump_threshold: JumpThreshold = Field(
-        default=JumpThreshold(), description="The path ends where a joint jumps by more than this."
+    jump_threshold: JumpThresholdSpec = Field(
+        default=JumpThresholdSpec(),
+        description="The path ends where a joint jumps by more than this.",
     )
-    cartesian_limits: CartesianLimits | None = Field(
+    cartesian_limits: CartesianLimitsSpec | None = Field(
         default=None, description="Limits of the link's speed and acceleration along the path."
     )
 
@@ -96,7 +96,9 @@ class CartesianPath(Step):
                 group, cell.planning_start(), goals, path, options
             )
         except PlanningFailed as failure:
-            cell.notes.result.update({k: failure.facts[k] for k in REPORTED if k in failure.facts})
+            followed = failure.details.find(CartesianPathResult)
+            if followed is not None:
+                cell.notes.result.update(replace(followed, min_fraction=None).plain())
             raise
         cell.carry_out(plan)
 

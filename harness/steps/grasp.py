@@ -11,13 +11,18 @@ from harness.cell.scope import At
 from harness.core.errors import StepFailed
 from harness.language.base import JointEffort, JointValue, Name
 from harness.language.step import Step
+from harness.recording.execution_failures import GraspFailure
 from harness.steps.gripper import DEFAULT_TIMEOUT, check_gripper_position, note_result
 
 GripperAction = Literal["friction", "weld"]
 
 
 class Grasp(Step):
-    """Close until both finger sides touch the object, verify, attach it in the planning scene."""
+    """Close until both finger sides press the object, verify, attach it in the planning scene.
+
+    Both sides must press it from opposite sides, as `grasped` defines it: tips that close on top of
+    a larger object touch it and grasp nothing.
+    """
 
     short = "object"
 
@@ -48,21 +53,26 @@ class Grasp(Step):
         at.scope.attached[self.object] = None
 
     def execute(self, cell: Cell) -> None:
-        """Close, verify the contact on both sides, attach; `weld` fixes it in the physics too.
+        """Close, verify that opposite sides press it, attach; `weld` fixes it in the physics too.
 
         Raises:
-            StepFailed: CONTROL_FAILED, when a finger side does not touch the object.
+            StepFailed: CONTROL_FAILED, when a finger side does not touch the object, or the sides
+                do not press it from opposite sides.
         """
         hand = cell.gripper
         target = hand.closed_position if self.position is None else self.position
         result = cell.simulator.command_gripper(
             target, self.max_effort or hand.grip_effort, timeout=self.timeout or DEFAULT_TIMEOUT
         )
-        note_result(cell, target, result)
+        outcome = note_result(cell, target, result)
         cell.notes.result["mode"] = self.mode
         empty = [side for side, names in result.contacts.items() if self.object not in names]
         if empty:
-            raise StepFailed("CONTROL_FAILED", _missed(self.object, empty, cell), cell.notes.result)
+            message = _missed(self.object, empty, cell)
+            raise StepFailed("CONTROL_FAILED", message, outcome, GraspFailure(self.mode))
+        if self.object not in result.between:
+            message = _not_between(self.object, cell)
+            raise StepFailed("CONTROL_FAILED", message, outcome, GraspFailure(self.mode))
         cell.sync_scene()
         cell.attach(self.object, cell.description.tcp_link, hand.links)
         if self.mode == "weld":
@@ -89,10 +99,20 @@ def check_graspable(name: str, at: At) -> None:
 
 def _missed(name: str, empty: list[str], cell: Cell) -> str:
     """Which side misses, and how the object stands to the TCP."""
-    tcp = cell.frame(cell.description.tcp_link)
-    offset = tcp.inverse().apply(cell.frame(name).translation) * 1e3
     sides = " and ".join(f"the {side} finger" for side in empty)
+    return f"{sides} did not touch '{name}' when the gripper closed; {_offset(name, cell)}"
+
+
+def _not_between(name: str, cell: Cell) -> str:
+    """Fingers that touch an object and do not have it between them."""
     return (
-        f"{sides} did not touch '{name}' when the gripper closed; its origin stands"
-        f" ({offset[0]:.1f}, {offset[1]:.1f}, {offset[2]:.1f}) mm from the TCP, in the TCP's axes"
+        f"both fingers touch '{name}', but do not press it from opposite sides: it is not between"
+        f" them; {_offset(name, cell)}"
     )
+
+
+def _offset(name: str, cell: Cell) -> str:
+    """How an object stands to the TCP."""
+    tcp = cell.frame(cell.description.tcp_link)
+    x, y, z = tcp.inverse().apply(cell.frame(name).translation) * 1e3
+    return f"its origin stands ({x:.1f}, {y:.1f}, {z:.1f}) mm from the TCP, in the TCP's axes"

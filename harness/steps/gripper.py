@@ -14,6 +14,7 @@ from harness.core.errors import StepFailed
 from harness.language.base import JointEffort, JointValue, Name, NonNegativeLength
 from harness.language.step import Step
 from harness.ports import GripperResult
+from harness.recording.execution_failures import GripperOutcome
 from harness.robot.description import Gripper as GripperDescription
 
 DEFAULT_TIMEOUT = 10.0  # [s] of simulation
@@ -121,16 +122,18 @@ def _check_gripper_width(width: float | None, at: At) -> None:
         )
 
 
-def note_result(cell: Cell, target: float, result: GripperResult) -> None:
+def note_result(cell: Cell, target: float, result: GripperResult) -> GripperOutcome:
     """Leave GripperCommand's result, and the contacts, in the step's record."""
-    cell.notes.result.update(
+    outcome = GripperOutcome(
         target=target,
         position=result.position,
         effort=result.effort,
         stalled=result.stalled,
         reached_goal=result.reached_goal,
-        contacts={side: list(names) for side, names in result.contacts.items()},
+        contacts=result.contacts,
     )
+    cell.notes.result.update(outcome.plain())
+    return outcome
 
 
 def _position_for_width(hand: GripperDescription, width: float) -> float:

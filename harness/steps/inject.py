@@ -11,6 +11,7 @@ from harness.cell.cell import Cell
 from harness.cell.scope import At
 from harness.language.base import Angle, Duration, Force, Fraction, Name, Number, PositiveDuration
 from harness.language.step import Step
+from harness.recording.faults import FaultKind, InjectedFault
 
 PushForce = tuple[Force, Force, Force]
 
@@ -98,8 +99,8 @@ class Inject(Step):
         faults = cell.simulator.faults
         done: list[dict[str, Any]] = cell.notes.result.setdefault("faults", [])
 
-        def note(fault: str, target: str, before: object, after: object) -> None:
-            done.append({"fault": fault, "target": target, "before": before, "after": after})
+        def note(fault: FaultKind, target: str, before: object, after: object) -> None:
+            done.append(InjectedFault(fault, target, before, after).plain())
 
         for name, sliding in (self.friction or {}).items():
             note("friction", name, faults.set_friction(name, sliding), sliding)

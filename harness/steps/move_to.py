@@ -11,7 +11,7 @@ from harness.cell.goal_checks import check_goal
 from harness.cell.goals import group_of, path_constraints, resolve_goal
 from harness.cell.scope import At
 from harness.language.goals import GOAL_KEYS, GoalFields
-from harness.language.planning import PathConstraints
+from harness.language.planning import PathConstraintsSpec
 from harness.language.step import Step
 from harness.ports import AnyGoal
 
@@ -31,7 +31,7 @@ class MoveTo(GoalFields, Step):
         default=None,
         description="The motion goes to the one of these goals that is cheapest to reach.",
     )
-    path_constraints: PathConstraints | None = Field(
+    path_constraints: PathConstraintsSpec | None = Field(
         default=None, description="Constraints that hold at every sample of the motion."
     )
 
@@ -60,7 +60,7 @@ class MoveTo(GoalFields, Step):
         cell.carry_out(cell.planner.plan(group, start, goal, cell.current.options, constraints))
 
 
-def _check_constraints(constraints: PathConstraints, group_name: str | None, at: At) -> None:
+def _check_constraints(constraints: PathConstraintsSpec, group_name: str | None, at: At) -> None:
     scope = at.scope
     band, box = constraints.orientation, constraints.position
     if band is not None:

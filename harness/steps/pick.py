@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 
 from harness.cell.cell import Cell
 from harness.cell.goals import TcpGoal, arm_has_six_joints, group_of
-from harness.cell.grasp_choice import Approach, Search, choose_approach
+from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach
 from harness.cell.grasping import (
     check_opening,
     grasp_points,
@@ -21,12 +21,14 @@ from harness.cell.grasping import (
 )
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
+from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.language.base import Angle, JointEffort, Name, PositiveLength, SpecModel
 from harness.language.poses import Direction, Pose, Position
 from harness.language.step import Step
+from harness.recording.explanation import ApproachFailure, Explanation, NearestState
 from harness.steps.grasp import Grasp, GripperAction, check_graspable
 from harness.steps.gripper import Gripper
 from harness.steps.lin import Lin
@@ -165,7 +167,7 @@ def _approach(step: Pick, lift: MoveRelative, cell: Cell) -> list[ProgramStep]:
         for number, goal in enumerate(goals)
     ]
     cell.notes.result.update(grasps=len(goals), grasp=1)
-    search = Search(
+    search = GraspSearch(
         group_of(cell, step.group),
         cell.with_open_gripper(cell.planning_start()),
         cell.current.options,
@@ -203,7 +205,7 @@ def pick_advice(step: Pick, failure: PlanningFailed, grasps: int, cell: Cell) ->
         return ""  # the planner's advice is about the start
     if failure.code == "GOAL_IN_COLLISION":
         return _collision_advice(step, failure, grasps, cell)
-    if failure.facts.get("is_start_of_approach"):
+    if fails_at_start_of_approach(failure):
         return "the grasp can be reached, the start of its approach cannot: " + (
             "give `approach` a shorter `distance`, or another `direction`"
         )
@@ -214,13 +216,13 @@ def pick_advice(step: Pick, failure: PlanningFailed, grasps: int, cell: Cell) ->
             " out of `grasp_pose` and the arm finds its own; `pitch` states how far the gripper"
             " points down"
         )
-    nearest = failure.facts.get("nearest", {})
-    moved = ""
-    if "pose" in nearest and nearest["position_error"] >= 1e-3:
-        x, y, z = nearest["pose"][:3]
+    nearest = nearest_state(failure)
+    moved, away = "", (nearest.position_error if nearest else None) or 0.0
+    if nearest is not None and nearest.pose is not None and away >= 1e-3:
+        x, y, z = nearest.pose[:3]
         moved = (
             f"the nearest point that the gripper reaches is ({x:.3f}, {y:.3f}, {z:.3f}), "
-            f"{millimetres(nearest['position_error'])} from the grasp: bring '{step.object}' or the"
+            f"{millimetres(away)} from the grasp: bring '{step.object}' or the"
             " robot's `base` nearer by that much"
         )
     if step.grasp_pose is not None and step.grasp_pose.has_rotation:
@@ -234,19 +236,19 @@ def pick_advice(step: Pick, failure: PlanningFailed, grasps: int, cell: Cell) ->
 
 
 def _collision_advice(step: Pick, failure: PlanningFailed, grasps: int, cell: Cell) -> str:
-    nearest = failure.facts.get("nearest", {})
-    touches = nearest.get("touches", [])
-    if not touches or touches[0]["distance"] >= 0:
+    nearest = nearest_state(failure)
+    if nearest is None or not nearest.touches or nearest.touches[0].distance >= 0:
         return ""  # the padding is in the way, and the planner's advice says so
-    pair, depth = touches[0]["pair"], millimetres(-touches[0]["distance"])
+    deepest = nearest.touches[0]
+    pair, depth = deepest.pair, millimetres(-deepest.distance)
     blockers = [name for name in pair if name in cell.presence and name != step.object]
     can_move = bool(blockers) and not cell.scene.is_ground(blockers[0])
     tried = f"none of {grasps} grasps is free" if grasps > 1 else "the grasp is not free"
-    shift = nearest.get("nearest_free", {}).get("shift")
     moved = f"move '{step.object}' to where the gripper has {depth} more room"
     if blockers:
         moved = f"move '{step.object}' {depth} farther from '{blockers[0]}'"
-    if shift is not None:
+    if nearest.nearest_free is not None:
+        shift = nearest.nearest_free.shift
         axis = max(range(3), key=lambda index: abs(shift[index]))
         sign = "+" if shift[axis] > 0 else "-"
         moved = (
@@ -265,9 +267,20 @@ def millimetres(metres: float) -> str:
 
 def with_advice(failure: PlanningFailed, advice: str) -> PlanningFailed:
     """The failure with advice that can be followed in the step that it is reported for."""
-    return PlanningFailed(
-        failure.code, failure.message, failure.facts | ({"advice": advice} if advice else {})
-    )
+    added = Details.of(Explanation(advice=advice) if advice else None)
+    return PlanningFailed(failure.code, failure.message, *failure.details, *added)
+
+
+def nearest_state(failure: PlanningFailed) -> NearestState | None:
+    """The state that the planner explains a failure by."""
+    explained = (part.nearest for part in failure.details if isinstance(part, Explanation))
+    return next((nearest for nearest in explained if nearest is not None), None)
+
+
+def fails_at_start_of_approach(failure: PlanningFailed) -> bool:
+    """Whether the end of the straight approach can be reached and its start cannot."""
+    approach = failure.details.find(ApproachFailure)
+    return approach is not None and approach.is_start_of_approach
 
 
 def grasp_goals(step: Pick, cell: Cell) -> list[TcpGoal]:

@@ -11,8 +11,8 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.goals import TcpGoal, arm_has_six_joints, group_of
-from harness.cell.grasp_choice import Approach, Search, choose_approach
-from harness.cell.grasping import UP, gripper_axes, pitch_of, turn_about
+from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach
+from harness.cell.grasping import UP, gripper_axes, matrix_pitch, turn_about
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
 from harness.core.errors import PlanningFailed, StepFailed
@@ -23,12 +23,17 @@ from harness.language.base import Name
 from harness.language.poses import Direction, Pose, Position
 from harness.language.step import Step
 from harness.ports import PositionGoal, Touch
+from harness.recording.execution_failures import NotHeldFailure
+from harness.recording.explanation import Explanation
+from harness.recording.goal_failures import CollisionFailure, TouchRecord
 from harness.steps.lin import Lin
 from harness.steps.move_to import MoveTo
 from harness.steps.pick import (
     Travel,
     check_travel,
+    fails_at_start_of_approach,
     millimetres,
+    nearest_state,
     relative_step,
     travel_lengths,
     with_advice,
@@ -49,8 +54,9 @@ class Place(Step):
     """Approach, lower, release, retreat; expands into the steps it is made of.
 
     Where the arm cannot lower the object to a `pose` without a rotation, or not open its hand
-    there, the object is turned about the vertical, if it looks the same then: by a half, what is
-    square by quarters, what is round by eighths; the step reports which `turn` of how many `turns`.
+    there, the object is turned about the vertical, if it is and looks the same then: by a half,
+    what is square by quarters, what is round by eighths; the step reports which `turn` of how many
+    `turns`.
     A `pose` with a rotation is kept to. An arm of fewer than six joints brings the object to the
     position alone, with the pitch that the gripper has: the object turns with the arm.
     """
@@ -97,10 +103,8 @@ class Place(Step):
             raise StepFailed(
                 "INVALID_OBJECT_NAME",
                 f"{what}, so nothing can be placed",
-                {
-                    "not_held": name,
-                    "advice": f"put a step that takes it before: `- pick: {name or '...'}`",
-                },
+                NotHeldFailure(name),
+                Explanation(advice=f"put a step that takes it before: `- pick: {name or '...'}`"),
             )
         backwards = _retreat_direction(cell)
         children = [
@@ -136,7 +140,7 @@ def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
     ]
     cell.notes.result.update(turns=len(targets), turn=1)
     refused: list[Touch] = []
-    search = Search(
+    search = GraspSearch(
         group_of(cell, step.group),
         cell.planning_start(),
         replace(cell.current.options, padding=0.0),
@@ -178,13 +182,11 @@ def _no_room(name: str, touch: Touch) -> StepFailed:
         "GOAL_IN_COLLISION",
         f"the gripper has no room to open where '{name}' is put down: open, {touch.first} and"
         f" {touch.second} would be {depth} inside each other",
-        {
-            "touches": [{"pair": [touch.first, touch.second], "distance": touch.distance}],
-            "advice": (
-                f"put it down farther from '{touch.second}', or where there is {depth} more room"
-                " on that side of the gripper"
-            ),
-        },
+        CollisionFailure((TouchRecord((touch.first, touch.second), touch.distance),)),
+        Explanation(
+            advice=f"put it down farther from '{touch.second}', or where there is {depth} more room"
+            " on that side of the gripper"
+        ),
     )
 
 
@@ -192,24 +194,23 @@ def place_advice(name: str, step: Place, failure: PlanningFailed, cell: Cell) ->
     """What to do in the keys of a place."""
     if failure.code.startswith("START_STATE"):
         return ""  # the planner's advice is about the start
-    if failure.facts.get("is_start_of_approach"):
+    if fails_at_start_of_approach(failure):
         return (
             "the place can be reached, the start of the approach cannot: give `approach` a shorter"
             " `distance`, or another `direction`"
         )
-    stated = cell.world_pose(step.pose)
+    stated, nearest = cell.world_pose(step.pose), nearest_state(failure)
     if failure.code == "GOAL_IN_COLLISION":
-        shift = failure.facts.get("nearest", {}).get("nearest_free", {}).get("shift")
-        if shift is None:
+        if nearest is None or nearest.nearest_free is None:
             return ""
+        shift = np.array(nearest.nearest_free.shift)
         return (
             f"move '{name}' to where it is free: `pose: {{{_xyz(stated.translation + shift)}}}`, or"
             " move what is in the way"
         )
-    nearest = failure.facts.get("nearest", {}).get("joint_positions")
     if nearest is None:
         return ""
-    state = np.array([nearest[joint] for joint in cell.description.joint_names])
+    state = np.array([nearest.joint_positions[joint] for joint in cell.description.joint_names])
     pose = cell.scene.object_pose(name, state)
     point = pose.translation - PUT_DOWN_GAP * UP
     away = float(np.linalg.norm(point - stated.translation))
@@ -234,7 +235,7 @@ def _equal_poses(name: str, step: Place, cell: Cell) -> list[SE3]:
     if step.pose.has_rotation or not arm_has_six_joints(cell.description, step.group):
         return [stated]
     obj = cell.presence[name].obj
-    count = equal_turns(obj.visuals or obj.shapes, stated.rotation) or TURNS_OF_ROUND
+    count = equal_turns((*obj.shapes, *obj.visuals), stated.rotation) or TURNS_OF_ROUND
     turns = sorted(range(count), key=lambda turn: min(turn, count - turn))
     return [
         SE3(turn_about(UP, 2 * math.pi * turn / count) @ stated.rotation, stated.translation)
@@ -260,7 +261,7 @@ def _tcp_goal(name: str, target: SE3, step: Place, cell: Cell) -> TcpGoal:
     tcp_to_object = tcp.inverse() @ cell.scene.object_pose(name, start)
     if arm_has_six_joints(cell.description, step.group):
         return TcpGoal(world_pose_spec(target @ tcp_to_object.inverse()))
-    pitch = pitch_of(tcp.rotation)
+    pitch = matrix_pitch(tcp.rotation)
     x, y, z = _tcp_position(target.translation, tcp_to_object, pitch, step, cell)
     return TcpGoal(Position(xyz=(float(x), float(y), float(z))), pitch)
 

@@ -18,11 +18,11 @@ from harness.language.goals import ArcFields, GoalFields, LineFields
 from harness.language.step import Step
 from harness.ports import SequenceItem as PlannedItem
 
-Place = tuple[str, str, FloatArray]
+LinkPosition = tuple[str, str, FloatArray]
 """A link, a frame, and the link's position in it."""
 
 
-class SequenceItem(SpecModel):
+class SequenceItemSpec(SpecModel):
     """One motion of a sequence, and how it blends into the next."""
 
     ptp: GoalFields | None = Field(
@@ -41,7 +41,7 @@ class SequenceItem(SpecModel):
     )
 
     @model_validator(mode="after")
-    def _one_motion(self) -> SequenceItem:
+    def _one_motion(self) -> SequenceItemSpec:
         if sum(motion is not None for motion in (self.ptp, self.lin, self.circ)) != 1:
             raise ValueError("an item is exactly one of ptp, lin, circ")
         return self
@@ -73,7 +73,7 @@ class Sequence(Step):
     verb: ClassVar[str] = "sequence"
     moves_arm: ClassVar[bool] = True
 
-    items: Annotated[tuple[SequenceItem, ...], Field(min_length=1, max_length=1000)] = Field(
+    items: Annotated[tuple[SequenceItemSpec, ...], Field(min_length=1, max_length=1000)] = Field(
         description="The motions, in order."
     )
 
@@ -99,7 +99,7 @@ class Sequence(Step):
         )
 
 
-def _planned(item: SequenceItem, group: str, cell: Cell) -> PlannedItem:
+def _planned(item: SequenceItemSpec, group: str, cell: Cell) -> PlannedItem:
     goal, radius = resolve_goal(item.motion, group, cell), item.blend_radius
     if item.circ is not None:
         limits = link_limits(item.circ.cartesian_limits)
@@ -137,7 +137,7 @@ def _check_blends(step: Sequence, group: str, at: At) -> None:
         )
 
 
-def _place(goal: GoalFields, group: str, scope: Scope) -> Place | None:
+def _place(goal: GoalFields, group: str, scope: Scope) -> LinkPosition | None:
     """Where a goal is, if the file says; frames are resolved all at once, before the motion."""
     description = scope.description
     link = goal.link or description.tcp_link
@@ -153,7 +153,7 @@ def _place(goal: GoalFields, group: str, scope: Scope) -> Place | None:
     return link, at.frame, np.array(at.xyz, dtype=float)
 
 
-def _place_of_joints(goal: GoalFields, group: str, scope: Scope) -> Place | None:
+def _place_of_joints(goal: GoalFields, group: str, scope: Scope) -> LinkPosition | None:
     description = scope.description
     if group not in description.groups or scope.link_pose is None:
         return None
@@ -174,7 +174,7 @@ def _place_of_joints(goal: GoalFields, group: str, scope: Scope) -> Place | None
     return tcp, "world", pose.translation
 
 
-def _distance(first: Place | None, second: Place | None) -> float | None:
+def _distance(first: LinkPosition | None, second: LinkPosition | None) -> float | None:
     if first is None or second is None or first[:2] != second[:2]:
         return None
     return float(np.linalg.norm(second[2] - first[2]))

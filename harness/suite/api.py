@@ -14,7 +14,8 @@ from harness.recording.run import Run, StepRecord, Verdict
 from harness.recording.store import RUN, read_run
 from harness.reporting.result import CaseResult
 from harness.reporting.terminal import causes
-from harness.suite.cases import CaseJob, ignore_progress, run_here
+from harness.session.run_request import RunRequest
+from harness.suite.cases import ignore_progress, run_here
 from harness.suite.discovery import UsageError
 from harness.suite.header import source_lines
 from harness.suite.variation import Case, Variation
@@ -26,7 +27,7 @@ MODEL = "<Scenario model>"
 """What messages call a scenario that is a model in Python, and no file."""
 
 T = TypeVar("T")
-Runner = Callable[[CaseJob], CaseResult]
+Runner = Callable[[RunRequest], CaseResult]
 
 
 @dataclass(frozen=True, repr=False)
@@ -137,7 +138,7 @@ def _without_folder(result: CaseResult) -> CaseResult:
     return replace(result, file=MODEL, problems=problems)
 
 
-def run_in_process(job: CaseJob) -> CaseResult:
+def run_in_process(job: RunRequest) -> CaseResult:
     """Run a job here."""
     [(_index, result)] = run_here([job], watch=ignore_progress)
     return result
@@ -145,26 +146,25 @@ def run_in_process(job: CaseJob) -> CaseResult:
 
 def _job(
     scenario: str | Path | Scenario, overrides: dict[str, str], seed: int | None, case: str
-) -> CaseJob:
+) -> RunRequest:
     if isinstance(scenario, str | Path):
         from harness.suite.header import read_header
 
         file, text, variation = Path(scenario), None, read_header(Path(scenario)).variation
     else:
-        from harness.language.reading.written import scenario_text, written
+        from harness.language.reading.written import as_written, scenario_text
 
         text = scenario_text(scenario)
-        file, variation = Path.cwd() / MODEL, Variation.of(written(scenario))
+        file, variation = Path.cwd() / MODEL, Variation.of(as_written(scenario))
     name = str(scenario) if isinstance(scenario, str | Path) else scenario.scenario
-    chosen = _case(variation, seed, case, name)
-    return CaseJob(
+    chosen = _case(variation, seed, case, name).with_overrides(overrides)
+    return RunRequest(
         file,
-        {**chosen.overrides, **overrides},
+        chosen.overrides,
         seed if chosen.sample is None else None,
         case=chosen.name,
         text=text,
         redraw=chosen.redraw,
-        fixed=overrides,
     )
 
 

@@ -9,14 +9,13 @@ import time
 import traceback
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
-from pathlib import Path
+from dataclasses import dataclass
 
 from harness.core.errors import SpecError
 from harness.reporting.result import CaseResult, ProgressEvent
+from harness.session.run_request import RunRequest
 from harness.suite.environment import prepare_process
 from harness.suite.leftovers import clean_leftovers
-from harness.suite.variation import Redraw
 from harness.suite.warm import Ended, Heard, WarmServer
 
 HARD_CAP_SECONDS = 600.0
@@ -28,52 +27,12 @@ LONGEST_WAIT = 60.0  # [s], then deadlines are looked at again
 _WORD = re.compile(r"\w+")
 
 
-@dataclass(frozen=True)
-class CaseJob:
-    """One case to be run.
-
-    Attributes:
-        file: The path as the user names it.
-        overrides: Dotted path in the file -> new value, as YAML text.
-        seed: Instead of the file's.
-        report_dir: Where its report goes; None writes none.
-        stills: Whether the report gets a picture of every step.
-        page: Whether it gets its page.
-        bag: Whether it gets a rosbag2.
-        case: Name of the case; empty when the file has one.
-        only_failed: Whether a report is written only where the case does not pass.
-        text: What would stand in the file; None: what does.
-        redraw: Draws the sample again while objects overlap at the start; None: it is drawn once.
-        fixed: Those of `overrides` that no draw changes.
-        strict: Whether a warning of a verdict fails the case.
-    """
-
-    file: Path
-    overrides: Mapping[str, str] = field(default_factory=dict[str, str])
-    seed: int | None = None
-    report_dir: Path | None = None
-    stills: bool = True
-    page: bool = True
-    bag: bool = False
-    case: str = ""
-    only_failed: bool = False
-    text: str | None = None
-    redraw: Redraw | None = None
-    fixed: Mapping[str, str] = field(default_factory=dict[str, str])
-    strict: bool = False
-
-    def overrides_of_draw(self, draw: int) -> Mapping[str, str]:
-        """Overrides of the sample as it is drawn again."""
-        assert self.redraw is not None
-        return {**self.redraw.again(draw).overrides, **self.fixed}
-
-
-Function = Callable[[CaseJob, Callable[[ProgressEvent], None]], CaseResult]
+Function = Callable[[RunRequest, Callable[[ProgressEvent], None]], CaseResult]
 Watcher = Callable[[int, ProgressEvent], None]
 Chooser = Callable[[int], bool]
 
 
-def never(_index: int) -> bool:
+def never_needless(_index: int) -> bool:
     """Every case is needed."""
     return False
 
@@ -82,29 +41,12 @@ def ignore_progress(_index: int, _event: ProgressEvent) -> None:
     """Take no notice of progress."""
 
 
-def run_case(job: CaseJob, notify: Callable[[ProgressEvent], None]) -> CaseResult:
+def run_job(job: RunRequest, notify: Callable[[ProgressEvent], None]) -> CaseResult:
     """Run a case in this process."""
     prepare_process()
-    from harness.session import run_case as session
+    from harness.session import run_case as session  # imports planners and physics
 
-    result = session.run_case(
-        job.file,
-        overrides=job.overrides,
-        seed=job.seed,
-        report_dir=job.report_dir,
-        stills=job.stills,
-        page=job.page,
-        bag=job.bag,
-        case=job.case,
-        only_failed=job.only_failed,
-        text=job.text,
-        redraw=None if job.redraw is None else job.overrides_of_draw,
-        strict=job.strict,
-        on_progress=notify,
-    )
-    if job.redraw is None or not result.redraws:
-        return result
-    return replace(result, values=job.redraw.again(result.redraws).values)
+    return session.run_case(job, notify)
 
 
 def read_ahead(words: Collection[str]) -> None:
@@ -117,11 +59,11 @@ def read_ahead(words: Collection[str]) -> None:
 
 
 def run_here(
-    jobs: Sequence[CaseJob],
+    jobs: Sequence[RunRequest],
     *,
     watch: Watcher = ignore_progress,
-    function: Function = run_case,
-    is_needless: Chooser = never,
+    function: Function = run_job,
+    is_needless: Chooser = never_needless,
 ) -> Iterator[tuple[int, CaseResult]]:
     """Run cases in this process, one after the other; for debuggers: nothing contains a crash."""
     for index, job in enumerate(jobs):
@@ -136,14 +78,14 @@ def run_here(
 
 
 def run_isolated(
-    jobs: Sequence[CaseJob],
+    jobs: Sequence[RunRequest],
     server: WarmServer,
     *,
     workers: int = 1,
     hard_cap: float | None = None,
     watch: Watcher = ignore_progress,
-    function: Function = run_case,
-    is_needless: Chooser = never,
+    function: Function = run_job,
+    is_needless: Chooser = never_needless,
 ) -> Iterator[tuple[int, CaseResult]]:
     """Run every case in its own forked process, `workers` side by side.
 
@@ -165,7 +107,7 @@ def run_isolated(
     cap = hard_cap_seconds() if hard_cap is None else hard_cap
     waiting = list(enumerate(jobs))[::-1]
     running: dict[int, _Running] = {}
-    if function is run_case:
+    if function is run_job:
         server.prepare(read_ahead, _words(jobs))
     try:
         while waiting or running:
@@ -199,7 +141,7 @@ def run_isolated(
         raise
 
 
-def _words(jobs: Sequence[CaseJob]) -> frozenset[str]:
+def _words(jobs: Sequence[RunRequest]) -> frozenset[str]:
     """Every word in the scenarios, names of robots among them."""
     from harness.language.files.yaml_file import read_text
 
@@ -216,7 +158,7 @@ def _patience(running: Mapping[int, _Running]) -> float:
     return min(max(0.0, nearest - time.monotonic()), LONGEST_WAIT)
 
 
-def _clean(job: CaseJob) -> None:
+def _clean(job: RunRequest) -> None:
     if job.report_dir is not None:
         clean_leftovers(job.report_dir)
 
@@ -229,7 +171,7 @@ def hard_cap_seconds() -> float:
 @dataclass
 class _Running:
     index: int
-    job: CaseJob
+    job: RunRequest
     deadline: float
     is_over_cap: bool = False
     last: ProgressEvent | None = None
@@ -238,7 +180,7 @@ class _Running:
 def _result(case: _Running, ended: Ended, cap: float) -> CaseResult:
     if isinstance(ended.result, CaseResult) and ended.code == 0:
         return ended.result
-    at = f" during {describe(case.last)}" if case.last else ""
+    at = f" during {progress_text(case.last)}" if case.last else ""
     printed = f"\nIt had printed:\n{ended.log.rstrip()}" if ended.log.strip() else ""
     if case.is_over_cap:
         why = f"no end after {cap:g} s of wall time{at}; stopped by the hard cap{printed}"
@@ -256,7 +198,7 @@ def _result(case: _Running, ended: Ended, cap: float) -> CaseResult:
     return error_result(case.job, why)
 
 
-def describe(event: ProgressEvent) -> str:
+def progress_text(event: ProgressEvent) -> str:
     """Where a case stood, in words."""
     if event.kind in {"step_started", "step_finished"}:
         number = f" {event.index + 1}/{event.total}" if event.index >= 0 else ""
@@ -267,7 +209,7 @@ def describe(event: ProgressEvent) -> str:
     return {"compiled": "the first step", "judged": "the report", "written": "the end"}[event.kind]
 
 
-def error_result(job: CaseJob, message: str) -> CaseResult:
+def error_result(job: RunRequest, message: str) -> CaseResult:
     """The outcome of a case in which the harness, or a native library, broke."""
     title = job.file.name.removesuffix(".scenario.yaml")
     return CaseResult(

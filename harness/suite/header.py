@@ -18,7 +18,7 @@ VARIED = ("parametrize", "randomize", "samples", "redraw_overlaps", "expect_rate
 
 
 @dataclass(frozen=True)
-class Header:
+class ScenarioHeader:
     """What selects a scenario before it is read in earnest.
 
     Attributes:
@@ -46,12 +46,12 @@ def source_lines(file: Path) -> list[str]:
         return []
 
 
-def read_header(file: Path) -> Header:
+def read_header(file: Path) -> ScenarioHeader:
     """Read a file's header; for a broken file, whose run reports the problems, only the name."""
     from harness.language.files.source import Source
     from harness.language.files.yaml_file import parse_yaml, read_text
 
-    nameless = Header(file.name.removesuffix(SUFFIX))
+    nameless = ScenarioHeader(file.name.removesuffix(SUFFIX))
     try:
         text = read_text(file)
         entries = parse_yaml(text, Source.of_text(str(file), text)).mapping()
@@ -64,11 +64,12 @@ def read_header(file: Path) -> Header:
     varied = {key: entries[key].value.plain() for key in VARIED if key in entries}
     variation = Variation.of(varied)
     if "scenario" not in entries:
-        return Header(nameless.title, tags, 1, variation, verifies, varied)
+        return ScenarioHeader(nameless.title, tags, 1, variation, verifies, varied)
     key, title = entries["scenario"]
     if not isinstance(title.value, str) or not title.value.strip():
-        return Header(nameless.title, tags, key.line, variation, verifies, varied)
-    return Header(" ".join(title.value.split()), tags, key.line, variation, verifies, varied)
+        return ScenarioHeader(nameless.title, tags, key.line, variation, verifies, varied)
+    plain_title = " ".join(title.value.split())
+    return ScenarioHeader(plain_title, tags, key.line, variation, verifies, varied)
 
 
 def _texts(item: Located) -> tuple[str, ...]:

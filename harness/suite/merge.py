@@ -7,10 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from harness.reporting.result import CaseResult
-from harness.suite.plan import RunRequest, cases_of
+from harness.suite.plan import SuiteRequest, cases_of
 from harness.suite.shards import ShardRecord, read_shard_records
 from harness.suite.stream import FILE, read_results
-from harness.suite.suite_run import How, SuiteRun
+from harness.suite.suite_run import SuiteOptions, SuiteRun
 
 
 def merge_parts(folders: Sequence[Path]) -> tuple[SuiteRun, ShardRecord]:
@@ -24,11 +24,11 @@ def merge_parts(folders: Sequence[Path]) -> tuple[SuiteRun, ShardRecord]:
     """
     records = read_shard_records(folders)
     first = records[0]
-    request = RunRequest(
+    request = SuiteRequest(
         first.expression, first.cases, dict(first.overrides), first.seed, first.samples
     )
     plan = cases_of([(Path(each.file), each.header) for each in first.files], request)
-    suite = SuiteRun(plan, How())
+    suite = SuiteRun(plan, SuiteOptions())
     places = {(str(each.job.file), each.case.name): index for index, each in enumerate(plan)}
     results: dict[int, CaseResult] = {}
     missing: list[str] = []

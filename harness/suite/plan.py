@@ -8,10 +8,10 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any, NoReturn
 
-from harness.suite.cases import CaseJob
+from harness.session.run_request import RunRequest
 from harness.suite.discovery import UsageError
 from harness.suite.folders import place_of, report_folders
-from harness.suite.header import Header, read_header
+from harness.suite.header import ScenarioHeader, read_header
 from harness.suite.selection import selects
 from harness.suite.shards import PlannedFile, Shard, ShardRecord
 from harness.suite.stream import file_hash
@@ -19,7 +19,7 @@ from harness.suite.variation import Case, Variation
 
 
 @dataclass(frozen=True)
-class RunRequest:
+class SuiteRequest:
     """Which cases a command runs, and what it writes.
 
     Attributes:
@@ -35,6 +35,7 @@ class RunRequest:
         bag: Whether to write a rosbag2.
         shard: The part of the suite to run; None runs the whole suite.
         strict: Whether a warning of a verdict fails a case.
+        reporters: Names of other reporters that write into the reports.
     """
 
     expression: str = ""
@@ -48,6 +49,7 @@ class RunRequest:
     bag: bool = False
     shard: Shard | None = None
     strict: bool = False
+    reporters: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -60,8 +62,8 @@ class PlannedCase:
         case: The name of the case.
     """
 
-    job: CaseJob
-    header: Header
+    job: RunRequest
+    header: ScenarioHeader
     case: Case
 
     @property
@@ -85,7 +87,7 @@ class PlannedCase:
         return self.case.values
 
 
-def planned_cases(files: Sequence[Path], request: RunRequest) -> list[PlannedCase]:
+def planned_cases(files: Sequence[Path], request: SuiteRequest) -> list[PlannedCase]:
     """Every case of the files that the request selects, in file order.
 
     Raises:
@@ -105,7 +107,9 @@ def planned_cases(files: Sequence[Path], request: RunRequest) -> list[PlannedCas
     return [each for each in found if request.shard.holds(each.identity)]
 
 
-def cases_of(headers: Sequence[tuple[Path, Header]], request: RunRequest) -> list[PlannedCase]:
+def cases_of(
+    headers: Sequence[tuple[Path, ScenarioHeader]], request: SuiteRequest
+) -> list[PlannedCase]:
     """Every case that the request selects, of files whose headers are known, in file order.
 
     Raises:
@@ -122,7 +126,7 @@ def cases_of(headers: Sequence[tuple[Path, Header]], request: RunRequest) -> lis
     ]
 
 
-def _refuse_samples(files: Sequence[Path], request: RunRequest) -> NoReturn:
+def _refuse_samples(files: Sequence[Path], request: SuiteRequest) -> NoReturn:
     """Say that nothing is sampled; mistakes in a file, which may hide its samples, come first."""
     from harness.language.reading.load import load_scenario
 
@@ -134,13 +138,13 @@ def _refuse_samples(files: Sequence[Path], request: RunRequest) -> NoReturn:
     )
 
 
-def _is_selected(file: Path, header: Header, case: Case, request: RunRequest) -> bool:
+def _is_selected(file: Path, header: ScenarioHeader, case: Case, request: SuiteRequest) -> bool:
     if request.cases and not any(fnmatchcase(case.name, pattern) for pattern in request.cases):
         return False
     return not request.expression or selects(request.expression, file, header, case.name)
 
 
-def _names(files: Sequence[Path], request: RunRequest) -> str:
+def _names(files: Sequence[Path], request: SuiteRequest) -> str:
     """The existing case names, if `--case` selected none of them."""
     if not request.cases:
         return ""
@@ -154,24 +158,27 @@ def _names(files: Sequence[Path], request: RunRequest) -> str:
     return f"; cases: {shown}" if names else "; the file has one case, without a name"
 
 
-def _job(file: Path, case: Case, folder: Path | None, request: RunRequest) -> CaseJob:
+def _job(file: Path, case: Case, folder: Path | None, request: SuiteRequest) -> RunRequest:
     keep = request.keep or ("all" if case.sample is None else "failed")
-    return CaseJob(
+    fixed = case.with_overrides(request.overrides)
+    return RunRequest(
         file,
-        {**case.overrides, **request.overrides},
+        fixed.overrides,
         request.seed if case.sample is None else None,
         folder / case.name if folder is not None and case.name else folder,
         page=request.page,
         bag=request.bag,
+        reporters=tuple(request.reporters),
         case=case.name,
         only_failed=keep == "failed",
-        redraw=case.redraw,
-        fixed=request.overrides,
+        redraw=fixed.redraw,
         strict=request.strict,
     )
 
 
-def record_of(files: Sequence[Path], request: RunRequest, shard: Shard, root: Path) -> ShardRecord:
+def record_of(
+    files: Sequence[Path], request: SuiteRequest, shard: Shard, root: Path
+) -> ShardRecord:
     """What a part of a suite has to know of the whole suite.
 
     Args:

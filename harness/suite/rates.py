@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from statistics import NormalDist
 
-from harness.reporting.sampled import Rate, RateVerdict
+from harness.reporting.sampled import RateVerdict, SuccessRate
 
 
 def wilson_interval(passed: int, total: int, confidence: float) -> tuple[float, float]:
@@ -92,7 +92,7 @@ class Tally:
             verdict = decided(self.passed, self.total, self._at_least, self._confidence)
             self.is_decided = verdict != "open"
 
-    def rate(self, planned: int, invalid: int = 0) -> Rate:
+    def rate(self, planned: int, invalid: int = 0) -> SuccessRate:
         """What the samples show; none show nothing.
 
         Args:
@@ -115,7 +115,7 @@ class Tally:
         elif high < required:
             verdict = "refuted"
         early = self.is_decided and total < planned
-        return Rate(
+        return SuccessRate(
             passed,
             total,
             low,

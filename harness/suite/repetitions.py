@@ -13,7 +13,7 @@ from harness.core.errors import HarnessError
 from harness.recording.compare import first_difference
 from harness.recording.store import read_run
 from harness.reporting.result import CaseResult
-from harness.suite.cases import CaseJob
+from harness.session.run_request import RunRequest
 
 
 class Repetitions:
@@ -24,7 +24,7 @@ class Repetitions:
         differences: Index of a run -> how it first differs from the first run of its case.
     """
 
-    def __init__(self, jobs: Sequence[CaseJob], repeat: int) -> None:
+    def __init__(self, jobs: Sequence[RunRequest], repeat: int) -> None:
         self._folder = TemporaryDirectory(prefix="harness-repeat-")
         self._repeat = repeat
         self._results: dict[int, CaseResult] = {}
@@ -46,11 +46,11 @@ class Repetitions:
     ) -> None:
         self._folder.cleanup()
 
-    def _run_of(self, job: CaseJob, index: int) -> CaseJob:
+    def _run_of(self, job: RunRequest, index: int) -> RunRequest:
         if index % self._repeat == 0 and job.report_dir is not None:
             return job
         kept = Path(self._folder.name) / str(index)
-        return replace(job, report_dir=kept, stills=False, page=False, bag=False)
+        return replace(job, report_dir=kept, stills=False, page=False, bag=False, reporters=())
 
     def take(self, index: int, result: CaseResult) -> CaseResult:
         """Note a run's result, and compare it as soon as the first of its case is there.

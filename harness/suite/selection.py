@@ -7,13 +7,13 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from harness.suite.discovery import UsageError
-from harness.suite.header import Header
+from harness.suite.header import ScenarioHeader
 
 _TOKEN = re.compile(r"\s*(?:([()])|([^\s()]+))")
 _Part = Callable[[str], bool]
 
 
-def selects(expression: str, file: Path, header: Header, case: str = "") -> bool:
+def selects(expression: str, file: Path, header: ScenarioHeader, case: str = "") -> bool:
     """Whether an expression holds for a case of a scenario.
 
     A word holds if the file's path, the title, a tag or the case's name contains it, in any case;

@@ -15,7 +15,7 @@ from harness import __version__
 from harness.core.errors import HarnessError
 from harness.recording.plain import from_plain, to_plain
 from harness.suite.discovery import UsageError
-from harness.suite.header import Header
+from harness.suite.header import ScenarioHeader
 from harness.suite.variation import Variation
 
 FORMAT = "armharness-shard/1"
@@ -116,10 +116,10 @@ class PlannedFile:
     digest: str
 
     @property
-    def header(self) -> Header:
+    def header(self) -> ScenarioHeader:
         """The header that was read from the file."""
         variation = Variation.of(self.varied)
-        return Header(self.title, self.tags, 1, variation, self.verifies, self.varied)
+        return ScenarioHeader(self.title, self.tags, 1, variation, self.verifies, self.varied)
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from harness.core.errors import HarnessError
 from harness.core.printable import json_printable
 from harness.recording.plain import to_plain
 from harness.reporting.result import CaseResult
-from harness.suite.cases import CaseJob
+from harness.session.run_request import RunRequest
 
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
@@ -60,7 +60,7 @@ class Stream:
         except OSError as error:
             raise HarnessError(f"'{self.path}' cannot be written: {error.strerror}") from error
 
-    def known(self, job: CaseJob) -> CaseResult | None:
+    def known(self, job: RunRequest) -> CaseResult | None:
         """The result of an earlier run of the same file, values and version; None if there is none.
 
         An error is no result: it is tried again.
@@ -68,7 +68,7 @@ class Stream:
         result = self._known.get(fingerprint(job)) if self._known else None
         return None if result is None or result.outcome == "error" else result
 
-    def write(self, job: CaseJob, result: CaseResult) -> None:
+    def write(self, job: RunRequest, result: CaseResult) -> None:
         """Keep a result.
 
         Raises:
@@ -110,7 +110,7 @@ def _validator() -> TypeAdapter[CaseResult]:
     return TypeAdapter(CaseResult)
 
 
-def fingerprint(job: CaseJob) -> str:
+def fingerprint(job: RunRequest) -> str:
     """What a case's result follows from: file, files it names, values, seed, version."""
     said = [__version__, file_hash(job.file), job.case, str(job.seed), *_sorted(job.overrides)]
     said += ["strict"] if job.strict else []

@@ -24,7 +24,7 @@ OnResult = Callable[[int, CaseResult], None]
 
 
 @dataclass(frozen=True)
-class How:
+class SuiteOptions:
     """How a suite is run.
 
     Attributes:
@@ -60,7 +60,9 @@ class SuiteRun:
         unfinished: The last event of each run that has begun and not ended, by index into `jobs`.
     """
 
-    def __init__(self, plan: Sequence[PlannedCase], how: How, files: Sequence[Path] = ()) -> None:
+    def __init__(
+        self, plan: Sequence[PlannedCase], how: SuiteOptions, files: Sequence[Path] = ()
+    ) -> None:
         self.plan = plan
         self.files = files
         self._repetitions = (

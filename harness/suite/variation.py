@@ -12,7 +12,7 @@ import json
 import random
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from statistics import NormalDist
 from typing import Any, cast
 
@@ -44,6 +44,11 @@ class Case:
     group: str = ""
     sample: int | None = None
     redraw: Redraw | None = None
+
+    def with_overrides(self, overrides: Mapping[str, str]) -> Case:
+        """The case with values that take precedence over its own, in every draw."""
+        redraw = None if self.redraw is None else replace(self.redraw, fixed=overrides)
+        return replace(self, overrides={**self.overrides, **overrides}, redraw=redraw)
 
 
 @dataclass(frozen=True)
@@ -170,16 +175,19 @@ class Redraw:
         case: The parametrised case it is a sample of.
         index: The number of the sample.
         base: The seed of all samples.
+        fixed: Overrides that no draw changes.
     """
 
     variation: Variation
     case: Case
     index: int
     base: int
+    fixed: Mapping[str, str] = field(default_factory=dict[str, str])
 
-    def again(self, draw: int) -> Case:
+    def redrawn(self, draw: int) -> Case:
         """The sample as it is drawn next, by the number of the draw from 1."""
-        return self.variation._sample(self.case, self.index, self.base, draw)  # noqa: SLF001
+        drawn = self.variation._sample(self.case, self.index, self.base, draw)  # noqa: SLF001
+        return drawn.with_overrides(self.fixed)
 
 
 ONE_CASE = Variation()

@@ -12,9 +12,8 @@ import numpy as np
 from harness.core.pose_arrays import relative
 from harness.grading.bag.content import BagTopics
 from harness.grading.grade import grade_bag
-from harness.recording.link_poses import link_poses
+from harness.recording.link_poses import replayed_link_poses
 from harness.recording.store import read_run
-from harness.session.run_case import run_case
 from tests.grading.recordings import (
     GAZEBO_STARTED,
     POSES,
@@ -23,6 +22,7 @@ from tests.grading.recordings import (
     students_recording,
     transform,
 )
+from tests.running import run_case
 
 SCENARIO = """
 scenario: an arm turns next to a box
@@ -102,7 +102,7 @@ def frames_of(late):
     def change(recording, run):
         [placement] = [each for each in run.robot.placements if each.joint == "joint1"]
         names = {placement.parent, placement.link}
-        poses = link_poses(run.robot, run.signals.joint_positions, names)
+        poses = replayed_link_poses(run.robot, run.signals.joint_positions, names)
         count, end = len(run.signals.times), float(run.signals.times[-1])
         parent, child = (
             np.broadcast_to(poses[name], (count, 7)) for name in (placement.parent, placement.link)

@@ -6,8 +6,8 @@ distance between two origins, any contact with the gripper. It passes in every s
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from harness.recording.run import Run
 
 HEAD = """
 scenario: {title}
-robot: {{model: open_manipulator_x, base: {{xyz: [0, 0, 0.01]}}}}
+robot: {robot}
 world: {world}
 """
 RED_BOX = "  - {name: red_box, box: {size: [0.04, 0.04, 0.08]}, pose: {xyz: [0.25, 0, 0.041]}, "
@@ -42,11 +42,14 @@ class Scene:
         text: The scenario, but for its head and its expectations.
         naive: The check as it is often written, in words.
         says: The naive check on the recorded run.
-        expect: Our expectations, YAML; every one must be refuted. None in a scene in which a rule
-            must not refute anything.
+        expect: Our expectations, YAML; every one must be refuted. Empty where the naive check is
+            too strict, or where a rule must not refute anything.
         stays: Expectations that hold in the same run, so that nothing is refused wholesale.
         world: Its world.
         warned: Expectations that hold with a warning, and fail a strict run.
+        robot: Its robot.
+        files: Text of the files that it names.
+        truth: What happens, from poses and forces alone; it shares no code with the verdicts.
     """
 
     title: str
@@ -58,12 +61,20 @@ class Scene:
     stays: tuple[str, ...] = ()
     world: str = "empty"
     warned: tuple[str, ...] = ()
+    truth: Callable[[Run], bool] = lambda _: True
+    robot: str = "{model: open_manipulator_x, base: {xyz: [0, 0, 0.01]}}"
+    files: Mapping[str, str] = field(default_factory=dict)
 
     def scenario(self, folder_world: str) -> str:
         """The scenario file."""
         world = folder_world if self.world == "weightless" else self.world
         lines = "".join(f"  - {each}\n" for each in (*self.expect, *self.warned, *self.stays))
-        return HEAD.format(title=self.title, world=world) + self.text + "expect:\n" + lines
+        return (
+            HEAD.format(title=self.title, world=world, robot=self.robot)
+            + self.text
+            + "expect:\n"
+            + lines
+        )
 
 
 WEIGHTLESS = "world: weightless\nphysics: {gravity: [0, 0, 0]}\nobjects: []\n"

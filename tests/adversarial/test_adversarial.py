@@ -36,6 +36,7 @@ def run_of(tmp_path_factory):
 @pytest.mark.parametrize("scene", ALL_SCENES, ids=lambda scene: scene.title)
 def test_the_naive_check_is_fooled_and_the_harness_is_not(scene, run_of):
     result, run = run_of(scene)
+    assert scene.truth(run), f"it is not so: {scene.happens}"
     assert scene.says(run), f"the naive check would not be fooled: {scene.naive}"
     refuted, warned, kept = parts_of(scene, result)
     assert len(refuted) == len(scene.expect)

@@ -6,7 +6,7 @@ import pytest
 
 from harness.core.spatial import SE3
 from harness.recording.store import read_run
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 HEAD = """
 scenario: {title}

@@ -132,6 +132,11 @@ CASES = [
         ),
         "late",
     ),
+    (
+        Never(predicate=Collision(count_allowed=True)),
+        late(link_overlaps={("arm_link", "palm"): force(N, (20, 60), value=0.04)}),
+        "late",
+    ),
     (Never(predicate=Collision()), late(clearances={("robot", "box"): DISTANT}), "late"),
     (
         Clearance(between=("robot", "box"), at_least=0.01),
@@ -218,7 +223,11 @@ CASES = [
     ),
     (
         Until(predicate=On(object="box", support="Table"), until=Lifted(object="box", above=0.05)),
-        lift_run(leave=140, object_poses={"box": heights([0.02] * 140 + [0.12] * 60)}),
+        lift_run(
+            leave=140,
+            object_poses={"box": heights([0.02] * 140 + [0.12] * 60)},
+            tcp_pose=heights([0.05] * 140 + [0.15] * 60),
+        ),
         "",
     ),
 ]

@@ -13,6 +13,7 @@ POSE_WIDTH = 7
 COLUMNS = {
     POSE_WIDTH: ("x", "y", "z", "roll", "pitch", "yaw"),
     6: ("x", "y", "z", "force x", "force y", "force z"),
+    3: ("x", "y", "z"),
     2: ("shoulder", "finger"),
     1: ("",),
 }

@@ -154,6 +154,12 @@ def force(n, *spans, value=1.0):
     return values
 
 
+def pressed(force, place, direction):
+    """Contact point and normal force where there is a force, shape (n, 6)."""
+    rows = np.hstack([np.tile(place, (len(force), 1)), np.outer(force, direction)])
+    return np.where(force[:, None] > 0, rows, np.nan)
+
+
 def attachment(name, start, stop, *, represents=None, pose=None, link="palm"):
     """Attached over samples [start, stop)."""
     return AttachmentRecord(
@@ -167,7 +173,10 @@ def attachment(name, start, stop, *, represents=None, pose=None, link="palm"):
 
 
 def lift_run(n=200, *, grip=(50, 200), leave=100, height=0.1, value=2.0, **changes):
-    """A box on the table that is gripped, leaves the table, rises and moves with the hand."""
+    """A box on the table that is gripped, leaves the table, rises and moves with the hand.
+
+    Each finger carries nearly half of its weight by friction, from a little before it leaves.
+    """
     rise = np.zeros(n)
     rise[leave:] = np.minimum(np.arange(n - leave) * 0.002, height)
     forces = {
@@ -181,10 +190,11 @@ def lift_run(n=200, *, grip=(50, 200), leave=100, height=0.1, value=2.0, **chang
         "tcp_pose": heights(0.05 + rise),
         "contact_forces": forces,
         "presses": {
-            pair: np.where(
-                forces[pair][:, None] > 0, forces[pair][:, None] * (0, 0, 0, 0, sign, 0), np.nan
-            )
+            pair: pressed(forces[pair], (0, -0.02 * sign, 0), (0, sign, 0))
             for pair, sign in grips.items()
+        },
+        "frictions": {
+            pair: np.outer(force(n, (leave - 20, grip[1])), (0, 0, 0.48)) for pair in grips
         },
         "steps": (
             step("approach", 0, 40),

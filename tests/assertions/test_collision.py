@@ -1,5 +1,7 @@
 """Which contacts are collisions, and what a collision's verdict says."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -208,3 +210,92 @@ def test_objects_that_are_not_held_may_touch():
 def test_a_step_that_was_not_reached_has_no_collisions_to_be_proud_of():
     run = make_run(steps=(step("later", 200, 200, status="not_reached"),))
     assert verdict(run, NEVER, "later").status == "not reached"
+
+
+def held_down(newton, *, span=(100, 200), run=None, **changes):
+    """The box, held at the height of the table, with a force between the two."""
+    base = run or lift_run(leave=200, **changes)
+    forces = {**base.signals.contact_forces, ("Table", "box"): force(200, (0, 200), value=1.0)}
+    forces["Table", "box"][slice(*span)] = newton
+    return changed(base, contact_forces=forces)
+
+
+@pytest.mark.parametrize(("newton", "expected"), [(0.98, False), (2.9, False), (3.1, True)])
+def test_what_the_hand_holds_presses_with_twice_its_weight_and_a_newton_at_most(newton, expected):
+    run = held_down(newton)
+    assert collides(run) is expected
+    if expected:
+        assert "3.1 N over 50 ms, where weight and grip explain 3.0 N" in verdict(run, NEVER).reason
+
+
+def test_a_short_blow_is_judged_by_its_impulse():
+    assert not collides(held_down(5.0, span=(120, 121)))
+    assert collides(held_down(40.0, span=(120, 121)))
+
+
+def test_the_grip_explains_more_while_the_gripper_moves():
+    efforts = np.tile([0.0, 20.0], (200, 1))  # the gap changes by 2 m a metre: 10 N on each side
+    gripping = (step("close", 39, 200, "gripper"),)
+    assert collides(held_down(20.0, joint_efforts=efforts))
+    assert not collides(held_down(20.0, joint_efforts=efforts, steps=gripping))
+    assert collides(held_down(24.0, joint_efforts=efforts, steps=gripping))
+
+
+def test_a_link_of_the_hand_presses_with_its_grip_and_the_weight_at_most():
+    efforts = np.tile([0.0, 20.0], (200, 1))
+    run = lift_run(joint_efforts=efforts)
+    assert not collides(touching("palm", "box", (90, 200), run=run, value=20.0))
+    rammed = touching("palm", "box", (90, 200), run=run, value=24.0)
+    assert collides(rammed)
+    assert "where weight and grip explain 23.0 N" in verdict(rammed, NEVER).reason
+
+
+@pytest.mark.parametrize(("distance", "expected"), [(0.019, False), (0.021, True)])
+def test_a_held_object_that_is_dragged_along_a_table_is_a_collision(distance, expected):
+    aside = np.tile([0.0, 0, 0.02, 1, 0, 0, 0], (200, 1))
+    aside[100:, 1] = np.linspace(0, distance, 100)
+    run = held_down(0.98, object_poses={"box": aside}, tcp_pose=aside)
+    assert collides(run) is expected
+    if expected:
+        assert "dragged along it by 21.0 mm" in verdict(run, NEVER).reason
+
+
+def test_what_rests_on_a_held_object_weighs_too():
+    run = held_down(3.9)
+    top = thing("top", mass=0.05)
+    poses = {**run.signals.object_poses, "top": run.signals.object_poses["box"] + 0.0}
+    poses["top"][:, 2] += 0.04
+    forces = {**run.signals.contact_forces, ("box", "top"): force(200, (0, 200), value=0.49)}
+    loaded = changed(
+        replace(run, objects=(*run.objects, top)), object_poses=poses, contact_forces=forces
+    )
+    assert collides(run)
+    assert not collides(loaded)
+
+
+def test_a_welded_object_is_held_though_no_finger_touches_it():
+    weld = step("grasp", 39, 80, "grasp", result={"mode": "weld", "attached": "box"})
+    hits = {("box", "wall"): force(200, (120, 140))}
+    for mode, expected in (("weld", True), ("friction", False)):
+        grasp = replace(weld, result={**weld.result, "mode": mode})
+        run = make_run(
+            objects=(TABLE, BOX, WALL),
+            steps=(grasp,),
+            attachments=[attachment("box", 60, 200)],
+            contact_forces=hits,
+        )
+        assert collides(run) is expected
+
+
+def test_links_inside_each_other_that_the_srdf_excludes_count_where_allowed_pairs_do():
+    depth = force(200, (50, 80), value=0.04)
+    run = make_run(
+        link_overlaps={("arm_link", "palm"): depth}, allowed_contacts=(("arm_link", "palm"),)
+    )
+    strict = Never(predicate=Collision(count_allowed=True))
+    assert not collides(run)
+    answer = verdict(run, strict)
+    assert (answer.status, answer.margin, answer.unit) == ("failed", -0.04, "m")
+    assert "arm_link and palm are up to 40.0 mm inside each other from t=0.500 s" in answer.reason
+    elsewhere = Never(predicate=Collision(between=("palm", "box"), count_allowed=True))
+    assert not collides(run, elsewhere)

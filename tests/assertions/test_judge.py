@@ -5,10 +5,10 @@ import sys
 
 import pytest
 
+from harness.assertions.expectation_text import describe
 from harness.assertions.judge import judge
 from harness.assertions.observations import merged
 from harness.assertions.placed import PlacedExpectation
-from harness.assertions.wording import describe
 from harness.expectations.always import Always
 from harness.expectations.clearance import Clearance
 from harness.expectations.collision import Collision

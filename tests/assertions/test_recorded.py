@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from harness.assertions.recorded import guarded
+from harness.assertions.recorded import guard_unrecorded
 from harness.assertions.window import NotObservable
 from harness.expectations.fraction import FractionCheck
 from harness.expectations.gripper import GripperState
@@ -34,20 +34,20 @@ READINGS = {
 
 @pytest.mark.parametrize("reading", READINGS.values(), ids=READINGS)
 def test_attachments_that_were_not_recorded_cannot_be_read_as_none(reading):
-    run = guarded(replace(lift_run(), unrecorded=("attachments",)))
+    run = guard_unrecorded(replace(lift_run(), unrecorded=("attachments",)))
     with pytest.raises(NotObservable, match="what the planning scene attached was not recorded"):
         reading(run.attachments)
 
 
 def test_attachments_that_were_recorded_are_read_as_they_are():
     run = replace(lift_run(), unrecorded=("contact_forces",))
-    assert guarded(run).attachments == run.attachments
+    assert guard_unrecorded(run).attachments == run.attachments
 
 
 @pytest.mark.parametrize("name", ["contact_forces", "clearances", "joint_velocities"])
 def test_a_signal_that_was_not_recorded_cannot_be_read(name):
     with pytest.raises(NotObservable, match="were not recorded"):
-        getattr(guarded(replace(lift_run(), unrecorded=(name,))).signals, name)
+        getattr(guard_unrecorded(replace(lift_run(), unrecorded=(name,))).signals, name)
 
 
 @pytest.mark.parametrize("expectation", [FractionCheck(), GripperState(stalled=True)])

@@ -11,7 +11,7 @@ from harness.bench.results import document
 from harness.bench.trial import even, length, smoothness
 from harness.cli.main import main
 from harness.recording.store import read_run
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 PLANNERS = ["RRTConnect", "BKPIECE"]
 SCENARIO = """\

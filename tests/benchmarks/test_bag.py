@@ -8,7 +8,7 @@ import pytest
 
 from harness.recording.store import read_run
 from harness.reporting.rosbag.write import BagOptions, write_bag
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 GOAL = 20
 REPETITIONS = 3

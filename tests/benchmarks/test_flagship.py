@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from harness.core.resources import data_folder
-from harness.session.run_case import run_case
 from harness.simulation import mujoco_simulator
 from harness.simulation.recording import Recording
+from tests.running import run_case
 
 FLAGSHIP = data_folder("scenarios") / "lessons/03_ur_sixteen_steps.scenario.yaml"
 PARTS = ("compile", "plan", "simulate", "judge", "write")

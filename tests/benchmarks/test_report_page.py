@@ -9,8 +9,8 @@ import pytest
 from harness.core.resources import data_folder
 from harness.recording.store import StoredRun, read_run
 from harness.reporting.html.write import write_page
-from harness.session.run_case import run_case
 from tests.assertions.synthetic_run import lift_run
+from tests.running import run_case
 
 FLAGSHIP = data_folder("scenarios") / "lessons/03_ur_sixteen_steps.scenario.yaml"
 REPETITIONS = 5

@@ -19,8 +19,8 @@ import pytest
 
 from harness.core.resources import data_folder
 from harness.suite.cases import run_here
-from harness.suite.plan import RunRequest, planned_cases
-from harness.suite.suite_run import How, SuiteRun
+from harness.suite.plan import SuiteRequest, planned_cases
+from harness.suite.suite_run import SuiteOptions, SuiteRun
 from harness.suite.warm import Ended, WarmServer
 
 pytestmark = pytest.mark.benchmark
@@ -40,7 +40,7 @@ randomize:
 
 
 def suite_of(file, **words):
-    return SuiteRun(planned_cases([file], RunRequest()), How(**words))
+    return SuiteRun(planned_cases([file], SuiteRequest()), SuiteOptions(**words))
 
 
 def picks(folder, count):
@@ -116,7 +116,7 @@ def test_what_a_second_core_gives(tmp_path, print_row):
 def test_what_isolation_costs_a_scenario(tmp_path, print_row):
     count = 60
     file = blinks(tmp_path, count)
-    jobs = [each.job for each in planned_cases([file], RunRequest())]
+    jobs = [each.job for each in planned_cases([file], SuiteRequest())]
     next(run_here(jobs[:1]))  # imports
     wall, processor = ({"nothing": [], "here": [], "apart": []} for _ in range(2))
     with open_server() as server:
@@ -128,7 +128,7 @@ def test_what_isolation_costs_a_scenario(tmp_path, print_row):
             processor[name].append(used(server) - used_before)
 
         for job in jobs:
-            suite = SuiteRun(planned_cases([file], RunRequest(cases=[job.case])), How())
+            suite = SuiteRun(planned_cases([file], SuiteRequest(cases=[job.case])), SuiteOptions())
             measure("nothing", lambda: in_own_process(server))
             measure("here", lambda job=job: list(run_here([job])))
             measure("apart", lambda suite=suite: suite.collect(server))

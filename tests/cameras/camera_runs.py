@@ -16,7 +16,7 @@ from harness.core.spatial import SE3
 from harness.language.cameras import looking_at
 from harness.language.markers import MarkerSpec
 from harness.language.scenario import RobotSpec
-from harness.recording.looks import Look, merged
+from harness.recording.looks import Look, merged_looks
 from harness.robot.load import load_robot
 from harness.world.markers import plate, printed
 from tests.assertions.synthetic_run import make_run
@@ -69,7 +69,7 @@ def run_with(cameras, objects, n=2, poses=None, seed=7, description=None, **opti
 
 def pictures(run, objects, *looks, description=None):
     """The run with some pictures taken."""
-    captures, files = take_pictures(description or robot(), objects, run, merged(looks))
+    captures, files = take_pictures(description or robot(), objects, run, merged_looks(looks))
     return replace(run, captures=captures, files=files)
 
 

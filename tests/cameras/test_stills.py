@@ -11,12 +11,12 @@ import pinocchio as pin
 import pytest
 
 from harness.cameras.picture_model import build_picture_model
-from harness.cameras.recorded_scene import poses_at
+from harness.cameras.recorded_scene import scene_poses
 from harness.cameras.renderer import make_renderer
-from harness.cameras.robot_poses import link_poses
 from harness.cameras.stills import overview, save_stills
 from harness.cameras.viewpoint import fit_viewpoint
 from harness.core.geometry import Mesh, Shape
+from harness.robot.forward_kinematics import robot_poses
 from tests.cameras.recorded_runs import IMAGINED, OBJECTS, RED_BOX, a_run
 
 SIZE = 640, 480
@@ -26,7 +26,7 @@ def draw(description, run, sample, backend):
     picture = build_picture_model(
         description, OBJECTS, floor_height=0.0, width=SIZE[0], height=SIZE[1]
     )
-    picture.pose(poses_at(description, OBJECTS, run, sample))
+    picture.pose(scene_poses(description, OBJECTS, run, sample))
     try:
         renderer = make_renderer(picture, *SIZE, backend)
     except RuntimeError as error:
@@ -138,7 +138,7 @@ def test_link_poses_are_those_of_pinocchio(ur3e):
         else:
             q[joint.idx_q] = position
     pin.framesForwardKinematics(model, data, q)
-    poses = link_poses(ur3e, positions)
+    poses = robot_poses(ur3e, positions)
     for link in ur3e.link_names:
         expected = data.oMf[model.getFrameId(link)]
         np.testing.assert_allclose(poses[link].translation, expected.translation, atol=1e-9)
@@ -148,9 +148,9 @@ def test_link_poses_are_those_of_pinocchio(ur3e):
 def test_an_object_of_the_planner_alone_is_drawn_where_it_is_believed(ur3e):
     run = a_run(ur3e)
     start = IMAGINED.pose.translation
-    np.testing.assert_allclose(poses_at(ur3e, OBJECTS, run, 0)["imagined"].translation, start)
-    assert "imagined" not in poses_at(ur3e, OBJECTS, run, 2)
-    carried = poses_at(ur3e, OBJECTS, run, 3)
+    np.testing.assert_allclose(scene_poses(ur3e, OBJECTS, run, 0)["imagined"].translation, start)
+    assert "imagined" not in scene_poses(ur3e, OBJECTS, run, 2)
+    carried = scene_poses(ur3e, OBJECTS, run, 3)
     np.testing.assert_allclose(carried["imagined"].translation, np.add(start, (0, 0, 0.5)))
     assert "red_box" not in carried
 
@@ -169,7 +169,7 @@ def test_of_steps_at_one_moment_each_shows_what_was_there_after_it(ur3e):
         )
     )
     run = replace(run, steps=(motion, adding, removing))
-    shown = ["imagined" in poses_at(ur3e, OBJECTS, run, 1, step) for step in run.steps]
+    shown = ["imagined" in scene_poses(ur3e, OBJECTS, run, 1, step) for step in run.steps]
     assert shown == [False, True, False]
 
 

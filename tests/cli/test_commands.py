@@ -12,7 +12,7 @@ from harness.cli.main import main
 from harness.core.spatial import xyzw_from_wxyz
 from harness.language.step import STEPS
 from harness.recording.store import read_run
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 HEAVY = (
     "pydantic",

@@ -12,8 +12,8 @@ from harness.recording.run import Verdict
 from harness.recording.scenario_lines import MOST, line_changes
 from harness.recording.store import StoredRun
 from harness.reporting.comparison import comparison_lines
-from harness.session.run_case import run_case
 from tests.assertions.synthetic_run import ROBOT, make_run
+from tests.running import run_case
 
 PICK = Path(__file__).parents[2] / "scenarios/lessons/04_ur_pick_by_friction.scenario.yaml"
 

@@ -8,7 +8,7 @@ import yaml
 
 from harness.cli.main import main
 from harness.language.scenario import RobotSpec
-from harness.planning.collision.pair_statistics import random_positions
+from harness.planning.collision.pair_statistics import sample_robot_positions
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.load import load_robot
 from tests.robot.arm_files import load_arm
@@ -62,7 +62,7 @@ def test_the_folder_is_the_same_robot(folder, capsys):
     assert ours.gripper.widths == pytest.approx(theirs.gripper.widths)
     assert ours.gripper.grip_effort == pytest.approx(theirs.gripper.grip_effort)
     assert ours.gripper.sides == theirs.gripper.sides
-    rows = random_positions(theirs, 5, np.random.default_rng(2))
+    rows = sample_robot_positions(theirs, 5, np.random.default_rng(2))
     links = theirs.link_names
     poses = [PinocchioKinematics(each).link_poses(rows, links) for each in (ours, theirs)]
     assert poses[0] == pytest.approx(poses[1], abs=1e-12)

@@ -11,7 +11,7 @@ import pytest
 from harness.cli.main import main
 from harness.core.resources import data_folder
 from harness.core.spatial import SE3
-from harness.planning.collision.pair_statistics import random_positions, self_touches
+from harness.planning.collision.pair_statistics import sample_robot_positions, self_touches
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.description import Inertial
 from harness.robot.srdf.srdf import parse_srdf
@@ -66,7 +66,7 @@ def test_the_same_seed_says_the_same_and_another_differs(capsys):
 def test_rates_are_those_that_another_checker_finds():
     ours = robot(model="ur5e")
     theirs = Arm(ours)
-    positions = random_positions(ours, 200, np.random.default_rng(5))
+    positions = sample_robot_positions(ours, 200, np.random.default_rng(5))
     touching = [
         theirs.touching(dict(zip(ours.joint_names, row, strict=True))) is not None
         for row in positions
@@ -146,7 +146,7 @@ def test_a_model_that_differs_in_physics_would_be_found(folder):
         else link
         for link in ours.links
     )
-    rows = random_positions(ours, 5, np.random.default_rng(1))
+    rows = sample_robot_positions(ours, 5, np.random.default_rng(1))
     kinematics = PinocchioKinematics(ours)
     assert robot_findings.forward_kinematics(ours, kinematics, rows).is_good
     moved = robot_findings.forward_kinematics(replace(ours, joints=shifted), kinematics, rows)
@@ -259,7 +259,7 @@ def test_a_picture_is_drawn_on_request(folder, capsys):
         (["check", "ur3f"], "robot.model: 'ur3f' is not known; did you mean 'ur3'? known are"),
         (["check", "harm.urdf"], "there is no file harm.urdf; did you mean 'arm.urdf'?"),
         (["check", "arm.urdf", "--srdf", "a.srdf"], "robot.srdf: there is no file a.srdf"),
-        (["check", "ur3e", "--srdf", "arm.srdf"], "robot.srdf requires a robot's file"),
+        (["check", "ur3e", "--srdf", "arm.srdf"], "robot.srdf: it requires a robot's file"),
         (["check", "arm.urdf", "--write-srdf", "arm.srdf"], "'arm.srdf' is there already; --force"),
         (["check", "arm.urdf", "--image", "arm.gif"], "in .png or .jpg or .jpeg, not 'arm.gif'"),
         (["show", "arm.urdf", "--state", "hom"], "there is no state 'hom'; there are no states"),

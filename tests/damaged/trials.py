@@ -20,7 +20,6 @@ import numpy as np
 from harness.core.resources import data_folder
 from harness.recording.store import read_run
 from harness.reporting.rosbag.write import BagOptions, write_bag
-from harness.session.run_case import run_case
 from tests.damaged.front_door import assert_ends_well
 from tests.damaged.mutants import (
     damaged_arrays,
@@ -29,6 +28,7 @@ from tests.damaged.mutants import (
     damaged_text,
     npz_bytes,
 )
+from tests.running import run_case
 
 TINY = """\
 scenario: a tiny run

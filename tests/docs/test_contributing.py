@@ -23,7 +23,7 @@ FOLDERS = ("harness", "docs", "tests", "scenarios", "robots", "worlds")
 
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory):
-    """A copy of the repository with the files and rows of both examples."""
+    """A copy of the repository with the files and rows of every example."""
     copy = tmp_path_factory.mktemp("clone")
     for name in FOLDERS:
         shutil.copytree(ROOT / name, copy / name, ignore=shutil.ignore_patterns("__pycache__"))
@@ -65,7 +65,7 @@ def commands(section):
     return [line for block in COMMANDS.findall(SECTIONS[section]) for line in block.splitlines()]
 
 
-@pytest.mark.parametrize("section", ["Add a step", "Add an expectation"])
+@pytest.mark.parametrize("section", ["Add a step", "Add an expectation", "Add a planner"])
 def test_a_worked_example_runs(tree, section):
     printed = [carry_out(tree, command) for command in commands(section)]
     assert "passed" in printed[-1]
@@ -79,6 +79,10 @@ def test_what_was_added_reaches_every_output(tree):
     schema = (tree / "scenarios/scenario.schema.json").read_text(encoding="utf-8")
     assert '"turn_joint"' in schema
     assert '"tcp_height"' in schema
+    assert '"detour"' in schema
+    assert "detour armharness Two straight lines" in " ".join(
+        carry_out(tree, ".venv/bin/harness list pipelines").split()
+    )
     steps = (tree / "docs/reference/steps.md").read_text(encoding="utf-8")
     assert "| `by` | an angle [rad] | required | The joint turns by this angle [rad]. |" in steps
     expectations = (tree / "docs/reference/expectations.md").read_text(encoding="utf-8")

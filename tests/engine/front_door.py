@@ -4,7 +4,7 @@ import textwrap
 
 from harness.recording.store import read_run
 from harness.session.check import check_file
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 UR = "{model: ur3e, gripper: rh_p12_rn_a, base: {xyz: [0, 0, 1.02]}}"
 TABLE_TOP = 1.015

@@ -7,8 +7,8 @@ import pytest
 from harness.recording.store import read_run
 from harness.session.check import check_file
 from harness.session.rejudge import judge_run
-from harness.session.run_case import run_case
 from tests.engine.front_door import file_of, problems, run
+from tests.running import run_case
 
 BLOCKS = Path(__file__).parents[2] / "scenarios/blocks/repeat_parallel_include.scenario.yaml"
 UP = "move_relative: {direction: {xyz: [0, 0, 1]}, distance: 0.02}"

@@ -6,7 +6,7 @@ import pytest
 
 from harness.recording.store import read_run
 from harness.session.check import check_file
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 CUBE = "box: {size: [10 cm, 10 cm, 10 cm]}, mass: 1"
 SCENES = {

@@ -3,8 +3,8 @@
 import pytest
 
 from harness.session.check import check_file
-from harness.session.run_case import run_case
 from tests.robot.arm_files import INERTIAL, SRDF, URDF, write_arm
+from tests.running import run_case
 
 BOX = "box: {size: [0.1, 0.1, 0.1]}, pose: {xyz: [0.5, 0, 0.5]}"
 

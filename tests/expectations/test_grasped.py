@@ -21,6 +21,7 @@ from tests.assertions.synthetic_run import (
     heights,
     lift_run,
     make_run,
+    pressed,
     thing,
     verdict,
 )
@@ -100,3 +101,48 @@ def test_a_robot_without_a_gripper_grasps_nothing():
     for spec in (Grasped(object="box"), Lifted(object="box"), GripperState(position=0.0)):
         assert verdict(run, spec).status == "not observable"
     assert verdict(run, Grasped(object="nothing")).status == "not observable"
+
+
+def presses(left, right, n=200, span=(50, 200)):
+    """Contact points and forces of both fingers, each (place, force)."""
+    sides = {("left_finger", "box"): left, ("right_finger", "box"): right}
+    return {pair: pressed(force(n, span), *press) for pair, press in sides.items()}
+
+
+def test_fingers_that_press_from_the_same_side_hold_nothing():
+    down = presses(((0, -0.02, 0), (0, 0, -1)), ((0, 0.02, 0), (0, 0, -1)))
+    answer = verdict(lift_run(presses=down), Grasped(object="box"))
+    assert answer.status == "failed"
+    assert "not between the fingers, they press it from the same side" in answer.reason
+
+
+def test_the_gap_is_measured_where_the_fingers_touch():
+    """Not by the table of the gripper, which may be that of other parts of the fingers."""
+    narrow = replace(ROBOT, gripper=replace(ROBOT.gripper, widths=((0.0, 0.0), (0.03, 0.01))))
+    run = replace(lift_run(), robot=narrow)
+    assert verdict(run, Grasped(object="box")).status == "passed"
+    near = presses(((0, -0.01, 0), (0, 1, 0)), ((0, 0.01, 0), (0, -1, 0)))
+    answer = verdict(lift_run(presses=near), Grasped(object="box"))
+    assert answer.status == "failed"
+    assert "at places 20.0 mm apart, and it is 40.0 mm thick" in answer.reason
+
+
+@pytest.mark.parametrize(("commanded", "status"), [(0.02, "failed"), (0.0, "passed")])
+def test_what_lies_on_fingers_is_grasped_only_if_they_close(commanded, status):
+    slanted = presses(((0, -0.02, 0), (0, 0.8, 0.6)), ((0, 0.02, 0), (0, -0.8, 0.6)))
+    commands = np.tile([0.0, commanded], (200, 1))
+    run = lift_run(presses=slanted, joint_commands=commands)
+    answer = verdict(run, Grasped(object="box"))
+    assert answer.status == status
+    if status == "failed":
+        assert "it lies on them and they do not close" in answer.reason
+        assert verdict(run, Lifted(object="box", above=0.05)).status == "failed"
+        assert verdict(run, Lifted(object="box", above=0.05, cradled=True)).status == "passed"
+
+
+@pytest.mark.parametrize(("samples", "status"), [(9, "failed"), (12, "passed")])
+def test_a_grasp_lasts_for_a_tenth_of_a_second(samples, status):
+    run = lift_run(grip=(200 - samples, 200), leave=200)
+    answer = verdict(run, Grasped(object="box"))
+    assert answer.status == status
+    assert (answer.status == "passed") or "held for 0.08000 s of 0.1000 s" in answer.reason

@@ -77,7 +77,9 @@ def test_height_without_the_fingers_alone_is_not_lifting(forces, said):
 def test_an_object_put_on_a_shelf_by_a_step_starts_there():
     z = np.full(200, 0.02)
     z[50:] = 0.52
-    run = lift_run(object_poses={"box": heights(z)})
+    run = lift_run(
+        object_poses={"box": heights(z)}, tcp_pose=heights(z + 0.03), grip=(40, 200), leave=50
+    )
     teleported = make_run(
         object_poses={"box": heights(z)},
         contact_forces=run.signals.contact_forces,
@@ -134,3 +136,34 @@ def test_contact_that_flickers_for_less_than_the_debounce_is_one_contact():
         flickering = changed(run, times=fine, contact_forces={**forces, ("Table", "box"): table})
         spec = Lifted(object="box", above=0.05, **{"for": 0.9})
         assert verdict(flickering, spec).status == status
+
+
+def test_a_hand_that_carries_less_than_half_of_the_weight_lifts_nothing():
+    pairs = [("left_finger", "box"), ("right_finger", "box")]
+    for newton, status in ((0.25, "passed"), (0.24, "failed")):
+        frictions = {pair: np.tile([0, 0, newton], (200, 1)) for pair in pairs}
+        answer = verdict(lift_run(frictions=frictions), Lifted(object="box", above=0.05))
+        assert answer.status == status
+    assert "the hand carries 0.5 N of 1.0 N" in answer.reason
+    older = verdict(lift_run(frictions={}), Lifted(object="box", above=0.05))
+    assert older.status == "passed", "friction was not recorded"
+
+
+def test_height_that_the_hand_did_not_give_does_not_count():
+    caught = lift_run(grip=(150, 200), leave=50)
+    answer = verdict(caught, Lifted(object="box", above=0.05))
+    assert (answer.status, answer.margin) == ("failed", pytest.approx(-0.05))
+    later = lift_run(grip=(90, 200), leave=50)
+    answer = verdict(later, Lifted(object="box", above=0.05))
+    assert (answer.status, answer.margin) == ("failed", pytest.approx(-0.03)), "from sample 90 on"
+    assert "the hand raised it by 20.0 mm" in answer.reason, answer
+
+
+def test_an_object_that_moves_through_the_hand_is_not_lifted():
+    run = lift_run()
+    sliding = run.signals.object_poses["box"].copy()
+    sliding[100:, 0] = 0.06 * np.arange(100) * 0.01  # 60 mm/s
+    spec = Lifted(object="box", above=0.05, during="lift")
+    assert verdict(changed(run, object_poses={"box": sliding}), spec).status == "failed"
+    sliding[100:, 0] /= 1.5  # 40 mm/s
+    assert verdict(changed(run, object_poses={"box": sliding}), spec).status == "passed"

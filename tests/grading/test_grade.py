@@ -22,11 +22,10 @@ from harness.core.resources import data_folder
 from harness.grading.bag import reader, storage
 from harness.grading.bag.content import BagTopics
 from harness.grading.grade import grade_bag, graded
-from harness.recording.link_poses import link_poses
+from harness.recording.link_poses import replayed_link_poses
 from harness.recording.run import Signals, Verdict
 from harness.recording.store import read_run
 from harness.reporting.rosbag.write import BagOptions, write_bag
-from harness.session.run_case import run_case
 from tests.grading.recordings import (
     GAZEBO_STARTED,
     POSES,
@@ -40,6 +39,7 @@ from tests.grading.recordings import (
     transform,
     vector,
 )
+from tests.running import run_case
 
 SCENARIO = data_folder("scenarios") / "grading/pick_and_place.scenario.yaml"
 GAZEBO = BagTopics(objects=(POSES,))
@@ -389,7 +389,9 @@ def test_frames_that_contradict_the_joint_states_are_noticed(
     """A frame of a joint as it was half a second ago is no frame of now; 20 ms ago it may be."""
     run = stored.run
     (placement,) = [each for each in run.robot.placements if each.joint == "shoulder_pan_joint"]
-    poses = link_poses(run.robot, run.signals.joint_positions, {placement.parent, placement.link})
+    poses = replayed_link_poses(
+        run.robot, run.signals.joint_positions, {placement.parent, placement.link}
+    )
     parent, child = (
         np.broadcast_to(poses[name], (len(run.signals.times), 7))
         for name in (placement.parent, placement.link)
@@ -750,7 +752,7 @@ def test_a_gripper_alone_is_graded_from_joint_states_and_from_frames(gripper_run
     columns = {joint.name: i for i, joint in enumerate(gripper_run.robot.joints)}
     hand = {gripper_run.robot.gripper.joint: columns[gripper_run.robot.gripper.joint]}
     times = gripper_run.signals.times
-    poses = link_poses(gripper_run.robot, gripper_run.signals.joint_positions)
+    poses = replayed_link_poses(gripper_run.robot, gripper_run.signals.joint_positions)
     joints, frames = Recording(), Recording()
     for row in range(0, len(times), 20):
         state = joint_state(gripper_run.signals, row, hand)

@@ -10,14 +10,20 @@ import pytest
 
 from harness.core.spatial import SE3, rotation_from_rpy
 from harness.iktest.calls import call, read_answers
-from harness.iktest.contract import WORDS, UnusableSolver, arguments_of, parameter_words, task_of
+from harness.iktest.contract import (
+    WORDS,
+    UnusableSolver,
+    call_arguments,
+    parameter_words,
+    task_of_parameters,
+)
 from harness.iktest.find_function import find_function
 
 TARGET = SE3(rotation_from_rpy((0.3, -0.2, 1.1)), np.array([0.3, -0.1, 0.2]))
 
 
 def test_every_word_says_the_same_target():
-    values = arguments_of(tuple(WORDS), TARGET, np.array([0.5, 0.25]))
+    values = call_arguments(tuple(WORDS), TARGET, np.array([0.5, 0.25]))
     assert (
         [values["x"], values["y"], values["z"]] == values["position"].tolist() == [0.3, -0.1, 0.2]
     )
@@ -33,14 +39,14 @@ def test_every_word_says_the_same_target():
     assert values["matrix"][:3, 3].tolist() == [0.3, -0.1, 0.2]
     assert values["seed"].tolist() == [0.5, 0.25]
     down = SE3(rotation_from_rpy((0, 0.4, 0.9)), np.zeros(3))
-    assert arguments_of(("pitch",), down, np.zeros(1))["pitch"] == pytest.approx(0.4)
+    assert call_arguments(("pitch",), down, np.zeros(1))["pitch"] == pytest.approx(0.4)
 
 
 def test_parameters_say_what_is_requested():
-    assert task_of(parameter_words(lambda x, y, z: None)) == "position"
-    assert task_of(parameter_words(lambda position, pitch: None)) == "position and pitch"
-    assert task_of(parameter_words(lambda position, quat_xyzw: None)) == "pose"
-    assert task_of(parameter_words(lambda matrix, seed: None)) == "pose"
+    assert task_of_parameters(parameter_words(lambda x, y, z: None)) == "position"
+    assert task_of_parameters(parameter_words(lambda position, pitch: None)) == "position and pitch"
+    assert task_of_parameters(parameter_words(lambda position, quat_xyzw: None)) == "pose"
+    assert task_of_parameters(parameter_words(lambda matrix, seed: None)) == "pose"
     assert parameter_words(lambda pose, elbow=1, *, iterations=5: None) == ("pose",)
 
 

@@ -10,7 +10,7 @@ from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.ports import PoseGoal
 from harness.robot.chain import Chain
 from harness.robot_tools.builtin_ik import own_solver
-from harness.robot_tools.robot_source import RobotSource, load
+from harness.robot_tools.robot_source import RobotSource, load_source
 
 
 @pytest.mark.parametrize("robot", ["open_manipulator_x", "ur3e", "ur5e"])
@@ -26,8 +26,8 @@ def test_a_tool_attached_to_a_gripper_is_solved_too():
 def test_the_numeric_solver_never_answers_wrongly():
     """It may find nothing near a singularity; what it answers is right, inside limits, the same."""
     robot = RobotSource("ur3e")
-    description = replace(load(robot), ik_solver="numeric")
-    kinematics, chain = PinocchioKinematics(description), Chain.of(load(robot))
+    description = replace(load_source(robot), ik_solver="numeric")
+    kinematics, chain = PinocchioKinematics(description), Chain.of(load_source(robot))
 
     def numeric(matrix, seed):
         goal = PoseGoal(chain.link, SE3.from_matrix(matrix))

@@ -22,7 +22,7 @@ def test_ten_mistakes_give_ten_located_problems_at_once():
     assert found == [
         (2, 22, "unknown key `griper`"),
         (3, 7, "`seed` must be at least 0, not `-1`"),
-        (4, 46, "`pipeline` cannot be `omlp`"),
+        (4, 46, "there is no planning pipeline `omlp`"),
         (6, 5, "no verb is called `move_too`"),
         (8, 5, "a step has one verb; this one has `gripper` and `move_to`"),
         (9, 11, "`120 milimeter`: no unit is called `milimeter`"),

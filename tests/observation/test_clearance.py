@@ -9,8 +9,8 @@ from harness.core.geometry import Box, Cylinder, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.observation.clearance import CoalClearance
 from harness.observation.sampled_clearance import LARGEST_ERROR
-from harness.planning.model.forward_kinematics import LinkPoses, quats_wxyz
 from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
+from harness.robot.forward_kinematics import LinkPoses, quats_wxyz
 from tests.planning.lesson import TCP, Cell, at, boxes, tables, thing, ur
 
 CUTOFF = 0.15

@@ -13,10 +13,10 @@ from docs import ROOT
 from harness.cli.main import main
 from harness.language.reading.load import load_scenario
 from harness.language.scenario import RobotSpec
-from harness.planning.collision.pair_statistics import random_positions, self_touches
+from harness.planning.collision.pair_statistics import sample_robot_positions, self_touches
 from harness.recording.store import read_run
 from harness.robot.load import load_robot
-from harness.robot_tools.robot_source import RobotSource, load
+from harness.robot_tools.robot_source import RobotSource, load_source
 
 pytestmark = pytest.mark.packages
 
@@ -111,9 +111,9 @@ def test_the_run_really_lifted_the_box_between_the_fingers(walked):
 def test_the_proposed_pairs_leave_nothing_that_the_real_srdf_would_check_and_that_touches(walked):
     """Random configurations that the package's SRDF calls free are so under the proposal."""
     words = re.findall(r"package://\S+panda\.(?:urdf|srdf)", PAGE)
-    theirs = load(RobotSource(words[0], srdf=words[1]))
-    ours = load(RobotSource(words[0], srdf=str(walked[0] / "panda.srdf")))
-    rows = random_positions(theirs, 1000, np.random.default_rng(11))
+    theirs = load_source(RobotSource(words[0], srdf=words[1]))
+    ours = load_source(RobotSource(words[0], srdf=str(walked[0] / "panda.srdf")))
+    rows = sample_robot_positions(theirs, 1000, np.random.default_rng(11))
     index = [theirs.joint_index[name] for name in ours.joint_names]
     mine = self_touches(ours, rows[:, index]).is_free
     free = self_touches(theirs, rows).is_free

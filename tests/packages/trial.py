@@ -16,9 +16,9 @@ from harness.planning.backend import make_planning
 from harness.robot.description import RobotDescription
 from harness.robot.find_file import find_file
 from harness.robot.load import load_robot
-from harness.session.run_case import run_case
 from harness.simulation.servo import bare_robot
 from tests.packages.arms import PackageArm
+from tests.running import run_case
 
 MOST_STATES = 10
 """Random free states of which one has to be reached: not all can be, from where the arm stands."""

@@ -12,7 +12,7 @@ from harness.planning.ik.numeric import (
     RESTARTS,
     LinkTask,
     pitch_of,
-    random_positions,
+    sample_group_positions,
 )
 from harness.planning.ik.numeric import solve_numeric as solve
 from harness.planning.model.robot_model import GroupSpace, RobotModel
@@ -71,7 +71,7 @@ def measure(model: str, kind: str, poses: int) -> Success:
     found = [0] * len(ATTEMPTS)
     residual = 0.0
     for number in range(poses):
-        goal = _goal(kind, space, description.tcp_link, random_positions(space, rng))
+        goal = _goal(kind, space, description.tcp_link, sample_group_positions(space, rng))
         for place, restarts in enumerate(ATTEMPTS):
             solutions = solve(
                 space,

@@ -3,6 +3,7 @@
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.model.robot_model import GroupSpace
 from harness.planning.search.search import Search, search
+from harness.ports import PlanningOptions
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, boxes, ur
 
 RESOLUTION = 1 / 16
@@ -22,14 +23,13 @@ class Trial:
 
     def search(self, name, seed=5, budget=3000, goals=None, **parameters) -> Search:
         return search(
-            name,
+            PlanningOptions(planner_id=name, parameters=parameters),
             self.checker(),
             self.start,
             [self.goal] if goals is None else goals,
             resolution=RESOLUTION,
             max_state_checks=budget,
             seed=seed,
-            parameters=parameters,
         )
 
 

@@ -86,8 +86,8 @@ def test_about_a_centre_the_shorter_arc_is_taken(cell):
     end = moved(center, 0.05 * np.cos(2.0), 0.05 * np.sin(2.0), 0)  # 1.14 rad from the start
     goal = PositionGoal(TCP, end)
     plan = cell.planner.plan_circular(ARM, cell.state, goal, ArcPoint("center", center), FAST)
-    assert plan.explanation["sweep"] == pytest.approx(np.pi - 2.0)
-    assert plan.explanation["radius"] == pytest.approx(0.05)
+    assert plan.explanation.plain()["sweep"] == pytest.approx(np.pi - 2.0)
+    assert plan.explanation.plain()["radius"] == pytest.approx(0.05)
     turned = [here(cell).distance_to(pose)[1] for pose in poses(cell, plan)]
     assert max(turned) < 1e-6  # a position goal keeps the link turned as it is
 
@@ -123,8 +123,8 @@ def test_a_small_arc_is_no_line(cell, kind, radius, sweep):
     end, middle = (on_circle(start, center, axis, share * sweep) for share in (1.0, 0.5))
     point = ArcPoint(kind, middle if kind == "interim" else center)
     plan = cell.planner.plan_circular(ARM, cell.state, PositionGoal(TCP, end), point, FAST)
-    assert plan.explanation["sweep"] == pytest.approx(sweep)
-    assert plan.explanation["radius"] == pytest.approx(radius)
+    assert plan.explanation.plain()["sweep"] == pytest.approx(sweep)
+    assert plan.explanation.plain()["radius"] == pytest.approx(radius)
     track = np.array([pose.translation for pose in poses(cell, plan)])
     assert np.linalg.norm(track - center, axis=1) == pytest.approx(radius, abs=1e-4)
 

@@ -13,6 +13,7 @@ from harness.planning.efforts import InverseDynamics
 from harness.planning.model.robot_model import GroupSpace
 from harness.planning.timing.timing import Limits, time_blended, time_straight
 from harness.ports import JointGoal, PlanningOptions
+from harness.recording.motion_failures import OverloadFailure
 from tests.planning.lesson import ARM, TCP, Cell, ur
 
 START = np.array([0.0, -0.6, 0.4, -1.4, -1.57, 0.0])
@@ -101,8 +102,8 @@ def test_a_load_that_the_arm_cannot_hold_never_moves():
 @pytest.mark.parametrize("share", [0.98, 1.02])
 def test_the_largest_mass_that_is_advised_is_the_largest_that_the_arm_holds(share):
     posture = np.array([0.0, 0.0, 0.0, -1.4, -1.57, 0.0])
-    _, facts = dynamics_of(cell_with(20.0)).standing_overload(posture)
-    dynamics = dynamics_of(cell_with(share * facts["most_mass"]))
+    _, details = dynamics_of(cell_with(20.0)).standing_overload(posture)
+    dynamics = dynamics_of(cell_with(share * details.find(OverloadFailure).most_mass))
     still = np.zeros((1, 6))
     efforts = np.abs(dynamics.efforts(posture[None], still, still)[0])
     assert bool(np.all(efforts <= dynamics.limits)) == (share < 1)
@@ -111,9 +112,9 @@ def test_the_largest_mass_that_is_advised_is_the_largest_that_the_arm_holds(shar
 def test_an_arm_too_weak_for_itself_is_not_advised_to_hold_less():
     dynamics = dynamics_of(cell_with(0))
     weak = replace(dynamics, limits=np.full(6, 5.0))
-    message, facts = weak.standing_overload(START)
+    message, details = weak.standing_overload(START)
     assert "cannot hold itself still" in message
-    assert "most_mass" not in facts
+    assert details.find(OverloadFailure).most_mass is None
 
 
 def test_the_library_agrees_about_the_whole_robot():

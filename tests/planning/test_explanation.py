@@ -40,7 +40,7 @@ def explained(call, *args):
 
 
 def stage(error, name):
-    return {stage.name: stage for stage in stages_of(error.facts)}[name]
+    return {stage.stage: stage for stage in stages_of(error.facts)}[name]
 
 
 @pytest.mark.parametrize(
@@ -173,7 +173,7 @@ def test_four_joints_report_what_of_a_pose_they_miss_and_take_it_where_that_is_a
     assert error.code == "GOAL_CONSTRAINTS_VIOLATED"
     assert error.facts["orientation_error"] == pytest.approx(0.02)
     allowed = PoseGoal(TCP, pose, orientation_tolerance=0.03)
-    found = cell.planner.plan("arm", cell.state, allowed, OPTIONS).explanation
+    found = cell.planner.plan("arm", cell.state, allowed, OPTIONS).explanation.plain()
     assert found["ik_task"] == "position and pitch"
     for solution in found["ik_solutions"]:
         assert solution["residual"]["orientation"] == pytest.approx(0.02)
@@ -263,5 +263,5 @@ def test_a_motion_without_a_goal_of_its_own_is_explained_by_keywords():
             group=ARM,
         )
     )
-    assert stages_of(error.facts)[0].name == "start state"
+    assert stages_of(error.facts)[0].stage == "start state"
     assert stage(error, "path").status == "failed"

@@ -80,9 +80,9 @@ def test_a_rotation_turns_the_link_in_place(cell):
 def test_a_relative_motion_goes_as_far_as_it_can_between_its_distances(cell):
     down = np.array([0, 0, -1.0, 0, 0, 0])
     plan = cell.planner.plan_relative(ARM, cell.state, TCP, down, (0.05, 0.6), SLOW)
-    reached = plan.explanation["distance"]
+    reached = plan.explanation.plain()["distance"]
     assert 0.2 < reached < 0.3  # the fingers stop above the table
-    assert "Table_0" in plan.explanation["stopped_by"]
+    assert "Table_0" in plan.explanation.plain()["stopped_by"]
     with pytest.raises(PlanningFailed) as caught:
         cell.planner.plan_relative(ARM, cell.state, TCP, down, (0.5, 0.6), SLOW)
     assert caught.value.code == "PLANNING_FAILED"

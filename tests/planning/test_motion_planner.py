@@ -157,8 +157,8 @@ def test_solutions_that_limits_reject_name_the_joint_and_how_far():
     found = cell.planner.check_goal(
         ARM, cell.state, grasp_goal(0.32, -0.17, 0.08), PlanningOptions()
     )
-    outside = found["outside_limits"]
-    assert len(outside) + len(found["ik_solutions"]) == 8
+    outside = found.explanation.plain()["outside_limits"]
+    assert len(outside) + len(found.explanation.plain()["ik_solutions"]) == 8
     for solution in outside:
         assert solution["joint"].endswith("_joint")
         assert solution["excess"] == pytest.approx(abs(solution["value"] - solution["limit"]))

@@ -136,7 +136,7 @@ def test_of_several_goals_the_nearest_that_can_be_taken_is(cell):
     goals = AnyGoal((out, JointGoal(far), JointGoal(near)))
     plan = cell.planner.plan(ARM, cell.state, goals, OPTIONS)
     assert np.allclose(plan.trajectory.positions[-1], near, atol=1e-6)
-    reported = plan.explanation["alternatives"]
+    reported = plan.explanation.plain()["alternatives"]
     assert [each["error_code"] for each in reported] == ["NO_IK_SOLUTION", "", ""]
     error = failure(cell.planner.plan, ARM, cell.state, AnyGoal((out, out)), OPTIONS)
     assert error.code == "NO_IK_SOLUTION"

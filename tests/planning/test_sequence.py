@@ -65,8 +65,8 @@ def speeds(plan):
 def test_blended_motions_do_not_stop_between_and_unblended_ones_do(cell):
     blended = cell.planner.plan_sequence(ARM, cell.state, mixed(cell, 0.015), HALF)
     stopping = cell.planner.plan_sequence(ARM, cell.state, mixed(cell, 0.0), HALF)
-    assert blended.result == {"items": 4, "stops": 0, "blends": 3}
-    assert stopping.result == {"items": 4, "stops": 3, "blends": 0}
+    assert blended.result.plain() == {"items": 4, "stops": 0, "blends": 3}
+    assert stopping.result.plain() == {"items": 4, "stops": 3, "blends": 0}
     assert speeds(blended)[1:-1].min() > 0.01
     assert int((speeds(stopping) < 1e-9).sum()) == 5
     assert blended.trajectory.duration < 0.85 * stopping.trajectory.duration
@@ -88,7 +88,7 @@ def test_outside_its_spheres_a_sequence_is_on_its_lines_and_arcs(cell):
         assert np.linalg.norm(off) < 1e-4
     arc = cell.planner.plan_circular(  # the arc alone, for its circle
         ARM, _at(cell, first), items[1].goal, items[1].point, HALF
-    ).explanation
+    ).explanation.plain()
     until = int(np.argmin(away[:, 1]))
     between = slice(corner_passed, until)
     on_arc = (away[between, 0] > radius) & (away[between, 1] > radius)
@@ -162,10 +162,10 @@ def test_a_cartesian_path_rounds_its_corners_within_the_precision(cell):
             near_by = first + min(max(share, 0), 1) * (second - first)
             gaps.append(float(np.linalg.norm(place - near_by)))
         worst = max(worst, min(gaps))
-    assert plan.result["deviation"] == pytest.approx(worst, abs=1e-9)
+    assert plan.result.plain()["deviation"] == pytest.approx(worst, abs=1e-9)
     assert 1e-4 < worst <= PATH.precision
-    assert plan.result["fraction"] == 1.0
-    assert 0 < plan.result["largest_joint_step"] < 0.1
+    assert plan.result.plain()["fraction"] == 1.0
+    assert 0 < plan.result.plain()["largest_joint_step"] < 0.1
     assert speeds(plan)[1:-1].min() > 1e-3
     assert np.allclose(track[-1], points[-1], atol=1e-6)
 
@@ -177,9 +177,11 @@ def test_a_cartesian_path_goes_as_far_as_it_can_and_says_how_far(cell):
     assert "at least 100 % is required" in refused.message
     part = CartesianPathOptions(0.005, 0.001, 0.2, PATH.jump)
     plan = cell.planner.plan_cartesian_path(ARM, cell.state, goals, part, HALF)
-    assert plan.result["fraction"] == pytest.approx(refused.facts["fraction"])
+    assert plan.result.plain()["fraction"] == pytest.approx(refused.facts["fraction"])
     track = places(cell, plan)
-    assert np.linalg.norm(track[-1] - track[0]) == pytest.approx(0.55 * plan.result["fraction"])
+    assert np.linalg.norm(track[-1] - track[0]) == pytest.approx(
+        0.55 * plan.result.plain()["fraction"]
+    )
     more = CartesianPathOptions(0.005, 0.001, 0.9, PATH.jump)
     assert failure(cell.planner.plan_cartesian_path, ARM, cell.state, goals, more, HALF)
 
@@ -187,7 +189,7 @@ def test_a_cartesian_path_goes_as_far_as_it_can_and_says_how_far(cell):
 def test_a_jump_threshold_ends_a_path_where_a_joint_steps_farther(cell):
     goals = [near(cell, 0.1, 0, 0)]
     free = cell.planner.plan_cartesian_path(ARM, cell.state, goals, PATH, HALF)
-    tight = JumpThreshold(0.9 * free.result["largest_joint_step"], 0.1)
+    tight = JumpThreshold(0.9 * free.result.plain()["largest_joint_step"], 0.1)
     path_options = CartesianPathOptions(0.005, 0.001, 1.0, tight)
     refused = failure(cell.planner.plan_cartesian_path, ARM, cell.state, goals, path_options, HALF)
     assert "would jump" in refused.message
@@ -201,10 +203,10 @@ def test_four_joints_follow_a_sequence_and_a_path():
     items = [SequenceItem("lin", goal, None, 0.008) for goal in goals]
     items[-1] = SequenceItem("lin", goals[-1])
     plan = cell.planner.plan_sequence("arm", cell.state, items, HALF)
-    assert plan.result["blends"] == 2
+    assert plan.result.plain()["blends"] == 2
     assert np.allclose(plan.trajectory.positions[-1], cell.state[:4], atol=1e-6)
     path = cell.planner.plan_cartesian_path("arm", cell.state, goals, PATH, HALF)
-    assert path.result["fraction"] == 1.0
+    assert path.result.plain()["fraction"] == 1.0
 
 
 SINGULAR = {

@@ -6,6 +6,7 @@ from harness.planning.collision.checker import MotionChecker
 from harness.planning.model.robot_model import GroupSpace
 from harness.planning.search.search import search
 from harness.planning.search.shortening import shorten
+from harness.ports import PlanningOptions
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, boxes, ur
 
 COARSE = 1 / 2  # [rad] so coarse that it matters which states of an edge are checked
@@ -19,14 +20,13 @@ def test_every_edge_of_a_shortened_path_is_free_at_its_own_states():
     for seed in range(40):
         checker = MotionChecker(cell.scene, space, start, 0.0)
         found = search(
-            "BalancedConnect",
+            PlanningOptions(planner_id="BalancedConnect"),
             checker,
             start,
             [goal],
             resolution=COARSE,
             max_state_checks=20_000,
             seed=seed,
-            parameters={},
         )
         assert found.waypoints is not None
         short = shorten(np.asarray(found.waypoints), checker, COARSE, seed)

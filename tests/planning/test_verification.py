@@ -47,7 +47,7 @@ def broken(task, trajectory, **other):
     defect = find_defect(
         trajectory, task.checker, START, END, other.get("limits", task.limits), other.get("held")
     )
-    return None if defect is None else defect.facts["broken"]
+    return None if defect is None else defect.details.plain()["broken"]
 
 
 MISTAKES = {
@@ -101,9 +101,9 @@ def test_what_is_in_the_way_is_found_with_its_time(good):
     task = make_task(cell.scene, cell.kinematics.robot, ARM, cell.state, PlanningOptions())
     defect = find_defect(good, task.checker, START, END, task.limits)
     assert defect is not None
-    assert defect.facts["broken"] == "collision"
+    assert defect.details.plain()["broken"] == "collision"
     assert "and crumb" in defect.message
-    assert defect.facts["time"] == pytest.approx(good.times[half], abs=0.2)
+    assert defect.details.plain()["time"] == pytest.approx(good.times[half], abs=0.2)
 
 
 def test_a_trajectory_off_the_path_that_was_checked_is_found(task):
@@ -112,6 +112,6 @@ def test_a_trajectory_off_the_path_that_was_checked_is_found(task):
     assert find_departure(trajectory, path, 0.05) is None
     tight = find_departure(trajectory, path, 0.005)
     assert tight is not None
-    assert 0.005 < tight.facts["path_deviation"] <= 0.05
+    assert 0.005 < tight.details.plain()["path_deviation"] <= 0.05
     corner = np.linalg.norm(trajectory.positions - path[1], axis=1).min()
-    assert tight.facts["path_deviation"] <= corner + 1e-9
+    assert tight.details.plain()["path_deviation"] <= corner + 1e-9

@@ -5,6 +5,7 @@ import subprocess
 import sys
 from xml.etree import ElementTree
 
+import numpy as np  # noqa: F401
 import pytest
 
 import harness.language.files.yaml_file  # noqa: F401

@@ -5,7 +5,7 @@ import pytest
 
 from harness.language.scenario import RobotSpec
 from harness.planning.ik.kinematics import PinocchioKinematics
-from harness.recording.link_poses import link_poses
+from harness.recording.link_poses import replayed_link_poses
 from harness.robot.load import load_robot
 from harness.session.record import robot_record
 
@@ -25,7 +25,7 @@ def test_links_stand_where_pinocchio_puts_them(spec, tmp_path):
     lower = [max(joint.lower, -3.0) for joint in record.joints]
     upper = [min(joint.upper, 3.0) for joint in record.joints]
     samples = np.random.default_rng(1).uniform(lower, upper, (5, len(lower)))
-    poses = link_poses(record, samples)
+    poses = replayed_link_poses(record, samples)
     names = [name for name in record.link_names if name in poses]
     assert len(names) >= len(record.joints)
     theirs = kinematics.link_poses(samples, names)
@@ -40,4 +40,4 @@ def test_only_the_requested_links_come_back(tmp_path):
     description = load_robot(RobotSpec.model_validate({"model": "open_manipulator_x"}), tmp_path)
     record = robot_record(description, PinocchioKinematics(description))
     samples = np.zeros((3, len(record.joints)))
-    assert list(link_poses(record, samples, ["link3", "no_such_link"])) == ["link3"]
+    assert list(replayed_link_poses(record, samples, ["link3", "no_such_link"])) == ["link3"]

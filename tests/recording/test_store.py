@@ -23,7 +23,7 @@ from harness.recording.arrays import arrays_of
 from harness.recording.digest import digest
 from harness.recording.plain import to_plain
 from harness.recording.run import CaptureRecord, Finding, MeshRecord, VideoRecord
-from harness.recording.store import FORMAT, read_run, write_run
+from harness.recording.store import FORMAT, StoredRun, read_run, write_run
 from tests.assertions.synthetic_run import ROBOT, attachment, lift_run, thing
 
 EXPECTED = [
@@ -118,8 +118,13 @@ def full_run():
 def written(folder, run=None, **options):
     run = run or full_run()
     verdicts = judge(run, EXPECTED)
-    write_run(folder, run, verdicts, "failed", digest(run, verdicts), {"plan": 0.25}, **options)
+    stored = StoredRun(run, verdicts, "failed", digest(run, verdicts), {"plan": 0.25})
+    write_run(folder, stored, **options)
     return run, verdicts
+
+
+def unjudged(run):
+    return StoredRun(run, (), "passed", "", {})
 
 
 def names_in(folder):
@@ -210,7 +215,7 @@ def test_extra_files_are_there_when_the_folder_appears_and_notes_come_back(tmp_p
         return ("no GL",)
 
     run = full_run()
-    assert write_run(folder, run, (), "passed", "", {}, extra=draw) == ("no GL",)
+    assert write_run(folder, unjudged(run), extra=draw) == ("no GL",)
     assert (folder / "images" / "a.png").read_bytes() == b"x"
 
 
@@ -226,7 +231,7 @@ def test_when_writing_breaks_off_the_older_run_stays_and_nothing_half_written(tm
 
     expected = HarnessError if isinstance(trouble, OSError) else KeyboardInterrupt
     with pytest.raises(expected) as caught:
-        write_run(tmp_path / "run", full_run(), (), "passed", "", {}, extra=breaks)
+        write_run(tmp_path / "run", unjudged(full_run()), extra=breaks)
     if expected is HarnessError:
         assert "No space left on device" in str(caught.value)
         assert "--report-dir" in str(caught.value)
@@ -237,9 +242,9 @@ def test_when_writing_breaks_off_the_older_run_stays_and_nothing_half_written(tm
 def test_a_place_that_cannot_be_made_is_reported(tmp_path):
     (tmp_path / "file").write_text("x")
     with pytest.raises(HarnessError, match=r"cannot be written to .*file"):
-        write_run(tmp_path / "file" / "run", full_run(), (), "passed", "", {})
+        write_run(tmp_path / "file" / "run", unjudged(full_run()))
     with pytest.raises(HarnessError, match="is a file"):
-        write_run(tmp_path / "file", full_run(), (), "passed", "", {})
+        write_run(tmp_path / "file", unjudged(full_run()))
 
 
 def test_a_folder_with_other_files_is_never_replaced(tmp_path):
@@ -247,7 +252,7 @@ def test_a_folder_with_other_files_is_never_replaced(tmp_path):
     precious.parent.mkdir()
     precious.write_text("years of work")
     with pytest.raises(HarnessError, match="holds other files"):
-        write_run(precious.parent, full_run(), (), "passed", "", {})
+        write_run(precious.parent, unjudged(full_run()))
     assert precious.read_text() == "years of work"
     assert names_in(tmp_path) == ["home"]
 

@@ -3,7 +3,7 @@
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 EPOCH = 1_800_000_000 * 10**9
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 HOSTILE = """\
 scenario: "<script>document.title = 'taken over'</script> & <b>bold</b>"

@@ -9,7 +9,7 @@ from harness.core.geometry import Box
 from harness.recording.run import CaptureRecord, Finding, JointRecord, Measure, Verdict
 from harness.recording.store import StoredRun
 from harness.reporting.html.page import page_html
-from harness.reporting.html.summary import Picture
+from harness.reporting.html.summary import SummaryPicture
 from tests.assertions.synthetic_run import TABLE, lift_run, step, thing
 
 TAKE_OVER = "document.title='taken'"
@@ -52,7 +52,7 @@ def page_of(name, folder):
     verdict = Verdict(name, "failed", -1.0, name, 0.5, 1, name, name, (measure,))
     stored = StoredRun(hostile_run(name), (verdict,), "failed", "0" * 64, {name: 1.0})
     file = folder / "report.html"
-    text = page_html(stored, [Picture(name, b"")])
+    text = page_html(stored, [SummaryPicture(name, b"")])
     file.write_text(text, encoding="utf-8", newline="")
     return file
 

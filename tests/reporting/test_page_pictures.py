@@ -13,7 +13,6 @@ from harness.recording.run import CaptureRecord, ContactRecord, VideoRecord
 from harness.recording.store import StoredRun
 from harness.reporting.html.page import page_html
 from harness.reporting.terminal import failure_place
-from harness.session.run_case import run_case
 from tests.assertions.synthetic_run import (
     BOX,
     TABLE,
@@ -24,6 +23,7 @@ from tests.assertions.synthetic_run import (
     step,
 )
 from tests.reporting.browser import wait_for
+from tests.running import run_case
 
 RED, GREEN = (0, 0, 255), (0, 255, 0)  # BGR
 

@@ -108,7 +108,7 @@ def test_sums_of_the_contacts_are_those_of_a_plain_loop_over_them(
     )
     data, samples = mujoco.MjData(physics.model), 20
     record, wrench = ContactRecord(physics), np.zeros(6)
-    total, carried, pushed = {}, {}, {}
+    total, carried, pushed, rubbed = {}, {}, {}, {}
     for row in range(samples):
         mujoco.mj_step(physics.model, data)
         record.keep(data, row)
@@ -117,21 +117,26 @@ def test_sums_of_the_contacts_are_those_of_a_plain_loop_over_them(
             bodies = physics.model.geom_bodyid[data.contact.geom[index]].tolist()
             names = [physics.body_names[body] for body in bodies]
             links = [body in physics.robot_bodies for body in bodies]
-            force = wrench[0] * data.contact.frame[index, :3]  # of the first on the second
+            axes = data.contact.frame[index].reshape(3, 3)
+            force = wrench[0] * axes[0]  # of the first on the second
+            friction = wrench[1:3] @ axes[1:]
             if links == [False, True] or (links[0] == links[1] and names[0] > names[1]):
-                names, force = names[::-1], -force
+                names, force, friction = names[::-1], -force, -friction
             pair = (names[0], names[1])
             total.setdefault(pair, np.zeros(samples))[row] += wrench[0]
             if not any(links):
                 carried.setdefault(pair, np.zeros(samples))[row] += force[2]
             if links[0] != links[1]:
                 pushed.setdefault(pair, np.zeros((samples, 3)))[row] += force
+                rubbed.setdefault(pair, np.zeros((samples, 3)))[row] += friction
     assert ("bridge", "left") in carried
     assert pushed
+    assert any(np.abs(friction).max() > 1e-3 for friction in rubbed.values())
     for found, expected in (
         (record.forces(0, samples), total),
         (record.support_forces(samples), carried),
-        ({pair: press[:, 3:] for pair, press in record.presses(samples).items()}, pushed),
+        ({pair: press[:, 3:] for pair, press in record.presses(0, samples).items()}, pushed),
+        (record.frictions(samples), rubbed),
     ):
         assert list(found) == sorted(expected)
         for pair, values in found.items():
@@ -143,3 +148,4 @@ def test_sums_of_the_contacts_are_those_of_a_plain_loop_over_them(
 def test_a_world_without_contacts_has_no_forces(gripper_over_table):
     signals = MujocoSimulator(gripper_over_table, [], ()).finish()
     assert (signals.contact_forces, signals.support_forces, signals.presses) == ({}, {}, {})
+    assert signals.frictions == {}

@@ -7,7 +7,7 @@ import pytest
 
 from harness.suite.discovery import UsageError, bundled_scenarios, discover
 from harness.suite.folders import report_folders
-from harness.suite.header import Header, read_header
+from harness.suite.header import ScenarioHeader, read_header
 from harness.suite.leftovers import clean_leftovers
 from harness.suite.selection import selects
 
@@ -84,7 +84,7 @@ def test_reports_of_bundled_and_of_far_files_stay_below_the_report_folder(tmp_pa
 def test_a_header_is_title_tags_and_line(folder):
     file = folder / "b.scenario.yaml"
     file.write_text("# first\ntags: [lesson, ur]\nscenario: >\n  Pick\n  it\n")
-    assert read_header(file) == Header("Pick it", ("lesson", "ur"), 3)
+    assert read_header(file) == ScenarioHeader("Pick it", ("lesson", "ur"), 3)
 
 
 @pytest.mark.parametrize(
@@ -110,14 +110,14 @@ def test_a_broken_file_has_its_name_as_title(folder, text):
     ],
 )
 def test_k_selects_by_words_of_path_title_and_tags(expression, expected):
-    header = Header("Pick the green cylinder", ("lesson", "ur"))
+    header = ScenarioHeader("Pick the green cylinder", ("lesson", "ur"))
     assert selects(expression, Path("scenarios/b.scenario.yaml"), header) is expected
 
 
 @pytest.mark.parametrize("expression", ["(pick", "pick and", "and", "pick place", "pick)", "not"])
 def test_an_expression_that_cannot_be_read_is_wrong_usage(expression):
     with pytest.raises(UsageError, match="-k"):
-        selects(expression, Path("a"), Header("a"))
+        selects(expression, Path("a"), ScenarioHeader("a"))
 
 
 def dead_pid():

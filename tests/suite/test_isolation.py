@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from harness.core.errors import HarnessError
-from harness.suite.cases import CaseJob, read_ahead, run_here, run_isolated
+from harness.session.run_request import RunRequest
+from harness.suite.cases import read_ahead, run_here, run_isolated
 from harness.suite.warm import ServerStartError, WarmServer
 from tests.suite import jobs
 
@@ -22,7 +23,9 @@ def server():
 
 
 def outcome(server, function, file="a.scenario.yaml", **options):
-    [(_index, result)] = run_isolated([CaseJob(Path(file))], server, function=function, **options)
+    [(_index, result)] = run_isolated(
+        [RunRequest(Path(file))], server, function=function, **options
+    )
     return result
 
 
@@ -46,7 +49,7 @@ def wait_for_text(file, seconds=10.0):
 
 
 def test_every_case_has_a_process_of_its_own(server):
-    cases = [CaseJob(Path(f"{name}.scenario.yaml")) for name in "abc"]
+    cases = [RunRequest(Path(f"{name}.scenario.yaml")) for name in "abc"]
     digests = {
         result.digest for _index, result in run_isolated(cases, server, function=jobs.passes)
     }
@@ -58,7 +61,7 @@ def test_a_case_in_this_process_reports_the_same(server):
     def without_pid(results):
         return [(index, result.file, result.outcome) for index, result in results]
 
-    cases = [CaseJob(Path("a.scenario.yaml"))]
+    cases = [RunRequest(Path("a.scenario.yaml"))]
     here = without_pid(run_here(cases, function=jobs.passes))
     assert here == without_pid(run_isolated(cases, server, function=jobs.passes))
 
@@ -70,7 +73,11 @@ def test_progress_of_a_running_case_is_heard(server):
 
 
 def test_results_come_as_cases_end_and_carry_their_index(server):
-    cases = [CaseJob(Path("a"), seed=700), CaseJob(Path("b"), seed=0), CaseJob(Path("c"), seed=0)]
+    cases = [
+        RunRequest(Path("a"), seed=700),
+        RunRequest(Path("b"), seed=0),
+        RunRequest(Path("c"), seed=0),
+    ]
     function = jobs.passes_after_its_seed_in_ms
     one_by_one = [index for index, _ in run_isolated(cases, server, function=function)]
     side_by_side = [index for index, _ in run_isolated(cases, server, workers=2, function=function)]
@@ -82,7 +89,7 @@ def test_an_exception_is_an_error_with_its_traceback(server):
     result = outcome(server, jobs.raises)
     assert result.outcome == "error"
     assert "ZeroDivisionError: one by nothing" in result.message
-    [(_index, here)] = run_here([CaseJob(Path("a"))], function=jobs.raises)
+    [(_index, here)] = run_here([RunRequest(Path("a"))], function=jobs.raises)
     assert here.outcome == "error"
     assert "ZeroDivisionError: one by nothing" in here.message
 
@@ -141,7 +148,7 @@ def test_what_a_case_prints_stays_out_of_this_process(server, capfd):
 def test_closing_the_server_ends_running_cases(tmp_path):
     file = tmp_path / "pid"
     with WarmServer(LIGHT) as server:
-        server.start(jobs.reports_its_pid_and_sleeps, CaseJob(file))
+        server.start(jobs.reports_its_pid_and_sleeps, RunRequest(file))
         pid = int(wait_for_text(file))
         assert is_alive(pid)
     assert wait_until_gone(pid)
@@ -153,7 +160,7 @@ def test_a_caller_that_is_killed_leaves_no_process(tmp_path):
         "import sys; from pathlib import Path; from tests.suite import jobs\n"
         "from harness.suite.cases import *\n"
         "server = WarmServer(('json',))\n"
-        "list(run_isolated([CaseJob(Path(sys.argv[1]))], server,"
+        "list(run_isolated([RunRequest(Path(sys.argv[1]))], server,"
         " function=jobs.reports_its_pid_and_sleeps))\n"
     )
     root = Path(__file__).parents[2]
@@ -166,7 +173,7 @@ def test_a_caller_that_is_killed_leaves_no_process(tmp_path):
 
 def test_a_server_that_dies_makes_its_cases_errors_and_leaves_no_process(server, tmp_path):
     file = tmp_path / "pid"
-    number = server.start(jobs.reports_its_pid_and_sleeps, CaseJob(file))
+    number = server.start(jobs.reports_its_pid_and_sleeps, RunRequest(file))
     pid = int(wait_for_text(file))
     os.kill(server.pid, signal.SIGKILL)
     ended = []

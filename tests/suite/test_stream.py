@@ -2,7 +2,7 @@
 
 import pytest
 
-from harness.suite.cases import CaseJob
+from harness.session.run_request import RunRequest
 from harness.suite.stream import fingerprint
 
 
@@ -17,7 +17,7 @@ def cell(tmp_path):
         (folder / "arm.urdf").write_text('<mesh filename="my meshes/arm.stl"/>')
         path = folder / "one.scenario.yaml"
         path.write_text(f"robot: {{urdf: {quote}arm.urdf{quote}}}\n")
-        return CaseJob(path)
+        return RunRequest(path)
 
     return write
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from harness.recording.store import read_run
-from harness.session.run_case import run_case
 from tests.engine.front_door import run
+from tests.running import run_case
 
 ROOT = Path(__file__).parents[2]
 

@@ -11,10 +11,10 @@ import pytest
 from harness.core.pose_arrays import compose
 from harness.core.resources import data_folder
 from harness.recording.film import decoded_film
-from harness.recording.link_poses import link_poses
+from harness.recording.link_poses import replayed_link_poses
 from harness.recording.plain import to_plain
 from harness.recording.store import read_run
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 FOLDER = data_folder("scenarios") / "cameras"
 GRIPPER = FOLDER / "01_gripper_camera.scenario.yaml"
@@ -64,7 +64,7 @@ def test_every_capture_is_a_sample_of_its_step_and_stands_where_the_robot_was(ca
     cameras = {camera.name: camera for camera in run.cameras}
     shots = [shot for shot in run.captures if shot.step]
     assert [shot.step for shot in shots] == [s.id for s in run.steps if s.verb == "capture"]
-    poses = link_poses(run.robot, run.signals.joint_positions)
+    poses = replayed_link_poses(run.robot, run.signals.joint_positions)
     for shot in run.captures:
         assert run.signals.times[shot.sample] == shot.time
         if shot.step:

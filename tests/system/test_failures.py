@@ -12,7 +12,7 @@ from harness.recording.store import read_run
 from harness.reporting.explanation import explanation_lines
 from harness.reporting.terminal import failure
 from harness.session.check import check_file
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 FAILURES = data_folder("scenarios") / "failures"
 FILES = sorted(FAILURES.glob("*.scenario.yaml"))
@@ -134,7 +134,7 @@ def test_stages_come_in_order_and_the_first_that_failed_has_the_code(failed):
         stages = stages_of(step.explanation)
         if not stages:
             continue
-        names = [stage.name for stage in stages]
+        names = [stage.stage for stage in stages]
         assert names == [name for name in STAGES if name in names]
         codes = [stage.code for stage in stages if stage.status == "failed"]
         assert step.error_code in codes

@@ -2,7 +2,7 @@
 
 from harness.core.resources import data_folder
 from harness.recording.store import read_run
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 PICK = data_folder("scenarios") / "lessons" / "04_ur_pick_by_friction.scenario.yaml"
 

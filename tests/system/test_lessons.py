@@ -9,7 +9,7 @@ import pytest
 from harness.cli.main import main
 from harness.core.resources import data_folder
 from harness.recording.store import read_run
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 LESSONS = data_folder("scenarios") / "lessons"
 FLAGSHIP = LESSONS / "03_ur_sixteen_steps.scenario.yaml"

@@ -6,7 +6,7 @@ import pytest
 
 from harness.core.resources import data_folder
 from harness.recording.store import read_run
-from harness.session.run_case import run_case
+from tests.running import run_case
 
 MOTIONS = sorted((data_folder("scenarios") / "motions").glob("*.scenario.yaml"))
 

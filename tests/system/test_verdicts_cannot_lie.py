@@ -5,8 +5,8 @@ import textwrap
 import pytest
 
 from harness.cli.main import main
-from harness.session.run_case import run_case
 from tests.engine.front_door import run
+from tests.running import run_case
 
 PICK = """
 scenario: A pick that looks like one

@@ -11,7 +11,7 @@ from harness.language.reading.load import parse_scenario
 from harness.recording.store import read_run
 from harness.robot.mesh_file import hull_points
 from harness.session.prepare import prepare
-from harness.session.run_case import run_case
+from tests.running import run_case
 from tests.world.sdf_files import ASCII_STL, COLLADA, CRATE, load, text_with, write
 
 TABLE_AND_CYLINDER = """<?xml version="1.0"?>

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from harness.core.errors import SpecError
-from harness.session.run_case import run_case
+from tests.running import run_case
 from tests.world.sdf_files import load, text_with
 
 WORLD = """<?xml version="1.0"?>

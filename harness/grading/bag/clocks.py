@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from harness.core.types import BoolArray, FloatArray, IntArray
-from harness.grading.bag.content import Track
+from harness.grading.bag.content import RecordedTrack
 
 SET_BACK = 10**9
 """A clock that jumps back by more than this [ns] was restarted; a smaller jump is disorder."""
@@ -24,7 +24,7 @@ class Timeline:
         notes: Notes on the clocks.
     """
 
-    def __init__(self, reference: Track) -> None:
+    def __init__(self, reference: RecordedTrack) -> None:
         self.notes: list[str] = []
         logged, stamps = reference.times()
         order = np.argsort(logged, kind="stable")
@@ -47,7 +47,7 @@ class Timeline:
         self._stamped = (stamps - self._origin) / 1e9
         self._has_log = bool(self._logged[-1] > 0)
 
-    def rows(self, track: Track, name: str = "") -> tuple[FloatArray, BoolArray]:
+    def rows(self, track: RecordedTrack, name: str = "") -> tuple[FloatArray, BoolArray]:
         """Time of every row [s], and whether the row is in the judged part; shape (N,) each.
 
         Args:

@@ -13,7 +13,7 @@ from harness.core.types import FloatArray, IntArray
 
 
 @dataclass
-class Track:
+class RecordedTrack:
     """Rows of numbers, each with two times.
 
     Attributes:
@@ -37,7 +37,7 @@ class Track:
         return np.array(self.logged, dtype=np.int64), np.array(self.stamps, dtype=np.int64)
 
 
-Tracks = dict[tuple[str, ...], Track]
+Tracks = dict[tuple[str, ...], RecordedTrack]
 """Tracks by the joints of a message, or by parent and child frame."""
 
 
@@ -57,11 +57,11 @@ class BagContent:
         notes: Notes for the user.
     """
 
-    joints: Tracks = field(default_factory=dict[tuple[str, ...], Track])
-    commands: Tracks = field(default_factory=dict[tuple[str, ...], Track])
-    edges: Tracks = field(default_factory=dict[tuple[str, ...], Track])
-    static_edges: Tracks = field(default_factory=dict[tuple[str, ...], Track])
-    objects: Tracks = field(default_factory=dict[tuple[str, ...], Track])
+    joints: Tracks = field(default_factory=dict[tuple[str, ...], RecordedTrack])
+    commands: Tracks = field(default_factory=dict[tuple[str, ...], RecordedTrack])
+    edges: Tracks = field(default_factory=dict[tuple[str, ...], RecordedTrack])
+    static_edges: Tracks = field(default_factory=dict[tuple[str, ...], RecordedTrack])
+    objects: Tracks = field(default_factory=dict[tuple[str, ...], RecordedTrack])
     events: list[tuple[int, dict[str, Any]]] = field(
         default_factory=list[tuple[int, dict[str, Any]]]
     )

@@ -10,7 +10,7 @@ import numpy as np
 
 from harness.core.types import FloatArray
 from harness.grading.bag.clocks import Timeline
-from harness.grading.bag.content import BagContent, Track, Tracks
+from harness.grading.bag.content import BagContent, RecordedTrack, Tracks
 from harness.grading.bag.joints import JointRows, joints_of_frames, rows_of_joint
 from harness.recording.run import LinkPlacement
 from harness.robot.description import RobotDescription
@@ -72,7 +72,7 @@ def _two_values(time: float) -> str:
     return f"jumps between two values from t={time:.3f} s on: two programs publish it"
 
 
-def _first_jump_of_track(track: Track, timeline: Timeline) -> float | None:
+def _first_jump_of_track(track: RecordedTrack, timeline: Timeline) -> float | None:
     seconds, is_judged = timeline.rows(track)
     places = track.rows()[is_judged, :3]
     return _first_jump(seconds[is_judged], places, FASTEST_OBJECT, OBJECT_SLACK)

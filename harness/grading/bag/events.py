@@ -16,7 +16,7 @@ RESOLUTION = 1e-6
 """Tolerance of comparisons of times [s]; stamps are whole nanoseconds."""
 STATUSES: Mapping[str, StepStatus] = {status: status for status in get_args(StepStatus)}
 Timed = tuple[float, dict[str, Any]]
-Interval = tuple[float, float]
+StepInterval = tuple[float, float]
 
 
 def timed_events(content: BagContent, timeline: Timeline) -> list[Timed]:
@@ -49,7 +49,7 @@ def steps_of(
     return tuple(steps)
 
 
-def presence_of(events: list[Timed], name: str, times: FloatArray) -> tuple[Interval, ...]:
+def presence_of(events: list[Timed], name: str, times: FloatArray) -> tuple[StepInterval, ...]:
     """Intervals (from, to) [s] of an object in the scene; the whole run without events."""
     changes = [
         (time, event["event"] == "object_added")
@@ -57,7 +57,7 @@ def presence_of(events: list[Timed], name: str, times: FloatArray) -> tuple[Inte
         if event.get("event") in ("object_added", "object_removed")
         and str(event.get("object")) == name
     ]
-    intervals: list[Interval] = []
+    intervals: list[StepInterval] = []
     begin = None if changes and changes[0][1] else float(times[0])
     for time, is_added in changes:
         if is_added and begin is None:
@@ -68,7 +68,7 @@ def presence_of(events: list[Timed], name: str, times: FloatArray) -> tuple[Inte
     return (*intervals, *([] if begin is None else [(begin, float(times[-1]))]))
 
 
-def is_present(intervals: Sequence[Interval], times: FloatArray) -> BoolArray:
+def is_present(intervals: Sequence[StepInterval], times: FloatArray) -> BoolArray:
     """Whether each sample is in one of the intervals, shape (N,)."""
     inside: BoolArray = np.zeros(len(times), dtype=bool)
     for begin, end in intervals:

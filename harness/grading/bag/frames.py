@@ -9,8 +9,8 @@ import numpy as np
 from harness.core.pose_arrays import IDENTITY, compose
 from harness.core.types import FloatArray
 from harness.grading.bag.clocks import Timeline
-from harness.grading.bag.content import BagContent, Track
-from harness.grading.bag.sampling import poses_at
+from harness.grading.bag.content import BagContent, RecordedTrack
+from harness.grading.bag.sampling import interpolated_poses
 
 WORLD = "world"
 
@@ -36,7 +36,7 @@ class Frames:
         self.notes: list[str] = []
         self.assumed: dict[str, None] = {}
         self._links, self._timeline, self._times = links, timeline, times
-        self._parents: dict[str, tuple[str, Track]] = {}
+        self._parents: dict[str, tuple[str, RecordedTrack]] = {}
         # topics that the user named have precedence
         for edges in (content.edges, content.static_edges, content.objects):
             for (parent, child), track in edges.items():
@@ -57,7 +57,7 @@ class Frames:
 
     def pose(self, frame: str) -> FloatArray:
         """T_world_frame, NaN where it is unknown, shape (N, 7)."""
-        chain: list[Track] = []
+        chain: list[RecordedTrack] = []
         passed: set[str] = set()
         while frame not in self._links and frame != WORLD and frame in self._parents:
             if frame in passed:
@@ -74,11 +74,11 @@ class Frames:
             pose = compose(pose, self._sampled(track))
         return pose
 
-    def _sampled(self, track: Track) -> FloatArray:
+    def _sampled(self, track: RecordedTrack) -> FloatArray:
         rows = track.rows()
         if id(track) in self._static:
             return np.tile(rows[-1], (len(self._times), 1))
         seconds, is_judged = self._timeline.rows(track, "the topic of frames or objects")
         if not is_judged.any():
             return np.full((len(self._times), 7), np.nan)
-        return poses_at(seconds[is_judged], rows[is_judged], self._times)
+        return interpolated_poses(seconds[is_judged], rows[is_judged], self._times)

@@ -10,7 +10,7 @@ import numpy as np
 from harness.core.pose_arrays import relative, rotation_vector
 from harness.core.types import FloatArray
 from harness.grading.bag.clocks import Timeline
-from harness.grading.bag.content import BagContent, Track, Tracks
+from harness.grading.bag.content import BagContent, RecordedTrack, Tracks
 from harness.grading.bag.sampling import gap_limit, rows_at, with_gaps_filled
 from harness.recording.run import LinkPlacement
 from harness.robot.description import RobotDescription
@@ -27,7 +27,7 @@ class JointRows:
 
 def reference_track(
     content: BagContent, description: RobotDescription, arm_joints: Collection[str]
-) -> Track | None:
+) -> RecordedTrack | None:
     """The messages that define the run's samples: those with most of the arm's joints.
 
     Without joint states, they are the transforms of a link that one of these joints moves.
@@ -50,7 +50,7 @@ def reference_track(
     return None
 
 
-def sample_times(reference: Track, content: BagContent, timeline: Timeline) -> FloatArray:
+def sample_times(reference: RecordedTrack, content: BagContent, timeline: Timeline) -> FloatArray:
     """Times of the run's samples [s], rising, from 0; in gaps too, where the joints are NaN.
 
     A gap lasts to the end of the recording where the joints fall silent before other topics do.

@@ -10,7 +10,7 @@ from typing import Any
 
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from harness.grading.bag.content import BagContent, BagTopics, Track, Tracks
+from harness.grading.bag.content import BagContent, BagTopics, RecordedTrack, Tracks
 from harness.grading.bag.raw import RawMessage, bag_error
 from harness.grading.bag.storage import bag_files, messages
 
@@ -196,14 +196,16 @@ class _Reader:
         self._kept += NEW_KEY + len(content.data)
         self._content.events.append((message.log_time, event))
 
-    def _track(self, tracks: Tracks, names: tuple[str, ...], width: int) -> Track:
+    def _track(self, tracks: Tracks, names: tuple[str, ...], width: int) -> RecordedTrack:
         """The track of some names; a new one counts towards the memory limit."""
         if names not in tracks:
             self._kept += NEW_KEY + sum(map(len, names))
-            tracks[names] = Track(width)
+            tracks[names] = RecordedTrack(width)
         return tracks[names]
 
-    def _put(self, track: Track, header: Any, message: RawMessage, row: Sequence[float]) -> None:
+    def _put(
+        self, track: RecordedTrack, header: Any, message: RawMessage, row: Sequence[float]
+    ) -> None:
         stamp = 0 if header is None else header.stamp.sec * 10**9 + header.stamp.nanosec
         track.logged.append(message.log_time)
         track.stamps.append(stamp)

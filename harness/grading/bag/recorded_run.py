@@ -14,7 +14,7 @@ from harness.grading.bag.clocks import Timeline
 from harness.grading.bag.content import BagContent, BagTopics
 from harness.grading.bag.doubts import Doubt, publisher_doubts, tf_doubts
 from harness.grading.bag.events import (
-    Interval,
+    StepInterval,
     Timed,
     attachments_of,
     is_present,
@@ -32,7 +32,7 @@ from harness.grading.bag.joints import (
 )
 from harness.grading.bag.raw import bag_error
 from harness.grading.bag.reader import read_bag
-from harness.recording.link_poses import link_poses
+from harness.recording.link_poses import replayed_link_poses
 from harness.recording.run import (
     Finding,
     ObjectRecord,
@@ -44,8 +44,8 @@ from harness.recording.run import (
 from harness.robot.description import RobotDescription
 
 NEVER_THERE = (
-    *("contact_forces", "presses", "support_forces"),
-    *("clearances", "planned_clearances"),
+    *("contact_forces", "presses", "frictions", "support_forces"),
+    *("clearances", "planned_clearances", "link_overlaps"),
 )
 """Signals that no recording contains."""
 JOINT_SIGNALS = (
@@ -105,7 +105,7 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
         content.notes.append("there are no joint states; the joints are read from /tf")
         measured = joints_of_frames(content, placements, known.description, timeline, times)
     commanded = joint_rows(content.commands, known.description, timeline, times, "/joint_commands")
-    links = link_poses(known.robot, measured.positions, _links_needed(known, content))
+    links = replayed_link_poses(known.robot, measured.positions, _links_needed(known, content))
     frames = Frames(content, links, timeline, times)
     events = timed_events(content, timeline)
     present = {obj.name: presence_of(events, obj.name, times) for obj in known.objects}
@@ -211,7 +211,7 @@ def _object_record(
     obj: WorldObject,
     known: Recorded,
     poses: Mapping[str, FloatArray],
-    present: tuple[Interval, ...],
+    present: tuple[StepInterval, ...],
 ) -> ObjectRecord:
     """An object's record, with the scenario's pose if the object is static and not recorded."""
     is_known = obj.name not in poses and obj.is_static and obj.name in known.at_start
@@ -220,7 +220,8 @@ def _object_record(
         is_static=obj.is_static,
         in_planning=obj.in_planning,
         in_simulation=obj.in_simulation,
-        shapes=obj.visuals or obj.shapes,
+        shapes=obj.shapes,
+        visuals=obj.visuals,
         present=present,
         pose=tuple(float(value) for value in obj.pose.as_vector()) if is_known else (),
         mass=obj.mass,
@@ -228,7 +229,7 @@ def _object_record(
 
 
 def _gaps(
-    known: Recorded, signals: Signals, present: Mapping[str, tuple[Interval, ...]]
+    known: Recorded, signals: Signals, present: Mapping[str, tuple[StepInterval, ...]]
 ) -> list[str]:
     """Messages about gaps in joints and objects."""
     messages: list[str] = []

@@ -63,7 +63,9 @@ def rows_at(times: FloatArray, rows: FloatArray, sample_times: FloatArray) -> Fl
     return np.where(((span > limit) | (beyond > limit))[:, None], np.nan, found)
 
 
-def poses_at(times: FloatArray, poses: FloatArray, sample_times: FloatArray) -> FloatArray:
+def interpolated_poses(
+    times: FloatArray, poses: FloatArray, sample_times: FloatArray
+) -> FloatArray:
     """Interpolation of poses (xyz, quat wxyz); NaN in gaps; shape (len(sample_times), 7).
 
     A single pose applies at all times: it was published once because nothing moves. Quaternions are

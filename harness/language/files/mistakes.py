@@ -45,7 +45,7 @@ class MistakeError(ValueError):
         super().__init__(message)
 
 
-def describe(value: Any) -> str:
+def value_text(value: Any) -> str:
     """A value as a person would describe it: `` `x` ``, a list, nothing."""
     if isinstance(value, dict):
         return "a mapping"

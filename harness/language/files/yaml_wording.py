@@ -65,7 +65,7 @@ def _layout_problem(error: yaml.MarkedYAMLError, mark: yaml.Mark, source: Source
     if opened is not None and (opened.line == mark.line or is_inside_line):
         return None
     if "could not find expected ':'" in said and opened is not None:
-        if not _says_something(source.line(opened.line + 1)):
+        if not _has_content(source.line(opened.line + 1)):
             return None
         return _no_colon(opened.line + 1, source)
     if "mapping values are not allowed" in said:
@@ -98,7 +98,7 @@ def _key_after_text(mark: yaml.Mark, source: Source) -> Problem | None:
     before = source.line(number)[: mark.column].strip().removeprefix("- ")
     if ": " in before or before.startswith(("'", '"', "{", "[")):
         return None
-    above = next((n for n in range(number - 1, 0, -1) if _says_something(source.line(n))), 0)
+    above = next((n for n in range(number - 1, 0, -1) if _has_content(source.line(n))), 0)
     if not above:
         return None
     text = source.line(above)[_start(above, source).column - 1 :].split(" #")[0]
@@ -131,7 +131,7 @@ def _no_key(mark: yaml.Mark, opened: yaml.Mark, source: Source) -> Problem:
     """A line that is no key of the mapping above it: a list item, or another indentation."""
     place = _place(mark, source)
     lines_above = [
-        n for n in range(place.line - 1, opened.line, -1) if _says_something(source.line(n))
+        n for n in range(place.line - 1, opened.line, -1) if _has_content(source.line(n))
     ]
     is_item = _is_item(source.line(place.line), mark.column)
     if is_item and place.column == opened.column + 1:
@@ -169,7 +169,7 @@ def _indentation(line: str) -> int:
     return 1 + len(line) - len(line.lstrip())
 
 
-def _says_something(line: str) -> bool:
+def _has_content(line: str) -> bool:
     return bool(line.strip()) and not line.lstrip().startswith("#")
 
 

@@ -11,13 +11,14 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from harness.core.errors import Problem, SpecError
+from harness.core.registry import broken_plugins, registry
 from harness.core.resources import data_folder
 from harness.language.base import SpecModel
 from harness.language.files.mistakes import did_you_mean
 from harness.language.files.source import Loc, Located, Source, SourceMap
 from harness.language.files.yaml_file import parse_yaml, read_text, require_key
 from harness.language.reading.includes import with_includes
-from harness.language.reading.overrides import from_options, override
+from harness.language.reading.overrides import apply_overrides, from_options
 from harness.language.reading.params import substitute
 from harness.language.reading.repair import Repaired, repair
 from harness.language.reading.short_forms import models_shape
@@ -122,7 +123,7 @@ def read_scenario(
     root = parse_yaml(text, Source.of_text(str(path), text), problems)
     of_file = values_of_case(root, given)
     options = {key: value for key, value in given.items() if key not in of_file}
-    root = override(root, [*of_file.values(), *from_options(options, problems)], problems)
+    root = apply_overrides(root, [*of_file.values(), *from_options(options, problems)], problems)
     check_variation(root, given, lambda varied: _problems_of(varied, path), problems)
     written = substitute(with_includes(root, path, problems), problems)
     try:
@@ -213,7 +214,7 @@ def world_path(name_or_path: str, base_dir: Path) -> Path:
     if suffix == SCENE_SUFFIX:
         hint = f"`harness import scene {name_or_path}` writes it as a world file"
         raise _no_world(name_or_path, "a MoveIt scene is no world yet", hint)
-    if suffix in (*WORLD_SUFFIXES, *SDF_SUFFIXES):
+    if suffix in WORLD_SUFFIXES or is_foreign_world(name_or_path):
         return file_path(name_or_path, base_dir)
     names = bundled_worlds()
     if name_or_path in names:
@@ -222,8 +223,19 @@ def world_path(name_or_path: str, base_dir: Path) -> Path:
     raise _no_world(
         name_or_path,
         f"no world is called `{name_or_path}`",
-        f"{hint}; or the path of a .yaml or .sdf file",
+        "; ".join([hint, "or the path of a .yaml or .sdf file", *broken_plugins()]),
     )
+
+
+def is_foreign_world(name_or_path: str) -> bool:
+    """Whether a world is a file of another program: SDF, or of a plug-in's format."""
+    suffix = Path(name_or_path).suffix.lower()
+    if not suffix or suffix in (*WORLD_SUFFIXES, SCENE_SUFFIX):
+        return False
+    if suffix in SDF_SUFFIXES:
+        return True
+    formats = registry("world_format")
+    return any(suffix in formats[name].suffixes for name in formats)
 
 
 def file_path(text: str, base_dir: Path) -> Path:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from harness.core.errors import Problem
 from harness.core.registry import broken_plugins
 from harness.language.annotations import is_model, keys_of
-from harness.language.files.mistakes import describe, did_you_mean, nearest
+from harness.language.files.mistakes import did_you_mean, nearest, value_text
 from harness.language.files.source import Entry, Located, Place
 from harness.language.language import EXPECTATIONS, PREDICATES, UNTIL
 
@@ -64,7 +64,7 @@ def take_apart(
         keyword = _unknown(item.value, item.place, nothing, words, kind, problems)
         return None if keyword is None else Words(keyword, Entry(item.place, nothing), {})
     if not isinstance(item.value, dict):
-        message = f"{_a(whole)} is a {kind} with its content, not {describe(item.plain())}"
+        message = f"{_a(whole)} is a {kind} with its content, not {value_text(item.plain())}"
         problems.append(item.place.problem(message, _all(words, kind)))
         return None
     keys = [key for key in item.value if key not in siblings]

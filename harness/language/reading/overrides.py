@@ -9,13 +9,13 @@ from harness.core.errors import Problem, SpecError
 from harness.language.annotations import bare, branches, is_model, keys_of
 from harness.language.base import Rpy, SpecModel
 from harness.language.expectation import ExpectationFields, PredicateFields
-from harness.language.files.mistakes import describe, did_you_mean
+from harness.language.files.mistakes import did_you_mean, value_text
 from harness.language.files.source import Entry, Located, Place, Source, located
 from harness.language.files.yaml_file import parse_value
 from harness.language.language import EXPECTATIONS, KEYS_BY_PREDICATE, TEMPORAL, UNTIL
 from harness.language.reading.params import PARAMS
 from harness.language.reading.short_forms import expanded
-from harness.language.reading.written import written
+from harness.language.reading.written import as_written
 from harness.language.scenario import RobotSpec, Scenario
 from harness.language.step import STEPS, Step
 
@@ -61,7 +61,7 @@ def from_options(overrides: Mapping[str, str], problems: list[Problem]) -> list[
     return found
 
 
-def override(root: Located, overrides: list[Override], problems: list[Problem]) -> Located:
+def apply_overrides(root: Located, overrides: list[Override], problems: list[Problem]) -> Located:
     """A scenario's values with others in their place; mistakes are added to `problems`.
 
     A key that may stand where the path says is added; below a key that is absent, its default is
@@ -95,8 +95,8 @@ def _parts(root: Located, path: str) -> list[str]:
 
 
 class _Setter:
-    def __init__(self, override: Override) -> None:
-        self.override = override
+    def __init__(self, apply_overrides: Override) -> None:
+        self.override = apply_overrides
 
     def set(self, item: Located, annotation: Any, parts: list[str]) -> Located:
         """The value with the override's at the end of the path; raises _PathError."""
@@ -110,7 +110,7 @@ class _Setter:
         if isinstance(item.value, list):
             return self._in_list(item, kind, parts)
         above = self._above(parts)
-        message = f"`{above}` is {describe(item.value)}; it has no `{parts[0]}`"
+        message = f"`{above}` is {value_text(item.value)}; it has no `{parts[0]}`"
         way = f"--set {above}=..." if self.override.is_option else f"`{above}`"
         raise _PathError(message, f"set the whole of it: {way}")
 
@@ -198,7 +198,7 @@ def _field(kind: Any, key: str) -> tuple[Any, Any]:
     default = None if field.is_required() else field.get_default(call_default_factory=True)
     if default is None and bare(field.annotation) == Rpy:
         default = NO_ROTATION
-    return field.annotation, written(default)
+    return field.annotation, as_written(default)
 
 
 def _is_mapping(annotation: Any) -> bool:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping
 
 from harness.core.errors import Problem
-from harness.language.files.mistakes import describe, did_you_mean
+from harness.language.files.mistakes import did_you_mean, value_text
 from harness.language.files.source import Entry, Located, Place
 
 REFERENCE = re.compile(r"\$(?P<escape>\$?)\{(?P<name>[^{}]*)\}")
@@ -55,10 +55,10 @@ def filled(item: Located, params: Mapping[str, Entry], problems: list[Problem]) 
         if value is None:
             return match[0]
         if isinstance(value.value, dict | list):
-            message = f"`{match[0]}` is {describe(value.plain())}; it cannot stand inside a text"
+            message = f"`{match[0]}` is {value_text(value.plain())}; it cannot stand inside a text"
             problems.append(item.place.problem(message))
             return match[0]
-        return describe(value.value).strip("`") if value.value is not None else ""
+        return value_text(value.value).strip("`") if value.value is not None else ""
 
     return Located(REFERENCE.sub(written, text), item.place)
 

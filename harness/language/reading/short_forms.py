@@ -17,7 +17,7 @@ from harness.core.errors import Problem
 from harness.language.annotations import bare, branches, is_model, keys_of, units_of
 from harness.language.base import SpecModel
 from harness.language.expectation import CHECK, ExpectationFields, PredicateFields
-from harness.language.files.mistakes import describe, did_you_mean, nearest
+from harness.language.files.mistakes import did_you_mean, nearest, value_text
 from harness.language.files.source import Entry, Located
 from harness.language.language import (
     EXPECTATIONS,
@@ -201,7 +201,7 @@ class _Shaper:
         return _tagged(CHECK, Words(UNTIL, found.entry, {}), entries)
 
     def _not_content(self, found: Words, content: Located, model: type[SpecModel]) -> None:
-        message = f"`{found.word}` takes a mapping, not {describe(content.plain())}"
+        message = f"`{found.word}` takes a mapping, not {value_text(content.plain())}"
         keys = [key for key in keys_of(model) if key not in (*KEYS_BY_VERB, *KEYS_BY_PREDICATE)]
         hint = f"keys: {', '.join(keys)}" if keys else f"write `- {found.word}` alone"
         self.problems.append(content.place.problem(message, hint))

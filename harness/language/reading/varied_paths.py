@@ -9,9 +9,9 @@ from pydantic import ValidationError
 
 from harness.core.errors import Problem
 from harness.core.quantity import split_quantity
-from harness.language.files.mistakes import describe
+from harness.language.files.mistakes import value_text
 from harness.language.files.source import Entry, Located, located
-from harness.language.reading.overrides import Override, override
+from harness.language.reading.overrides import Override, apply_overrides
 from harness.language.variation import VARIATION_KEYS, Distribution
 
 MOST_ROUNDS = 100
@@ -39,7 +39,7 @@ def check_variation(
                 problems.append(entry.key.problem(f"`{path}` itself cannot be varied"))
             elif path not in given:
                 wrong: list[Problem] = []
-                override(root, [Override(path, Located(None, entry.key), entry.key)], wrong)
+                apply_overrides(root, [Override(path, Located(None, entry.key), entry.key)], wrong)
                 problems += wrong
                 is_known = any(problem.line == entry.value.place.line for problem in problems)
                 if is_random and not wrong and not is_known:
@@ -139,7 +139,7 @@ def _check_values(
 
     def new_problems(values: list[Override]) -> list[Problem]:
         unused: list[Problem] = []
-        found = judge(override(root, values, unused))
+        found = judge(apply_overrides(root, values, unused))
         return [problem for problem in found if _identity(problem) not in known]
 
     if not any(map(new_problems, sets)):
@@ -170,7 +170,7 @@ def _problem_of(values: Sequence[Override], found: Sequence[list[Problem]]) -> P
 
 def _of_value(drawn: Override, problem: Problem) -> Problem:
     """A problem that a drawn value causes, reported where the value stands."""
-    value = describe(drawn.value.plain())
+    value = value_text(drawn.value.plain())
     message = f"`{drawn.path}` can be drawn as {value}: {problem.message}"
     return drawn.value.place.problem(message, problem.hint)
 

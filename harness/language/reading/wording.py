@@ -11,7 +11,7 @@ from pydantic_core import ErrorDetails
 
 from harness.core.errors import Problem
 from harness.language.base import SpecModel
-from harness.language.files.mistakes import LONGEST_VALUE, MistakeError, describe, did_you_mean
+from harness.language.files.mistakes import LONGEST_VALUE, MistakeError, did_you_mean, value_text
 from harness.language.files.source import Found, Loc, SourceMap
 
 Wording = Callable[[ErrorDetails, dict[str, Any], str], tuple[str, str]]
@@ -46,7 +46,7 @@ def _problem(error: ErrorDetails, lines: SourceMap) -> Problem:
     if is_key and found.key is not None:
         place = found.key
     word = WORDINGS.get(error["type"], _as_said)
-    message, hint = word(error, error.get("ctx", {}), describe(error["input"]))
+    message, hint = word(error, error.get("ctx", {}), value_text(error["input"]))
     raised = error.get("ctx", {}).get("error")
     if isinstance(raised, MistakeError) and raised.span is not None:
         place = place.part(str(found.item.plain()), *raised.span)

@@ -17,11 +17,11 @@ from harness.language.step import Step
 
 def scenario_text(scenario: Scenario) -> str:
     """A scenario as the text of a file that loads to the same model; numbers are in SI units."""
-    root = located(written(scenario), Place(Source("a scenario built in Python")))
+    root = located(as_written(scenario), Place(Source("a scenario built in Python")))
     return yaml_text(escaped(root), block_keys=("steps", "expect"))
 
 
-def written(value: object) -> Any:
+def as_written(value: object) -> Any:
     """A model, or what it holds, as plain data in the shape of a file."""
     if isinstance(value, SpecModel):
         entries = _entries(value)
@@ -35,9 +35,9 @@ def written(value: object) -> Any:
         return entries
     if isinstance(value, Mapping):
         items = cast("Mapping[str, object]", value).items()
-        return {key: written(item) for key, item in items}
+        return {key: as_written(item) for key, item in items}
     if isinstance(value, tuple | list):
-        return [written(item) for item in cast("list[object]", value)]
+        return [as_written(item) for item in cast("list[object]", value)]
     return value
 
 
@@ -51,7 +51,7 @@ def _entries(model: SpecModel) -> dict[str, Any]:
     """The fields that were given, by the names that files have."""
     fields = type(model).model_fields
     return {
-        field.alias or name: written(getattr(model, name))
+        field.alias or name: as_written(getattr(model, name))
         for name, field in fields.items()
         if name in model.model_fields_set
     }

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
+from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.cartesian.leg import Leg
 from harness.planning.cartesian.leg_run import runs_of, time_runs
 from harness.planning.cartesian.line_goals import end_pose
-from harness.planning.cartesian.linear_path import Line
+from harness.planning.cartesian.linear_path import LinearPath
 from harness.planning.cartesian.link_motion import LinkMotions
 from harness.planning.cartesian.link_timing import LinkRates
 from harness.planning.cartesian.tracing import STEP_ANGLE, STEP_LENGTH, Trace, trace
 from harness.ports import CartesianPathOptions, Goal, MotionPlan
+from harness.recording.explanation import CartesianPathResult, StraightResult
 
 CORNER_SHARE = 0.45
 """Largest part of the shorter adjacent line that the rounding of a corner may use."""
@@ -38,12 +41,9 @@ def plan_waypoints(
     task = motions.task
     legs, lines, steps, stopped = _follow(motions, goals, path_options)
     whole = sum(_amount(line) for line in lines)
-    done = sum(_amount(leg.path) for leg in legs if isinstance(leg.path, Line))
+    done = sum(_amount(leg.path) for leg in legs if isinstance(leg.path, LinearPath))
     fraction = 1.0 if stopped is None else done / whole
-    result = {
-        "fraction": fraction,
-        "largest_joint_step": max(steps, default=0.0),
-    }
+    result = CartesianPathResult(fraction, max(steps, default=0.0))
     if fraction < path_options.min_fraction or not legs:
         why = "" if stopped is None else f": {stopped.stop}"
         least = f"{100 * path_options.min_fraction:.0f} %"
@@ -51,40 +51,40 @@ def plan_waypoints(
             "PLANNING_FAILED",
             f"{lines[0].link} can follow {100 * fraction:.1f} % of its path, at least {least} is "
             f"required{why}",
-            {**result, "min_fraction": path_options.min_fraction}
-            | ({} if stopped is None else {"reason": stopped.reason, **stopped.facts}),
+            replace(result, min_fraction=path_options.min_fraction),
+            *Details.of(None if stopped is None else stopped.failure),
         )
     runs = runs_of(legs, _radii(legs, path_options.precision), motions)
-    explanation = {
-        "lowered_margins": list(task.checker.lowered),
-        "stopped_by": "" if stopped is None else stopped.stop,
-    }
+    explanation = task.lowered_margins + Details.of(
+        StraightResult("" if stopped is None else stopped.stop)
+    )
     end = legs[-1].positions[-1]
     if task.options.path_only:
-        return task.jump(end, explanation, result)
+        return task.jump(end, explanation, Details.of(result))
     trajectory = time_runs(runs, motions)
     task.accept(trajectory, end, "the Cartesian path")
-    result["deviation"] = _deviation(legs, trajectory, motions)
-    if result["deviation"] > path_options.precision:
+    deviation = _deviation(legs, trajectory, motions)
+    result = replace(result, deviation=deviation)
+    if deviation > path_options.precision:
         raise PlanningFailed(
             "INVALID_MOTION_PLAN",
-            f"{lines[0].link} would deviate from its lines by {1000 * result['deviation']:.2f} mm, "
+            f"{lines[0].link} would deviate from its lines by {1000 * deviation:.2f} mm, "
             f"more than the precision of {1000 * path_options.precision:.2f} mm",
             result,
         )
     waypoints = np.concatenate([leg.positions for leg in legs])
     statistics = task.statistics("cartesian_path", trajectory, waypoints)
-    return MotionPlan(trajectory, statistics, explanation, result)
+    return MotionPlan(trajectory, statistics, explanation, Details.of(result))
 
 
 def _follow(
     motions: LinkMotions, goals: Sequence[Goal], path_options: CartesianPathOptions
-) -> tuple[list[Leg], list[Line], list[float], Trace | None]:
+) -> tuple[list[Leg], list[LinearPath], list[float], Trace | None]:
     """The lines followed, all lines, the largest joint steps, and the trace that was stopped."""
     task = motions.task
     rates = LinkRates.of(task.options.cartesian_limits, task.options)
     legs: list[Leg] = []
-    lines: list[Line] = []
+    lines: list[LinearPath] = []
     steps: list[float] = []
     stopped: Trace | None = None
     start = task.start
@@ -92,7 +92,7 @@ def _follow(
     for index, goal in enumerate(goals):
         target = end_pose(motions.kinematics, task, start, goal)
         pose = pose or motions.pose(start, target.link)
-        line = Line.between(target.link, pose, target.pose)
+        line = LinearPath.between(target.link, pose, target.pose)
         pose = target.pose
         if line.length < _NO_MOTION and line.angle < _NO_MOTION:
             continue
@@ -117,7 +117,7 @@ def _follow(
     return legs, lines, steps, stopped
 
 
-def _amount(line: Line) -> float:
+def _amount(line: LinearPath) -> float:
     """The size of a line: its length, or its rotation converted by the ratio of the steps [m]."""
     return max(line.length, line.angle * STEP_LENGTH / STEP_ANGLE)
 

@@ -10,6 +10,7 @@ import pinocchio as pin
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.recording.motion_failures import CircleFailure
 
 LARGEST_RADIUS_DIFFERENCE = 1e-2
 """Largest difference of the radii of start and goal [m], as in Pilz; the centre is corrected."""
@@ -24,7 +25,7 @@ arcs, such as a twelfth of a circle of 2 cm.
 _STRAIGHT_ANGLE = 1e-3  # [rad] nearer to half a circle about a centre, the plane is undefined
 
 
-class Arc:
+class CircularPath:
     """A link's path on a circle; the link rotates at a constant rate from start to end.
 
     Attributes:
@@ -49,7 +50,7 @@ class Arc:
         self._spoke = start.translation - self.center
 
     @classmethod
-    def through(cls, link: str, start: SE3, interim: FloatArray, end: SE3) -> Arc:
+    def through(cls, link: str, start: SE3, interim: FloatArray, end: SE3) -> CircularPath:
         """Create the arc from one pose through a point to another pose.
 
         Raises:
@@ -67,7 +68,7 @@ class Arc:
         return cls(link, start, end, center, axis, _angle(first - center, last - center, axis))
 
     @classmethod
-    def about(cls, link: str, start: SE3, center: FloatArray, end: SE3) -> Arc:
+    def about(cls, link: str, start: SE3, center: FloatArray, end: SE3) -> CircularPath:
         """Create the shorter arc from one pose about a centre to another.
 
         Raises:
@@ -81,7 +82,7 @@ class Arc:
                 "INVALID_MOTION_PLAN",
                 f"no circle: the start is {1000 * radii[0]:.1f} mm from the centre, the goal "
                 f"{1000 * radii[1]:.1f} mm",
-                {"start_radius": radii[0], "goal_radius": radii[1]},
+                CircleFailure(radii[0], radii[1]),
             )
         normal = np.cross(first, last)
         size = float(np.linalg.norm(normal))

@@ -17,8 +17,10 @@ from harness.planning.cartesian.link_timing import LinkRates
 from harness.planning.cartesian.splines import uniform_spline
 from harness.planning.cartesian.tracing import LinkPath, link_goal
 from harness.planning.collision import wording
-from harness.planning.collision.checker import MotionChecker, touch_facts
+from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.ik.numeric import LinkTask
+from harness.recording.goal_failures import CollisionFailure
+from harness.recording.motion_failures import BlendFailure
 
 JOINT_STEP = 0.03
 """Between the samples of a joint motion [rad]."""
@@ -138,7 +140,7 @@ def transition(first: Leg, second: Leg, radius: float, checker: MotionChecker) -
             raise PlanningFailed(
                 "INVALID_MOTION_PLAN",
                 f"the blend radius of {1000 * radius:.1f} mm is larger than {leg.name}",
-                {"blend_radius": radius},
+                BlendFailure(radius),
             )
     if leaves is None or enters is None:
         raise ValueError("both were found")
@@ -153,7 +155,7 @@ def transition(first: Leg, second: Leg, radius: float, checker: MotionChecker) -
             "PLANNING_FAILED",
             f"the blend from {first.name} into {second.name} ends on another branch of inverse "
             "kinematics; make its radius smaller",
-            {"blend_radius": radius},
+            BlendFailure(radius),
         )
     positions[-1] = last
     return Transition(leaves, enters, np.array(positions))
@@ -183,6 +185,6 @@ def _follow(leg: Leg, pose: SE3, before: list[FloatArray], checker: MotionChecke
         raise PlanningFailed(
             "INVALID_MOTION_PLAN",
             f"in the blend after {leg.name} these come too near: {wording.touches(touches)}",
-            {"touches": touch_facts(touches)},
+            CollisionFailure(touch_records(touches)),
         )
     return found

@@ -22,6 +22,7 @@ from harness.planning.cartesian.tracing import Trace
 from harness.planning.timing.joint_spline import JointSpline
 from harness.planning.timing.limits import TimingError
 from harness.planning.timing.timing import joined, time_straight
+from harness.recording.motion_failures import BlendFailure, DeviationFailure
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +57,7 @@ def runs_of(legs: Sequence[Leg], radii: Sequence[float], motions: LinkMotions) -
             raise PlanningFailed(
                 "INVALID_MOTION_PLAN",
                 f"the blends before and after {some[-1].name} overlap: make a radius smaller",
-                {"blend_radius": radius},
+                BlendFailure(radius),
             )
         some.append(leg)
         blends.append(blend)
@@ -72,7 +73,7 @@ def time_runs(runs: Sequence[LegRun], motions: LinkMotions) -> JointTrajectory:
     try:
         pieces = [_time_run(run, motions) for run in runs]
     except TimingError as problem:
-        raise PlanningFailed("INVALID_MOTION_PLAN", str(problem), problem.facts) from problem
+        raise PlanningFailed("INVALID_MOTION_PLAN", str(problem), *problem.details) from problem
     return joined(pieces)
 
 
@@ -151,5 +152,5 @@ def _check_ways(
                 "INVALID_MOTION_PLAN",
                 f"{path.link} would leave {run.legs[owner].name} by {1000 * shift:.3f} mm and "
                 f"{turn:.5f} rad",
-                {"position_deviation": shift, "orientation_deviation": turn},
+                DeviationFailure(shift, turn),
             )

@@ -13,7 +13,7 @@ from harness.core.types import FloatArray
 _NOWHERE = 1e-9  # [m, rad]
 
 
-class Line:
+class LinearPath:
     """A link's way from one pose along a constant twist: translation and turn at an even rate.
 
     Attributes:
@@ -33,7 +33,7 @@ class Line:
         self.turn = np.asarray(turn, dtype=float)
 
     @classmethod
-    def between(cls, link: str, start: SE3, end: SE3) -> Line:
+    def between(cls, link: str, start: SE3, end: SE3) -> LinearPath:
         """The straight line between two poses, turning the shortest way."""
         turn = pin.log3(end.rotation @ start.rotation.T)
         return cls(link, start, end.translation - start.translation, turn)
@@ -53,9 +53,9 @@ class Line:
         rotation = pin.exp3(parameter * self.turn) @ self.start.rotation
         return SE3(rotation, self.start.translation + parameter * self.shift)
 
-    def part(self, share: float) -> Line:
+    def part(self, share: float) -> LinearPath:
         """The line's first part."""
-        return Line(self.link, self.start, share * self.shift, share * self.turn)
+        return LinearPath(self.link, self.start, share * self.shift, share * self.turn)
 
     def nearest(self, pose: SE3) -> tuple[float, float]:
         """The parameter at which the line comes nearest to a pose's origin, and its distance [m].

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 
+from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.planning.cartesian.circular_path import Arc
+from harness.planning.cartesian.circular_path import CircularPath
 from harness.planning.cartesian.line_goals import end_pose
-from harness.planning.cartesian.linear_path import Line
+from harness.planning.cartesian.linear_path import LinearPath
 from harness.planning.cartesian.link_timing import (
     CARTESIAN_TOLERANCE,
     LinkRates,
@@ -27,6 +27,9 @@ from harness.planning.task import PlanningTask
 from harness.planning.timing.limits import TimingError
 from harness.planning.timing.profiles import resting
 from harness.ports import ArcPoint, Goal, MotionPlan, PoseGoal
+from harness.recording.explanation import ArcResult, DistanceResult, StraightResult
+from harness.recording.goal_failures import IkFailure
+from harness.recording.motion_failures import DeviationFailure, DistanceFailure, TraceFailure
 
 RELATIVE_STEP = 0.002
 """Step of a motion that goes as far as it can [m]."""
@@ -47,45 +50,44 @@ class LinkMotions:
     def linear(self, goal: Goal) -> MotionPlan:
         """Pilz's LIN."""
         target = end_pose(self.kinematics, self.task, self.task.start, goal)
-        line = Line.between(target.link, self.pose(self.task.start, target.link), target.pose)
-        return self._to_end(line, target, "LIN", {})
+        line = LinearPath.between(target.link, self.pose(self.task.start, target.link), target.pose)
+        return self._to_end(line, target, "LIN", Details())
 
     def circular(self, goal: Goal, point: ArcPoint) -> MotionPlan:
         """Pilz's CIRC."""
         target = end_pose(self.kinematics, self.task, self.task.start, goal)
         arc = arc_to(target, self.pose(self.task.start, target.link), point)
-        circle = {"center": arc.center.tolist(), "radius": arc.radius, "sweep": arc.sweep}
-        return self._to_end(arc, target, "CIRC", circle)
+        circle = ArcResult(tuple(arc.center.tolist()), arc.radius, arc.sweep)
+        return self._to_end(arc, target, "CIRC", Details.of(circle))
 
     def relative(self, link: str, twist: FloatArray, distances: tuple[float, float]) -> MotionPlan:
         """Task Constructor's MoveRelative: as far as goes between two distances."""
         task, (least, most) = self.task, distances
         twist = np.asarray(twist, dtype=float)
-        line = Line(link, self.pose(task.start, link), most * twist[:3], most * twist[3:])
+        line = LinearPath(link, self.pose(task.start, link), most * twist[:3], most * twist[3:])
         step = RELATIVE_STEP if least < most else STEP_LENGTH
         traced = trace(line, task.checker, task.start, step)
         reached = traced.share * most
-        if not traced.reached_end and reached < least:
+        if traced.failure is not None and reached < least:
             unit, scale = ("mm", 1000.0) if np.any(twist[:3]) else ("°", float(np.degrees(1.0)))
             raise PlanningFailed(
                 "PLANNING_FAILED",
                 f"{link} gets {scale * reached:.1f} of {scale * least:.1f} {unit} far: "
                 f"{traced.stop}",
-                {"reached": reached, "least": least, **_stopped(traced)},
+                DistanceFailure(reached, least),
+                _stopped_at(traced, traced.failure),
             )
-        explanation = {
-            "lowered_margins": list(task.checker.lowered),
-            "distance": reached,
-            "stopped_by": traced.stop,
-        }
+        explanation = task.lowered_margins + Details.of(StraightResult(traced.stop, reached))
         if not traced.reached_end:
             line = line.part(traced.share)
             traced = trace(line, task.checker, task.start, step)
-            if not traced.reached_end:
-                raise path_failed(line, traced)
-        return self._timed(line, traced, "move_relative", explanation, {"distance": reached})
+            if traced.failure is not None:
+                raise path_failed(line, traced, traced.failure)
+        return self._timed(
+            line, traced, "move_relative", explanation, Details.of(DistanceResult(reached))
+        )
 
-    def solutions(self, start: FloatArray, target: PoseGoal) -> dict[str, Any]:
+    def solutions(self, start: FloatArray, target: PoseGoal) -> Details:
         """What became of the solutions of inverse kinematics of a way's end.
 
         Raises:
@@ -94,7 +96,7 @@ class LinkMotions:
         task = self.task
         whole = task.space.whole(start)
         found = find_goals(self.kinematics, task.checker, whole, target, task.options.seed)
-        return {**found.explanation, "lowered_margins": list(task.checker.lowered)}
+        return found.explanation + task.lowered_margins
 
     def pose(self, positions: FloatArray, link: str) -> SE3:
         """T_world_link at group positions."""
@@ -107,8 +109,8 @@ class LinkMotions:
             PlanningFailed: Something stops it, or the arm's end pose is not the target's.
         """
         traced = trace(path, self.task.checker, start)
-        if not traced.reached_end:
-            raise path_failed(path, traced)
+        if traced.failure is not None:
+            raise path_failed(path, traced, traced.failure)
         end = self.pose(traced.positions[-1], target.link)
         if not meets_tolerance(target, end):
             shift, angle = target.pose.distance_to(end)
@@ -116,24 +118,24 @@ class LinkMotions:
                 "NO_IK_SOLUTION",
                 f"at the end of the {path.name} {target.link} is {1000 * shift:.1f} mm and "
                 f"{angle:.4f} rad from the goal",
-                {"position_error": shift, "orientation_error": angle},
+                IkFailure(shift, angle),
             )
         return traced
 
     def _to_end(
-        self, path: LinkPath, target: PoseGoal, kind: str, explanation: dict[str, Any]
+        self, path: LinkPath, target: PoseGoal, kind: str, explanation: Details
     ) -> MotionPlan:
-        explanation = {**self.solutions(self.task.start, target), **explanation}
+        explanation = self.solutions(self.task.start, target) + explanation
         traced = self.followed(path, target, self.task.start)
-        return self._timed(path, traced, kind, explanation, {})
+        return self._timed(path, traced, kind, explanation, Details())
 
     def _timed(
         self,
         path: LinkPath,
         traced: Trace,
         kind: str,
-        explanation: dict[str, Any],
-        result: Mapping[str, Any],
+        explanation: Details,
+        result: Details,
     ) -> MotionPlan:
         task = self.task
         if task.options.path_only:
@@ -158,7 +160,7 @@ class LinkMotions:
         try:
             return time_on_path(path, traced, names, self.task.limits, rates)
         except TimingError as problem:
-            raise PlanningFailed("INVALID_MOTION_PLAN", str(problem), problem.facts) from problem
+            raise PlanningFailed("INVALID_MOTION_PLAN", str(problem), *problem.details) from problem
 
     def check_path(self, path: LinkPath, trajectory: JointTrajectory) -> dict[str, float]:
         """How far a trajectory's link leaves its way.
@@ -177,7 +179,7 @@ class LinkMotions:
                 "INVALID_MOTION_PLAN",
                 f"{path.link} would leave its {path.name} by {1000 * shift:.3f} mm and "
                 f"{turn:.5f} rad",
-                {"position_deviation": shift, "orientation_deviation": turn},
+                DeviationFailure(shift, turn),
             )
         return {"position_deviation": shift, "orientation_deviation": turn}
 
@@ -204,17 +206,17 @@ class LinkMotions:
         }
 
 
-def arc_to(target: PoseGoal, start: SE3, point: ArcPoint) -> Arc:
+def arc_to(target: PoseGoal, start: SE3, point: ArcPoint) -> CircularPath:
     """The arc from a pose to a target.
 
     Raises:
         PlanningFailed: INVALID_MOTION_PLAN, when there is no such circle.
     """
-    make = Arc.through if point.kind == "interim" else Arc.about
+    make = CircularPath.through if point.kind == "interim" else CircularPath.about
     return make(target.link, start, point.position, target.pose)
 
 
-def path_failed(path: LinkPath, traced: Trace) -> PlanningFailed:
+def path_failed(path: LinkPath, traced: Trace, failure: TraceFailure) -> PlanningFailed:
     """The failure of a way that was not followed to its end."""
     kind = {"line": "straight line", "arc": "arc"}.get(path.name, path.name)
     amount = (
@@ -223,14 +225,13 @@ def path_failed(path: LinkPath, traced: Trace) -> PlanningFailed:
         else f"its {np.degrees(path.angle):.1f}°"
     )
     return PlanningFailed(
-        CODES[traced.reason],
+        CODES[failure.reason],
         f"{path.link} can follow the {kind} for {100 * traced.share:.0f} % of {amount}: "
         f"{traced.stop}",
-        {"free_share": traced.share, **_stopped(traced)},
+        replace(_stopped_at(traced, failure), free_share=traced.share),
     )
 
 
-def _stopped(traced: Trace) -> dict[str, Any]:
-    """What stopped a trace, and the group's positions there."""
-    end = traced.positions[-1].tolist()
-    return {"reason": traced.reason, "joint_positions": end, **traced.facts}
+def _stopped_at(traced: Trace, failure: TraceFailure) -> TraceFailure:
+    """What stopped a trace, with the group's positions there."""
+    return replace(failure, joint_positions=tuple(traced.positions[-1].tolist()))

@@ -6,16 +6,19 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.planning.cartesian.leg import Leg
 from harness.planning.cartesian.leg_run import runs_of, time_runs
 from harness.planning.cartesian.line_goals import end_pose
-from harness.planning.cartesian.linear_path import Line
+from harness.planning.cartesian.linear_path import LinearPath
 from harness.planning.cartesian.link_motion import LinkMotions, arc_to
 from harness.planning.cartesian.link_timing import LinkRates
 from harness.planning.goals.goals import find_goals
 from harness.ports import JointGoal, MotionPlan, SequenceItem
+from harness.recording.explanation import SequenceResult
+from harness.recording.motion_failures import SequenceFailure
 
 
 def plan_items(motions: LinkMotions, items: Sequence[SequenceItem]) -> MotionPlan:
@@ -32,14 +35,18 @@ def plan_items(motions: LinkMotions, items: Sequence[SequenceItem]) -> MotionPla
         try:
             leg = _leg(motions, item, start)
         except PlanningFailed as failure:
-            facts = {**failure.facts, "item": index}
-            raise PlanningFailed(failure.code, f"{name}: {failure.message}", facts) from failure
+            raise PlanningFailed(
+                failure.code,
+                f"{name}: {failure.message}",
+                *failure.details,
+                SequenceFailure(index),
+            ) from failure
         leg.name = name
         legs.append(leg)
         start = leg.positions[-1]
     runs = runs_of(legs, [item.blend_radius for item in items[:-1]], motions)
-    result = {"items": len(items), "stops": len(runs) - 1, "blends": len(items) - len(runs)}
-    explanation = {"lowered_margins": list(task.checker.lowered)}
+    result = Details.of(SequenceResult(len(items), len(runs) - 1, len(items) - len(runs)))
+    explanation = task.lowered_margins
     end = legs[-1].positions[-1]
     if task.options.path_only:
         return task.jump(end, explanation, result)
@@ -62,7 +69,7 @@ def _leg(motions: LinkMotions, item: SequenceItem, start: FloatArray) -> Leg:
     target = end_pose(kinematics, task, start, item.goal)
     now = motions.pose(start, target.link)
     if item.point is None:
-        path = Line.between(target.link, now, target.pose)
+        path = LinearPath.between(target.link, now, target.pose)
     else:
         path = arc_to(target, now, item.point)
     motions.solutions(start, target)

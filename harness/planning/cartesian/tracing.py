@@ -5,8 +5,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any, Protocol
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -16,9 +16,10 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.cartesian.splines import uniform_spline
 from harness.planning.collision import wording
-from harness.planning.collision.checker import MotionChecker, touch_facts
+from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.ik.numeric import LinkGoal, LinkTask, pitch_of
 from harness.ports import JumpThreshold, PoseGoal, PositionGoal
+from harness.recording.motion_failures import TraceFailure
 
 STEP_LENGTH = 0.005
 """Distance between the poses that are solved on a way [m]."""
@@ -87,16 +88,14 @@ class Trace:
         parameters: Even, from 0; ends at 1 when nothing stopped it, shape (K,).
         positions: Group positions, shape (K, dof).
         stop: Why the trace ends before the path; empty when it reaches the end.
-        reason: `end`, `unreachable`, `limit`, `jump` or `collision`.
-        facts: The numbers of `stop`.
+        failure: The numbers of `stop`; None where nothing stopped it.
         stride: The number of poses per requested step.
     """
 
     parameters: FloatArray
     positions: FloatArray
     stop: str = ""
-    reason: str = "end"
-    facts: dict[str, Any] = field(default_factory=dict)
+    failure: TraceFailure | None = None
     stride: int = 1
 
     @property
@@ -107,7 +106,7 @@ class Trace:
     @property
     def reached_end(self) -> bool:
         """Whether nothing stopped it."""
-        return self.reason == "end"
+        return self.failure is None
 
     @property
     def largest_step(self) -> float:
@@ -158,8 +157,7 @@ def trace(
         traced.positions[:kept],
         f"the joints cannot turn as fast as the {path.name} requires (the arm is at or near a "
         "singularity)",
-        "jump",
-        {"deviation": float(off.max())},
+        TraceFailure("jump", deviation=float(off.max())),
         traced.stride,
     )
 
@@ -183,9 +181,9 @@ def _attempt(
         found, error = task.polish(guess, iterations=20)
         stopped = _stopped(path, checker, positions[-1], found, error, largest / stride)
         if stopped is not None:
-            reason, message, facts = stopped
+            message, failure = stopped
             reached = parameters[:number]
-            return Trace(reached, np.array(positions), message, reason, facts, stride)
+            return Trace(reached, np.array(positions), message, failure, stride)
         positions.append(found)
     return Trace(parameters, np.array(positions), stride=stride)
 
@@ -217,21 +215,18 @@ def _stopped(
     found: FloatArray,
     error: float,
     largest: FloatArray,
-) -> tuple[str, str, dict[str, Any]] | None:
+) -> tuple[str, TraceFailure] | None:
     space = checker.space
     if error > _SOLVED:
         message = f"the arm reaches no farther on this {path.name}"
-        return "unreachable", message, {"residual": error}
+        return message, TraceFailure("unreachable", residual=error)
     outside = np.maximum(space.lower - found, found - space.upper)
     worst = int(np.argmax(outside))
     if outside[worst] > 1e-9:
         name = space.joint_names[worst]
         limit = space.lower[worst] if found[worst] < space.lower[worst] else space.upper[worst]
-        return (
-            "limit",
-            f"{name} meets its limit {limit:.4f}",
-            {"joint": name, "limit": float(limit)},
-        )
+        failure = TraceFailure("limit", joint=name, limit=float(limit))
+        return f"{name} meets its limit {limit:.4f}", failure
     jump = np.abs(found - previous)
     fastest = int(np.argmax(jump / largest))
     if jump[fastest] > largest[fastest]:
@@ -241,11 +236,11 @@ def _stopped(
             f"{name} would jump by {jump[fastest]:.2f} {unit} from one point of the {path.name} to "
             "the next (the arm is at or near a singularity)"
         )
-        return "jump", message, {"joint": name, "jump": float(jump[fastest])}
+        return message, TraceFailure("jump", joint=name, jump=float(jump[fastest]))
     if not checker.state_free(found):
         touches = checker.touches(found)
         message = f"then these come too near: {wording.touches(touches)}"
-        return "collision", message, {"touches": touch_facts(touches)}
+        return message, TraceFailure("collision", touches=touch_records(touches))
     return None
 
 

@@ -4,11 +4,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -22,6 +21,8 @@ from harness.planning.collision.free_stretches import ClearanceCertificates, coa
 from harness.planning.collision.scene import CoalScene
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports import Touch
+from harness.recording.explanation import LoweredMargin
+from harness.recording.goal_failures import CollisionFailure, TouchRecord
 
 DEEPEST_START = 0.002
 """Penetration at the start above which a motion is rejected [m]."""
@@ -60,7 +61,7 @@ class MotionChecker:
 
     Attributes:
         checks: The number of states checked.
-        lowered: The pairs with a lowered margin: `pair`, `start_distance`, `margin`.
+        lowered: The pairs with a lowered margin.
     """
 
     def __init__(
@@ -76,7 +77,7 @@ class MotionChecker:
         self.space = space
         self.padding = padding
         self.checks = 0
-        self.lowered: list[Mapping[str, Any]] = []
+        self.lowered: list[LoweredMargin] = []
         model = self._scene_model
         self._pairs = model.pairs
         self._robot = model.robot.model
@@ -101,20 +102,14 @@ class MotionChecker:
             raise PlanningFailed(
                 "START_STATE_IN_COLLISION",
                 f"the robot starts in collision: {wording.touches(deep)}",
-                {"touches": touch_facts(deep)},
+                CollisionFailure(touch_records(deep)),
             )
         for touch in near:
             lowered = touch.distance - MARGIN_SLACK
             if touch.distance > TOUCHING:
                 lowered = max(lowered, 0.0)
             margins[touch.first, touch.second] = lowered
-            self.lowered.append(
-                {
-                    "pair": [touch.first, touch.second],
-                    "start_distance": touch.distance,
-                    "margin": lowered,
-                }
-            )
+            self.lowered.append(LoweredMargin((touch.first, touch.second), touch.distance, lowered))
         return margins
 
     def _set_margins(self, more: float) -> None:
@@ -247,6 +242,6 @@ class MotionChecker:
         return None if index is None else ((index + 1) / count, self.touches(states[index]))
 
 
-def touch_facts(touches: list[Touch]) -> list[dict[str, Any]]:
-    """Touches as plain data."""
-    return [{"pair": [touch.first, touch.second], "distance": touch.distance} for touch in touches]
+def touch_records(touches: Sequence[Touch]) -> tuple[TouchRecord, ...]:
+    """Touches as a failure records them."""
+    return tuple(TouchRecord((touch.first, touch.second), touch.distance) for touch in touches)

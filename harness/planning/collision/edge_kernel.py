@@ -23,7 +23,7 @@ _compiled: Any = numba.njit(cache=True, error_model="numpy", nogil=True)
 
 
 @_compiled
-def signed_distance(kind, p, x, y, z):  # noqa: ANN001, ANN201
+def point_distance(kind, p, x, y, z):  # noqa: ANN001, ANN201
     """Distance from a point to a solid in its frame, negative inside; `p` holds its size."""
     if kind == SPHERE:
         return math.sqrt(x * x + y * y + z * z) - p[12]
@@ -52,7 +52,7 @@ def signed_distance(kind, p, x, y, z):  # noqa: ANN001, ANN201
 
 
 @_compiled
-def compose(first, second, out):  # noqa: ANN001, ANN201
+def compose_transform(first, second, out):  # noqa: ANN001, ANN201
     """Product of two transforms, each rotation row by row, then translation."""
     for i in range(3):
         a, b, c = first[3 * i], first[3 * i + 1], first[3 * i + 2]
@@ -62,7 +62,7 @@ def compose(first, second, out):  # noqa: ANN001, ANN201
 
 
 @_compiled
-def relative(base, other, out):  # noqa: ANN001, ANN201
+def relative_transform(base, other, out):  # noqa: ANN001, ANN201
     """The transform of `other` relative to `base`."""
     x, y, z = other[9] - base[9], other[10] - base[10], other[11] - base[11]
     for i in range(3):
@@ -79,7 +79,7 @@ def joint_poses(values, parent, chain, out):  # noqa: ANN001, ANN201
     turned = np.empty(12)
     for m in range(parent.shape[0]):
         if parent[m] >= 0:
-            compose(out[parent[m]], chain[m], fixed)
+            compose_transform(out[parent[m]], chain[m], fixed)
         else:
             fixed[:] = chain[m, :12]
         x, y, z = chain[m, 12], chain[m, 13], chain[m, 14]
@@ -97,7 +97,7 @@ def joint_poses(values, parent, chain, out):  # noqa: ANN001, ANN201
         turned[3], turned[4], turned[5] = x * y * v + z * s, c + y * y * v, y * z * v - x * s
         turned[6], turned[7], turned[8] = x * z * v - y * s, y * z * v + x * s, c + z * z * v
         turned[9], turned[10], turned[11] = 0.0, 0.0, 0.0
-        compose(fixed, turned, out[m])
+        compose_transform(fixed, turned, out[m])
 
 
 @_compiled
@@ -133,7 +133,7 @@ def tree_to_solid(nodes, skip, start, end, T, kind, p, free, blocked, moved):  #
         x = T[0] * a + T[1] * b + T[2] * c + T[9]
         y = T[3] * a + T[4] * b + T[5] * c + T[10]
         z = T[6] * a + T[7] * b + T[8] * c + T[11]
-        gap = signed_distance(kind, p, x, y, z)
+        gap = point_distance(kind, p, x, y, z)
         outer = nodes[i, 3]
         if gap - outer > free + moved:
             i = skip[i]
@@ -283,7 +283,7 @@ def certify(  # noqa: ANN201
             body, part, key = checks[check, 0], checks[check, 1], checks[check, 2]
             if body_stamp[body] != stamp:
                 if bodies[body, 0] >= 0:
-                    compose(poses[bodies[body, 0]], body_poses[body], body_at[body])
+                    compose_transform(poses[bodies[body, 0]], body_poses[body], body_at[body])
                 else:
                     body_at[body, :] = body_poses[body]
                 body_stamp[body] = stamp
@@ -291,11 +291,13 @@ def certify(  # noqa: ANN201
             if part_stamp[part] != stamp:
                 if body_stamp[owner] != stamp:
                     if bodies[owner, 0] >= 0:
-                        compose(poses[bodies[owner, 0]], body_poses[owner], body_at[owner])
+                        compose_transform(
+                            poses[bodies[owner, 0]], body_poses[owner], body_at[owner]
+                        )
                     else:
                         body_at[owner, :] = body_poses[owner]
                     body_stamp[owner] = stamp
-                compose(body_at[owner], part_data[part], part_at[part])
+                compose_transform(body_at[owner], part_data[part], part_at[part])
                 part_stamp[part] = stamp
             moved = 0.0
             if high > low:
@@ -306,7 +308,7 @@ def certify(  # noqa: ANN201
                         if b >= 0 and keys[key, 3 + 2 * side] > keys[key, 2 + 2 * side]:
                             n = bodies[b, 1]
                             if body_stamp[b] != stamp:
-                                compose(poses[bodies[b, 0]], body_poses[b], body_at[b])
+                                compose_transform(poses[bodies[b, 0]], body_poses[b], body_at[b])
                                 body_stamp[b] = stamp
                             B = body_at[b]
                             u, v, t = nodes[n, 0], nodes[n, 1], nodes[n, 2]
@@ -334,7 +336,7 @@ def certify(  # noqa: ANN201
                 x = B[0] * u + B[1] * v + B[2] * t + B[9] - P[9]
                 y = B[3] * u + B[4] * v + B[5] * t + B[10] - P[10]
                 z = B[6] * u + B[7] * v + B[8] * t + B[11] - P[11]
-                gap = signed_distance(
+                gap = point_distance(
                     kind,
                     part_data[part],
                     P[0] * x + P[3] * y + P[6] * z,
@@ -343,7 +345,7 @@ def certify(  # noqa: ANN201
                 )
                 if gap - nodes[start, 3] > free + moved:
                     continue
-            relative(P, body_at[body], T)
+            relative_transform(P, body_at[body], T)
             for turn in range(2):  # the interval, then its middle state alone
                 if kind == MESH:
                     answer = tree_to_tree(

@@ -85,7 +85,7 @@ class SelfTouches:
         return "Always" if mean >= ALWAYS else "Never" if mean == 0 else None
 
 
-def random_positions(
+def sample_robot_positions(
     description: RobotDescription, samples: int, rng: np.random.Generator
 ) -> FloatArray:
     """Joint positions inside the limits, mimic joints following, shape (samples, n).

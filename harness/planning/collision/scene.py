@@ -18,6 +18,7 @@ from harness.core.world import WorldObject
 from harness.planning.collision.geometry import geometry_object
 from harness.planning.model.robot_model import RobotModel
 from harness.ports import Touch
+from harness.recording.execution_failures import ObjectFailure
 from harness.robot.description import RobotDescription
 
 ROBOT = "robot"
@@ -321,7 +322,7 @@ class CoalScene:
             raise StepFailed(
                 "INVALID_OBJECT_NAME",
                 f"the planning scene has no object '{name}' (it has: {known})",
-                {"object": name, "known": list(self._objects)},
+                ObjectFailure(name, tuple(self._objects)),
             )
         return self._objects[name]
 

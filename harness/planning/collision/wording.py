@@ -16,7 +16,7 @@ MOST_TOUCHES = 3
 """Pairs that are named; of the rest only how many they are."""
 
 
-def length(metres: float, more_digits: int = 0) -> str:
+def length_text(metres: float, more_digits: int = 0) -> str:
     """`12.3 mm`, or `1.23 m`."""
     if abs(metres) < 1.0:
         return f"{1000 * metres:.{1 + more_digits}f} mm"
@@ -38,7 +38,7 @@ def joint_value(space: GroupSpace, joint: str, value: float) -> str:
     """A joint's position in its unit: `2.100 rad (120.3°)`, `12.0 mm`."""
     if space.wraps[space.joint_names.index(joint)]:
         return f"{value:.3f} rad ({angle(value)})"
-    return length(value)
+    return length_text(value)
 
 
 def touch(item: Touch) -> str:
@@ -48,23 +48,23 @@ def touch(item: Touch) -> str:
     """
     names = f"{item.first} and {item.second}"
     if item.distance < 0:
-        return f"{names} ({length(-item.distance)} deep)"
+        return f"{names} ({length_text(-item.distance)} deep)"
     if item.required <= item.distance:
-        return f"{names} ({length(item.distance)} apart)"
-    distance, required = distinct(item.distance, item.required, length)
+        return f"{names} ({length_text(item.distance)} apart)"
+    distance, required = distinct(item.distance, item.required, length_text)
     return f"{names} ({distance} apart, {required} required)"
 
 
 def touches(items: Sequence[Touch], most: int = MOST_TOUCHES) -> str:
     """The nearest pairs, and how many more there are."""
     more = len(items) - most
-    rest = f" and {count(more, 'more pair')}" if more > 0 else ""
+    rest = f" and {counted_noun(more, 'more pair')}" if more > 0 else ""
     return ", ".join(map(touch, items[:most])) + rest
 
 
 def padding_advice(distance: float, padding: float) -> str:
     """What to do where the padding alone is in the way."""
-    smaller, stated = distinct(distance, padding, length)
+    smaller, stated = distinct(distance, padding, length_text)
     return (
         f"nothing touches, only the `padding` of {stated} is not kept: give `planning` a `padding`"
         f" of less than {smaller}"
@@ -78,11 +78,12 @@ def way_out(item: Touch, scene: CoalScene) -> str:
     if blocker is None:
         return "move the joints so that the links come apart"
     if scene.is_ground(blocker):
-        return f"raise the robot's `base`: it reaches {length(-item.distance)} into '{blocker}'"
-    return f"move '{blocker}' out of the way: it is {length(-item.distance)} too near"
+        depth = length_text(-item.distance)
+        return f"raise the robot's `base`: it reaches {depth} into '{blocker}'"
+    return f"move '{blocker}' out of the way: it is {length_text(-item.distance)} too near"
 
 
-def count(things: Sized | int, noun: str) -> str:
+def counted_noun(things: Sized | int, noun: str) -> str:
     """`1 way`, `2 ways`; `branch` gets its `es`."""
     number = things if isinstance(things, int) else len(things)
     plural = f"{noun}es" if noun.endswith(("ch", "s")) else f"{noun}s"

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 
-from harness.planning.collision.checker import touch_facts
-from harness.planning.collision.wording import count, joint_value, length, padding_advice, touches
-from harness.planning.diagnosis.stage_request import Finding, StageRequest, nearest_facts
+from harness.core.registry import described
+from harness.planning.collision.checker import touch_records
+from harness.planning.collision.wording import (
+    counted_noun,
+    joint_value,
+    length_text,
+    padding_advice,
+    touches,
+)
+from harness.planning.diagnosis.stage_request import StageFinding, StageRequest, nearest_state
 from harness.planning.goals.goal_study import GoalStudy
 from harness.planning.ik.nearest_pose import SHIFTS, NearestPose, nearest_free_shift
 from harness.planning.ik.numeric import LinkGoal
-from harness.recording.explanation import Stage
+from harness.ports import IkSolver
+from harness.recording.explanation import FreeShift, NearestState, Stage
 
 MOST_DETAILS = 8
 """Number of branches that are listed individually."""
@@ -24,27 +32,38 @@ _METHODS = {
 }
 
 
-def branches_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> Finding:
+def branches_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> StageFinding:
     """The result of every branch: free, in collision, or beyond a joint limit, with the numbers."""
     answer = study.answer
-    kind = f"{_METHODS[answer.method]}, solved for the {answer.task}"
+    method = _METHODS.get(answer.method) or described(IkSolver.plugin_kind, answer.method)
+    kind = f"{method}, solved for the {answer.task}"
+    if answer.refused and not answer.solutions:
+        text = f"{counted_noun(answer.refused, 'answer')} refused by forward kinematics ({kind})"
+        advice = f"correct the plug-in `{answer.method}`, or give the robot another `ik_solver`"
+        stage = Stage("inverse kinematics", "failed", text, "NO_IK_SOLUTION")
+        return StageFinding(stage, advice=advice)
     if not answer.solutions and not answer.outside_limits:
-        return Finding(Stage("inverse kinematics", "not reached", f"no branch ({kind})"))
+        return StageFinding(Stage("inverse kinematics", "not reached", f"no branch ({kind})"))
     free = sum(not branch.touches for branch in study.branches)
-    parts = [f"{free} free", f"{len(study.branches) - free} in collision"]
-    parts.append(f"{len(answer.outside_limits)} beyond a joint limit")
-    parts.append(f"{study.unchecked} more distant ones not checked")
-    counted = [part for part in parts if not part.startswith("0 ") or part == "0 free"]
-    total = count(len(answer.solutions) + len(answer.outside_limits), "branch")
+    ruled_out = {
+        "in collision": len(study.branches) - free,
+        "beyond a joint limit": len(answer.outside_limits),
+        "refused by forward kinematics": len(answer.refused),
+        "more distant ones not checked": study.unchecked,
+    }
+    counted = [f"{free} free", *(f"{number} {why}" for why, number in ruled_out.items() if number)]
+    total = counted_noun(len(answer.solutions) + len(answer.outside_limits), "branch")
     text = f"{total} ({kind}): {', '.join(counted)}"
     details = _branch_lines(request, study)
     if free:
-        return Finding(Stage("inverse kinematics", "passed", text, "", details))
+        return StageFinding(Stage("inverse kinematics", "passed", text, "", details))
     if not study.branches:
         stage = Stage("inverse kinematics", "failed", text, "NO_IK_SOLUTION", details)
-        return Finding(stage, {}, "turn or move the goal, so that every joint is inside its limits")
+        return StageFinding(
+            stage, None, "turn or move the goal, so that every joint is inside its limits"
+        )
     stage = Stage("inverse kinematics", "failed", text, "GOAL_IN_COLLISION", details)
-    return Finding(stage, *_in_collision(request, goal, study))
+    return StageFinding(stage, *_in_collision(request, goal, study))
 
 
 def _branch_lines(request: StageRequest, study: GoalStudy) -> tuple[str, ...]:
@@ -67,15 +86,16 @@ def _branch_lines(request: StageRequest, study: GoalStudy) -> tuple[str, ...]:
 
 def _in_collision(
     request: StageRequest, goal: LinkGoal, study: GoalStudy
-) -> tuple[dict[str, Any], str]:
+) -> tuple[NearestState, str]:
     """The collision of the nearest branch, and the shortest move that frees the goal."""
     branch = study.branches[0]
     pose = request.kinematics.link_pose(request.space.whole(branch.positions), goal.link)
     nearest = NearestPose(branch.positions, pose, *branch.residual)
-    facts = nearest_facts(request, goal, nearest) | {
-        "shows": "goal in collision",
-        "touches": touch_facts(list(branch.touches)),
-    }
+    state = replace(
+        nearest_state(request, goal, nearest),
+        shows="goal in collision",
+        touches=touch_records(branch.touches),
+    )
     pair = branch.touches[0]
     otherwise = (
         padding_advice(pair.distance, request.options.padding)
@@ -93,21 +113,19 @@ def _in_collision(
         lambda positions: not request.touches(positions),
     )
     if found is None:
-        farthest = length(SHIFTS[-1])
+        farthest = length_text(SHIFTS[-1])
         return (
-            facts,
+            state,
             f"no position within {farthest} along a world axis is free: move the goal farther; "
             f"{otherwise}",
         )
     shift, positions = found
-    facts["nearest_free"] = {
-        "shift": shift.tolist(),
-        "joint_positions": request.joints(positions),
-    }
+    free = FreeShift(tuple(shift.tolist()), request.joints(positions))
     axis = int(np.argmax(np.abs(shift)))
     way = np.ceil(1000 * abs(shift[axis])) / 1000
     sign = "+" if shift[axis] > 0 else "-"
     return (
-        facts,
-        f"moved {length(way)} along {sign}{'xyz'[axis]} of the world the goal is free; {otherwise}",
+        replace(state, nearest_free=free),
+        f"moved {length_text(way)} along {sign}{'xyz'[axis]} of the world the goal is free;"
+        f" {otherwise}",
     )

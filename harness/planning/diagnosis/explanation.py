@@ -9,18 +9,20 @@ from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
 
 import numpy as np
 
+from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.collision.scene import CoalScene
 from harness.planning.diagnosis.goal_stages import goal_findings, target_positions
 from harness.planning.diagnosis.motion_stages import path_finding, start_finding, timing_finding
-from harness.planning.diagnosis.stage_request import Finding, StageRequest
+from harness.planning.diagnosis.stage_request import StageFinding, StageRequest
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports import Goal, JointGoal, PlanningOptions, PoseGoal, PositionGoal
+from harness.recording.explanation import Explanation
 
-_NO_STAGE = ("INVALID_GROUP_NAME", "INVALID_LINK_NAME", "UNRECOGNIZED_GOAL_TYPE")
+_NO_STAGE = ("INVALID_GROUP_NAME", "INVALID_LINK_NAME", "UNRECOGNIZED_GOAL_TYPE", "CRASH")
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
@@ -37,7 +39,7 @@ _S = TypeVar("_S", bound=_Planner)
 def explained(
     method: Callable[Concatenate[_S, _P], _R],
 ) -> Callable[Concatenate[_S, _P], _R]:
-    """Add `stages`, `nearest` and `advice` to the facts of a planner method's failures.
+    """Add an Explanation to the details of a planner method's failures.
 
     The method has parameters named `group`, `start` and `options`. A `goal` or the joint
     `positions` of a goal are explained; other methods have no goal of their own.
@@ -49,36 +51,32 @@ def explained(
         try:
             return method(self, *args, **kwargs)
         except PlanningFailed as failure:
-            if failure.code not in _NO_STAGE and "stages" not in failure.facts:
+            if failure.code not in _NO_STAGE and failure.details.find(Explanation) is None:
                 call = parameters.bind(self, *args, **kwargs).arguments
                 request = _request(failure, self, call)
-                failure.facts.update(explanation_of(request))
+                failure.details += Details.of(explanation_of(request))
             raise
 
     return explaining
 
 
-def explanation_of(request: StageRequest) -> dict[str, Any]:
-    """Explain a failed call as plain data.
+def explanation_of(request: StageRequest) -> Explanation:
+    """Explain a failed call.
 
     `stages` follow the order of `recording.explanation.STAGES`. `nearest` is a robot state to draw
     and `advice` is what to do; both belong to the first stage that has them. A start that no
     motion can leave comes before the goal: no other goal helps.
     """
-    findings: list[Finding] = goal_findings(request)
+    findings: list[StageFinding] = goal_findings(request)
     start = start_finding(request)
     findings += [start, path_finding(request, target_positions(request))]
     findings.append(timing_finding(request))
-    facts: dict[str, Any] = {"stages": [finding.stage.plain() for finding in findings]}
+    stages = tuple(finding.stage for finding in findings)
     if request.failure.code.startswith("START_STATE"):
         findings.insert(0, start)
     nearest = next((finding.nearest for finding in findings if finding.nearest), None)
-    if nearest is not None:
-        facts["nearest"] = dict(nearest)
-    advice = next((finding.advice for finding in findings if finding.advice), "")
-    if advice:
-        facts["advice"] = advice
-    return facts
+    advice = next((finding.advice for finding in findings if finding.advice), None)
+    return Explanation(stages, nearest, advice)
 
 
 def _request(failure: PlanningFailed, planner: _Planner, call: Mapping[str, Any]) -> StageRequest:

@@ -5,18 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.planning.collision.checker import touch_facts
-from harness.planning.collision.wording import count, joint_value, touches
+from harness.planning.collision.checker import touch_records
+from harness.planning.collision.wording import counted_noun, joint_value, touches
 from harness.planning.diagnosis.branch_stage import branches_finding
 from harness.planning.diagnosis.reach_stage import reach_finding
-from harness.planning.diagnosis.stage_request import Finding, StageRequest
+from harness.planning.diagnosis.stage_request import StageFinding, StageRequest
 from harness.planning.goals.goal_study import GoalStudy, broken_limits, limit_sentence, study_goal
 from harness.planning.ik.numeric import LinkGoal
 from harness.ports import JointGoal
-from harness.recording.explanation import Stage
+from harness.recording.explanation import NearestState, Stage
 
 
-def goal_findings(request: StageRequest) -> list[Finding]:
+def goal_findings(request: StageRequest) -> list[StageFinding]:
     """Explain reach and inverse kinematics; empty where the motion has no goal of its own."""
     goal = request.goal
     if goal is None:
@@ -43,34 +43,34 @@ def _study(request: StageRequest, goal: LinkGoal) -> GoalStudy:
     return study_goal(request.kinematics, request.space, request.touches, request.start, goal, seed)
 
 
-def _joint_findings(request: StageRequest, positions: FloatArray) -> list[Finding]:
+def _joint_findings(request: StageRequest, positions: FloatArray) -> list[StageFinding]:
     space = request.space
     broken = broken_limits(space, positions)
     given = "not needed: the goal gives joint positions"
     if broken:
         first = broken[0]
-        below = first["value"] < first["lower"]
-        limit = joint_value(space, first["joint"], first["lower" if below else "upper"])
+        below = first.value < first.lower
+        limit = joint_value(space, first.joint, first.lower if below else first.upper)
         stage = Stage(
             "reach",
             "failed",
-            f"{count(broken, 'joint')} beyond a limit",
+            f"{counted_noun(broken, 'joint')} beyond a limit",
             "GOAL_STATE_INVALID",
             tuple(limit_sentence(space, each) for each in broken),
         )
-        nearest = {
-            "shows": "nearest joint positions inside the limits",
-            "joint_positions": request.joints(np.clip(positions, space.lower, space.upper)),
-        }
-        advice = f"give {first['joint']} at {'least' if below else 'most'} {limit}"
+        nearest = NearestState(
+            "nearest joint positions inside the limits",
+            request.joints(np.clip(positions, space.lower, space.upper)),
+        )
+        advice = f"give {first.joint} at {'least' if below else 'most'} {limit}"
         unknown = Stage("inverse kinematics", "not reached", given)
-        return [Finding(stage, nearest, advice), Finding(unknown)]
-    reach = Finding(Stage("reach", "passed", "every joint is inside its limits"))
+        return [StageFinding(stage, nearest, advice), StageFinding(unknown)]
+    reach = StageFinding(Stage("reach", "passed", "every joint is inside its limits"))
     found = request.touches(positions)
     if not found:
         return [
             reach,
-            Finding(Stage("inverse kinematics", "passed", f"{given}, and they are free")),
+            StageFinding(Stage("inverse kinematics", "passed", f"{given}, and they are free")),
         ]
     stage = Stage(
         "inverse kinematics",
@@ -78,13 +78,11 @@ def _joint_findings(request: StageRequest, positions: FloatArray) -> list[Findin
         f"{given}; there {touches(found)}",
         "GOAL_IN_COLLISION",
     )
-    nearest = {
-        "shows": "goal in collision",
-        "joint_positions": request.joints(positions),
-        "touches": touch_facts(list(found)),
-    }
+    nearest = NearestState(
+        "goal in collision", request.joints(positions), touches=touch_records(found)
+    )
     advice = (
         f"choose other joint positions, or move {found[0].second} out of the way; with a `pose` "
         "the planner chooses among all branches"
     )
-    return [reach, Finding(stage, nearest, advice)]
+    return [reach, StageFinding(stage, nearest, advice)]

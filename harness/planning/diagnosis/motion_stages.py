@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
-
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.planning.collision.checker import touch_facts
-from harness.planning.collision.wording import count, padding_advice, touch, touches, way_out
-from harness.planning.diagnosis.stage_request import Finding, StageRequest
+from harness.planning.collision.checker import touch_records
+from harness.planning.collision.wording import counted_noun, padding_advice, touch, touches, way_out
+from harness.planning.diagnosis.stage_request import StageFinding, StageRequest
 from harness.planning.verification.verify import FINAL_RESOLUTION
-from harness.recording.explanation import Stage
+from harness.recording.explanation import NearestState, Stage
+from harness.recording.goal_failures import CollisionFailure
+from harness.recording.motion_failures import (
+    DurationFailure,
+    OverloadFailure,
+    PathCollision,
+    PipelineFailure,
+    SearchFailure,
+    TraceFailure,
+    TrajectoryFailure,
+)
 
 RESOLUTION = FINAL_RESOLUTION
 """Joint-space distance between checked states of a straight path [rad]."""
@@ -34,73 +41,76 @@ _TIMING_DEFECTS = (
 )
 
 
-def start_finding(request: StageRequest) -> Finding:
+def start_finding(request: StageRequest) -> StageFinding:
     """Whether the motion can begin at the robot's current state."""
     failure = request.failure
     if failure.code == "START_STATE_INVALID":
         stage = Stage("start state", "failed", failure.message, failure.code)
-        return Finding(stage, advice="start inside the limits: `robot: {start_state: ...}`")
+        return StageFinding(stage, advice="start inside the limits: `robot: {start_state: ...}`")
     found = request.scene.distances(request.start)
     if request.checker is not None:
         to_objects = [item for item, pair in found if pair.keeps_padding]
         nearest = (to_objects or [item for item, _ in found])[:1]
         clause = f"; nearest are {touch(nearest[0])}" if nearest else ""
-        return Finding(Stage("start state", "passed", f"free{clause}"))
+        return StageFinding(Stage("start state", "passed", f"free{clause}"))
     deep = [item for item, _ in found if item.distance < 0]
     first, second = deep[0].first, deep[0].second
     stage = Stage(
         "start state",
         "failed",
-        f"in collision before anything moves: {count(deep, 'pair')}",
+        f"in collision before anything moves: {counted_noun(deep, 'pair')}",
         "START_STATE_IN_COLLISION",
         tuple(map(touch, deep)),
     )
-    nearest_state = {
-        "shows": "start state in collision",
-        "joint_positions": request.joints(request.space.part(request.start)),
-        "touches": touch_facts(deep),
-    }
+    state = NearestState(
+        "start state in collision",
+        request.joints(request.space.part(request.start)),
+        touches=touch_records(deep),
+    )
     advice = (
         f"{way_out(deep[0], request.scene)}, or start elsewhere (`robot: {{start_state: ...}}`); "
         "where the contact is intended, plan inside `allow_collisions` with the pair "
         f"[{first}, {second}]"
     )
-    return Finding(stage, nearest_state, advice)
+    return StageFinding(stage, state, advice)
 
 
-def path_finding(request: StageRequest, target: FloatArray | None) -> Finding:
+def path_finding(request: StageRequest, target: FloatArray | None) -> StageFinding:
     """What blocks the path; `target` are the group positions of the first free solution."""
     failure = request.failure
     if failure.code.startswith("START_STATE"):
-        return Finding(Stage("path", "not reached", "there is no start to go from"))
+        return StageFinding(Stage("path", "not reached", "there is no start to go from"))
     if is_timing(request):
-        return Finding(Stage("path", "passed", "found"))
-    if failure.code in _GOAL_CODES and "free_share" not in failure.facts:
-        return Finding(Stage("path", "not reached", "there is no goal to go to"))
+        return StageFinding(Stage("path", "passed", "found"))
+    traced = failure.details.find(TraceFailure)
+    if failure.code in _GOAL_CODES and (traced is None or traced.free_share is None):
+        return StageFinding(Stage("path", "not reached", "there is no goal to go to"))
     details, nearest = _blocked(request, target)
     stage = Stage("path", "failed", failure.message, failure.code, tuple(details))
-    return Finding(stage, nearest, _path_advice(request, nearest.get("touches", ())))
+    return StageFinding(stage, nearest, _path_advice(request, nearest))
 
 
-def timing_finding(request: StageRequest) -> Finding:
+def timing_finding(request: StageRequest) -> StageFinding:
     """Whether a path can be timed under the limits."""
     failure = request.failure
     if not is_timing(request):
-        return Finding(Stage("time parameterisation", "not reached", "there is no path"))
+        return StageFinding(Stage("time parameterisation", "not reached", "there is no path"))
     advice = "lower the scaling factors in `planning`"
-    if failure.facts.get("broken") == "standing effort":
-        advice = _overload_advice(failure.facts)
-    elif "shortest_duration" in failure.facts:
-        advice = f"give it `duration: {failure.facts['shortest_duration']:.3f}` or more"
+    overload = failure.details.find(OverloadFailure)
+    too_short = failure.details.find(DurationFailure)
+    if overload is not None:
+        advice = _overload_advice(overload)
+    elif too_short is not None:
+        advice = f"give it `duration: {too_short.shortest_duration:.3f}` or more"
     stage = Stage("time parameterisation", "failed", failure.message, failure.code)
-    return Finding(stage, advice=advice)
+    return StageFinding(stage, advice=advice)
 
 
-def _overload_advice(facts: Mapping[str, Any]) -> str:
+def _overload_advice(overload: OverloadFailure) -> str:
     """Advice for an arm that cannot hold itself or its payload statically."""
-    most = facts.get("most_mass", 0.0)
+    most = overload.most_mass or 0.0
     if most >= 0.01:
-        held = " and ".join(facts["held"])
+        held = " and ".join(overload.held or ())
         mass = np.floor(100 * most) / 100
         return (
             f"no slower motion helps: give {held} a `mass` of at most {mass:g} kg, hold it nearer"
@@ -114,21 +124,23 @@ def _overload_advice(facts: Mapping[str, Any]) -> str:
 
 def is_timing(request: StageRequest) -> bool:
     """Whether the failure occurred in time parameterisation."""
-    facts = request.failure.facts
-    return facts.get("broken") in _TIMING_DEFECTS or "shortest_duration" in facts
+    details = request.failure.details
+    broken = details.find(TrajectoryFailure)
+    is_defect = broken is not None and broken.broken in _TIMING_DEFECTS
+    return is_defect or details.find(DurationFailure) is not None
 
 
-def _blocked(request: StageRequest, target: FloatArray | None) -> tuple[list[str], dict[str, Any]]:
+def _blocked(
+    request: StageRequest, target: FloatArray | None
+) -> tuple[list[str], NearestState | None]:
     """Details of a blocked motion, and a state to draw: its end, or the first blocked state."""
-    facts, options = request.failure.facts, request.options
+    failure, options = request.failure.details, request.options
     details: list[str] = []
-    shown: dict[str, Any] = {}
-    if facts.get("joint_positions") is not None:
-        shown = {
-            "shows": "as far as it goes",
-            "joint_positions": request.joints(facts["joint_positions"]),
-            "touches": facts.get("touches", []),
-        }
+    shown: NearestState | None = None
+    traced = failure.find(TraceFailure) or failure.find(PathCollision)
+    if traced is not None and traced.joint_positions is not None:
+        joints = request.joints(np.array(traced.joint_positions))
+        shown = NearestState("as far as it goes", joints, touches=traced.touches or ())
     elif request.checker is not None and target is not None:
         start = request.space.part(request.start)
         blocked = request.checker.first_block(start, target, RESOLUTION)
@@ -137,40 +149,45 @@ def _blocked(request: StageRequest, target: FloatArray | None) -> tuple[list[str
             details.append(
                 f"what blocks: after {100 * share:.0f} % of the straight path, {touches(found)}"
             )
-            shown = {
-                "shows": "where the straight way is blocked",
-                "joint_positions": request.joints(start + share * (target - start)),
-                "touches": touch_facts(found),
-            }
-    if "gap" in facts:
+            shown = NearestState(
+                "where the straight way is blocked",
+                request.joints(start + share * (target - start)),
+                touches=touch_records(found),
+            )
+    search = failure.find(SearchFailure)
+    if search is not None and search.gap is not None:
         details.append(
-            f"gap between the search trees: {facts['gap']:.2f} rad of joint space remain between "
+            f"gap between the search trees: {search.gap:.2f} rad of joint space remain between "
             "the states reached from the start and the goal"
         )
-    if "state_checks" in facts:
-        searches = count(options.attempts, "search")
+    if search is not None:
+        searches = counted_noun(options.attempts, "search")
         details.append(
-            f"budget: {facts['state_checks']} state checks used in {searches} of "
+            f"budget: {search.state_checks} state checks used in {searches} of "
             f"{options.max_state_checks}"
         )
     return details, shown
 
 
-def _path_advice(request: StageRequest, blocking: Sequence[Mapping[str, Any]]) -> str:
-    """Advice for a path that was not found; `blocking` are the touches of the state drawn."""
+def _path_advice(request: StageRequest, shown: NearestState | None) -> str:
+    """Advice for a path that was not found, with the state that is drawn."""
     failure = request.failure
-    if failure.code == "PLANNING_FAILED" and "state_checks" in failure.facts:
+    plugin = failure.details.find(PipelineFailure)
+    if failure.code == "INVALID_MOTION_PLAN" and plugin is not None:
+        return plugin.advice
+    if failure.code == "PLANNING_FAILED" and failure.details.find(SearchFailure) is not None:
         return (
             "raise `max_state_checks` or `planning_attempts` in `planning`, put a `move_to` in "
             "between that leads around, or try another `planner_id` (`harness bench` compares them)"
         )
-    touching = (*failure.facts.get("touches", ()), *blocking)
-    distances = [touch["distance"] for touch in touching]
+    traced, collision = failure.details.find(TraceFailure), failure.details.find(CollisionFailure)
+    shows_touches = (part for part in (traced, collision, shown) if part is not None)
+    distances = [touch.distance for part in shows_touches for touch in part.touches or ()]
     if distances and min(distances) >= 0:
         return padding_advice(min(distances), request.options.padding)
     if failure.code == "INVALID_MOTION_PLAN":
         return "`move_to` goes around what is in the way; or put a step in between that leads past"
-    if failure.facts.get("reason") in ("unreachable", "limit", "jump"):
+    if traced is not None and traced.reason in ("unreachable", "limit", "jump"):
         return (
             "begin the line in another posture (a `move_to` with `joints` before it), make it "
             "shorter, or use `move_to`, which need not keep to the line"

@@ -9,8 +9,8 @@ import numpy as np
 
 from harness.core.spatial import SE3, xyzw_from_wxyz
 from harness.core.types import FloatArray
-from harness.planning.collision.wording import angle, length, point
-from harness.planning.diagnosis.stage_request import Finding, StageRequest, nearest_facts
+from harness.planning.collision.wording import angle, length_text, point
+from harness.planning.diagnosis.stage_request import StageFinding, StageRequest, nearest_state
 from harness.planning.goals.goal_study import GoalStudy
 from harness.planning.ik.nearest_pose import (
     KEEP_POINT,
@@ -27,22 +27,22 @@ _KEPT = 1e-3  # [m, rad] an alternative that misses by less keeps what it should
 _STEPS_BACK = (0.0, 0.001, 0.002, 0.005, 0.01, 0.02)  # [m] from the edge of the reach
 
 
-def reach_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> Finding:
+def reach_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> StageFinding:
     """Whether the arm reaches the goal; otherwise the nearest pose and a reachable goal."""
     target = point(target_of(goal))
     if study.answer.solutions:
         text = f"{goal.link} reaches {target} as requested"
         if study.answer.task != "pose" and isinstance(goal, PoseGoal):
             shift, turn = study.branches[0].residual
-            text += f", except for {length(shift)} and {angle(turn)}"
-        return Finding(Stage("reach", "passed", text))
+            text += f", except for {length_text(shift)} and {angle(turn)}"
+        return StageFinding(Stage("reach", "passed", text))
     if study.answer.missed:
         return _too_few_joints(request, goal, study)
     nearest = nearest_pose(
         request.space, goal, request.space.part(request.start), request.options.seed
     )
     if nearest.is_reached:
-        return Finding(Stage("reach", "passed", f"{goal.link} reaches {target} as requested"))
+        return StageFinding(Stage("reach", "passed", f"{goal.link} reaches {target} as requested"))
     others = dict(_alternatives(request, goal, nearest))
     stage = Stage(
         "reach",
@@ -52,10 +52,10 @@ def reach_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> Fi
         tuple(f"{how}: {_describe(how, other)}" for how, other in others.items()),
     )
     advice = _reached_goal(request, goal, others.get(_SAME_ORIENTATION, nearest))
-    return Finding(stage, nearest_facts(request, goal, nearest), advice)
+    return StageFinding(stage, nearest_state(request, goal, nearest), advice)
 
 
-def _too_few_joints(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> Finding:
+def _too_few_joints(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> StageFinding:
     best, task = study.answer.missed[0], study.answer.task
     nearest = NearestPose(best.positions, best.pose, best.shift, best.turn)
     stage = Stage(
@@ -70,7 +70,7 @@ def _too_few_joints(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> 
     advice = (
         f"give {keys} instead of `pose`, or allow `tolerance: {{orientation: {tolerance:.3f}}}`"
     )
-    return Finding(stage, nearest_facts(request, goal, nearest), advice)
+    return StageFinding(stage, nearest_state(request, goal, nearest), advice)
 
 
 _SAME_ORIENTATION = "with the requested orientation"
@@ -102,7 +102,7 @@ def _alternatives(
 def _describe(how: str, other: NearestPose) -> str:
     if how == _SAME_POSITION:
         return f"{angle(other.turn)} away"
-    return f"{point(other.pose.translation)}, {length(other.shift)} away"
+    return f"{point(other.pose.translation)}, {length_text(other.shift)} away"
 
 
 def _reached_goal(request: StageRequest, goal: LinkGoal, near: NearestPose) -> str:
@@ -139,7 +139,7 @@ def _numbers(values: FloatArray) -> str:
 def _away(goal: LinkGoal, nearest: NearestPose) -> str:
     """`14.0 mm and 18.8°`; only one of them where the other is zero."""
     if nearest.turn < 1e-4 or (isinstance(goal, PositionGoal) and goal.pitch is None):
-        return length(nearest.shift)
+        return length_text(nearest.shift)
     if nearest.shift < 1e-5:
         return angle(nearest.turn)
-    return f"{length(nearest.shift)} and {angle(nearest.turn)}"
+    return f"{length_text(nearest.shift)} and {angle(nearest.turn)}"

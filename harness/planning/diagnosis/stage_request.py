@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,21 +16,21 @@ from harness.planning.ik.nearest_pose import NearestPose
 from harness.planning.ik.numeric import LinkGoal
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports import Goal, PlanningOptions, PoseGoal, Touch
-from harness.recording.explanation import Stage
+from harness.recording.explanation import NearestState, Stage
 
 
 @dataclass(frozen=True, eq=False)
-class Finding:
+class StageFinding:
     """A stage's result, with additional data for the report.
 
     Attributes:
         stage: The stage and its status.
-        nearest: A state to draw: `shows`, `joint_positions` ...; empty where there is none.
+        nearest: A state to draw; None where there is none.
         advice: What to do if this is the first failed stage.
     """
 
     stage: Stage
-    nearest: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    nearest: NearestState | None = None
     advice: str = ""
 
 
@@ -72,15 +71,15 @@ class StageRequest:
         return dict(zip(names, map(float, whole), strict=True))
 
 
-def nearest_facts(request: StageRequest, goal: LinkGoal, nearest: NearestPose) -> dict[str, Any]:
-    """A nearest pose as plain data: the robot's joints, link, target, what is missed."""
+def nearest_state(request: StageRequest, goal: LinkGoal, nearest: NearestPose) -> NearestState:
+    """A nearest pose with the robot's joints, the link, the target, and what is missed."""
     target = goal.pose.as_vector() if isinstance(goal, PoseGoal) else goal.position
-    return {
-        "shows": "nearest pose",
-        "link": goal.link,
-        "target": [float(value) for value in target],
-        "pose": [float(value) for value in nearest.pose.as_vector()],
-        "position_error": nearest.shift,
-        "orientation_error": nearest.turn,
-        "joint_positions": request.joints(nearest.positions),
-    }
+    return NearestState(
+        shows="nearest pose",
+        joint_positions=request.joints(nearest.positions),
+        link=goal.link,
+        target=tuple(map(float, target)),
+        pose=tuple(map(float, nearest.pose.as_vector())),
+        position_error=nearest.shift,
+        orientation_error=nearest.turn,
+    )

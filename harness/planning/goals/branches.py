@@ -8,6 +8,7 @@ import numpy as np
 
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.planning.ik.kinematics import CLOSED_FORMS
 from harness.planning.model.robot_model import GroupSpace
 
 _STRAIGHT = 1e-6  # [m] an elbow this near the line from shoulder to wrist is neither up nor down
@@ -26,10 +27,10 @@ def branch_name(kinematics: _Poses, space: GroupSpace, method: str, positions: F
     Args:
         kinematics: The kinematics of the robot.
         space: The space of the planning group.
-        method: The solver's name; a numeric solver has no branches, so the name is empty.
+        method: The solver's name; only closed forms have branches, so others' names are empty.
         positions: The positions of the group's joints.
     """
-    if method == "numeric":
+    if method not in CLOSED_FORMS:
         return ""
     shoulder, elbow, wrist, turntable = _landmarks(kinematics, space, positions)
     up = turntable.rotation @ _axis(space)

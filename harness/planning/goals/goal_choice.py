@@ -6,20 +6,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
+from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.planning.collision.wording import count
+from harness.planning.collision.wording import counted_noun
 from harness.planning.goals.goals import GoalCandidates, find_goals
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.task import PlanningTask
 from harness.planning.verification.path_constraints import HeldConstraints
 from harness.ports import AnyGoal, Goal, PoseGoal
+from harness.recording.explanation import Alternative, Alternatives, GoalRegion
 
 SAMPLES = 24
 """Number of poses sampled in a region in addition to its centre."""
@@ -79,7 +80,7 @@ def choose_goals(
         if isinstance(middle, PlanningFailed):
             raise middle
         raise ValueError("the centre has a solution")
-    explanation = dict(found[0].explanation) | {"poses_of_region": len(found)}
+    explanation = found[0].explanation + Details.of(GoalRegion(len(found)))
     return _merged(found, task, explanation)
 
 
@@ -118,9 +119,10 @@ def _holding(found: GoalCandidates, held: HeldConstraints) -> GoalCandidates:
     why = "" if broken is None else f": {broken.what}"
     raise PlanningFailed(
         "GOAL_VIOLATES_PATH_CONSTRAINTS",
-        f"the goal has {count(found.positions, 'free solution')}, but none satisfies the path "
-        f"constraints{why}",
-        {**found.explanation, **({} if broken is None else broken.facts)},
+        f"the goal has {counted_noun(found.positions, 'free solution')}, but none satisfies the "
+        f"path constraints{why}",
+        *found.explanation,
+        *(() if broken is None else (broken.record,)),
     )
 
 
@@ -134,29 +136,30 @@ def _one_of(
     """
     found: list[GoalCandidates] = []
     failures: list[PlanningFailed] = []
-    alternatives: list[dict[str, Any]] = []
+    alternatives: list[Alternative] = []
     for goal in goals:
         try:
             candidates = find(goal)
         except PlanningFailed as failure:
             failures.append(failure)
-            alternatives.append({"error_code": failure.code, "message": failure.message})
+            alternatives.append(Alternative(failure.code, failure.message))
             continue
         found.append(candidates)
-        alternatives.append({"error_code": "", "ways": len(candidates.positions)})
+        alternatives.append(Alternative("", ways=len(candidates.positions)))
     if found:
-        return _merged(found, task, {"alternatives": alternatives})
+        return _merged(found, task, Details.of(Alternatives(tuple(alternatives))))
     worst = max(failures, key=lambda failure: failure.code != "NO_IK_SOLUTION")
     raise PlanningFailed(
         worst.code,
         f"none of {len(goals)} goals is feasible: "
         + "; ".join(f"{index + 1}: {each.message}" for index, each in enumerate(failures)),
-        {**worst.facts, "alternatives": alternatives},
+        *worst.details,
+        Alternatives(tuple(alternatives)),
     )
 
 
 def _merged(
-    found: Sequence[GoalCandidates], task: PlanningTask, explanation: dict[str, Any]
+    found: Sequence[GoalCandidates], task: PlanningTask, explanation: Details
 ) -> GoalCandidates:
     space = task.space
     every = [positions for candidates in found for positions in candidates.positions]

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from harness.core.types import FloatArray
-from harness.planning.collision.checker import touch_facts
+from harness.planning.collision.checker import touch_records
 from harness.planning.collision.wording import joint_value
 from harness.planning.goals.branches import branch_name
 from harness.planning.ik.answer import IkAnswer
@@ -15,6 +14,7 @@ from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.numeric import LinkGoal
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports import Touch
+from harness.recording.goal_failures import BrokenLimit, IkResidual, IkSolution, IkStudy
 
 MOST_GOALS = 8
 """Number of solutions of inverse kinematics that are checked and planned to, nearest first."""
@@ -41,16 +41,17 @@ class Branch:
     touches: tuple[Touch, ...]
     residual: tuple[float, float]
 
-    def facts(self) -> dict[str, Any]:
-        """The facts as plain data."""
-        return {
-            "joint_positions": [float(value) for value in self.positions],
-            "branch": self.name,
-            "distance": self.distance,
-            "status": "in collision" if self.touches else "free",
-            "touches": touch_facts(list(self.touches)),
-            "residual": {"position": self.residual[0], "orientation": self.residual[1]},
-        }
+    @property
+    def record(self) -> IkSolution:
+        """The solution as a step's record has it."""
+        return IkSolution(
+            joint_positions=tuple(map(float, self.positions)),
+            branch=self.name,
+            distance=self.distance,
+            status="in collision" if self.touches else "free",
+            touches=touch_records(self.touches),
+            residual=IkResidual(*self.residual),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,17 +70,18 @@ class GoalStudy:
     unchecked: int
     outside: tuple[str, ...]
 
-    def facts(self) -> dict[str, Any]:
-        """The facts as plain data."""
-        return {
-            "ik_method": self.answer.method,
-            "ik_task": self.answer.task,
-            "ik_solutions": [branch.facts() for branch in self.branches],
-            "outside_limits": [
-                {**solution.facts(), "branch": name}
-                for solution, name in zip(self.answer.outside_limits, self.outside, strict=True)
-            ],
-        }
+    @property
+    def record(self) -> IkStudy:
+        """The study as a step's record has it."""
+        answer = self.answer
+        limited = zip(answer.outside_limits, self.outside, strict=True)
+        return IkStudy(
+            answer.method,
+            answer.task,
+            tuple(branch.record for branch in self.branches),
+            tuple(solution.record(name) for solution, name in limited),
+            tuple(solution.record for solution in answer.refused) or None,
+        )
 
 
 def study_goal(
@@ -115,27 +117,23 @@ def study_goal(
     return GoalStudy(answer, branches, len(answer.solutions) - len(branches), outside)
 
 
-def broken_limits(space: GroupSpace, positions: FloatArray) -> list[dict[str, Any]]:
+def broken_limits(space: GroupSpace, positions: FloatArray) -> tuple[BrokenLimit, ...]:
     """The joints outside their limits and their excess, in the group's order."""
-    return [
-        {
-            "joint": name,
-            "value": float(value),
-            "lower": float(low),
-            "upper": float(high),
-            "excess": float(max(low - value, value - high)),
-        }
+    return tuple(
+        BrokenLimit(
+            name, float(value), float(low), float(high), float(max(low - value, value - high))
+        )
         for name, value, low, high in zip(
             space.joint_names, positions, space.lower, space.upper, strict=True
         )
         if not low - 1e-9 <= value <= high + 1e-9
-    ]
+    )
 
 
-def limit_sentence(space: GroupSpace, broken: dict[str, Any]) -> str:
+def limit_sentence(space: GroupSpace, broken: BrokenLimit) -> str:
     """`elbow_joint would be at 3.500 rad (200.5°), 0.360 rad (20.6°) beyond its limit ...`."""
-    name, value, excess = broken["joint"], broken["value"], broken["excess"]
-    limit = broken["lower"] if value < broken["lower"] else broken["upper"]
+    name, value, excess = broken.joint, broken.value, broken.excess
+    limit = broken.lower if value < broken.lower else broken.upper
     return (
         f"{name} would be at {joint_value(space, name, value)}, "
         f"{joint_value(space, name, excess)} beyond its limit {joint_value(space, name, limit)}"

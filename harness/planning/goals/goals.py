@@ -4,20 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from harness.core.details import Details
 from harness.core.errors import PlanningFailed
+from harness.core.registry import described
 from harness.core.types import FloatArray
-from harness.planning.collision.checker import MotionChecker, touch_facts
-from harness.planning.collision.wording import angle, count, joint_value, length, point, touches
+from harness.planning.collision.checker import MotionChecker, touch_records
+from harness.planning.collision.wording import (
+    angle,
+    counted_noun,
+    joint_value,
+    length_text,
+    point,
+    touches,
+)
 from harness.planning.goals.goal_study import GoalStudy, broken_limits, limit_sentence, study_goal
 from harness.planning.ik.answer import LimitedSolution, MissedSolution
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.nearest_pose import nearest_pose, target_of
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import Goal, JointGoal, PoseGoal, PositionGoal, Touch
+from harness.ports import Goal, IkSolver, JointGoal, PoseGoal, PositionGoal, Touch
+from harness.recording.goal_failures import CollisionFailure, IkFailure, LimitFailure
 
 _REACHED = 1e-6  # [m, rad] the point is reached within this distance
 
@@ -27,7 +36,7 @@ class GoalCandidates:
     """Free joint positions that reach a goal, nearest first, with the explanation."""
 
     positions: tuple[FloatArray, ...]
-    explanation: dict[str, Any]
+    explanation: Details
 
 
 def find_goals(
@@ -62,15 +71,15 @@ def find_goals(
         raise _no_solution(checker.space, study, start, goal, seed)
     free = tuple(branch.positions for branch in study.branches if not branch.touches)
     if not free:
-        ways = count(study.branches, "way")
+        ways = counted_noun(study.branches, "way")
         each = "that one" if len(study.branches) == 1 else "each of them"
         raise PlanningFailed(
             "GOAL_IN_COLLISION",
             f"{goal.link} reaches {point(target_of(goal))} in {ways}, {each} in collision; "
             f"the nearest: {touches(study.branches[0].touches)}",
-            study.facts(),
+            study.record,
         )
-    return GoalCandidates(free, study.facts())
+    return GoalCandidates(free, Details.of(study.record))
 
 
 def _joint_goal(checker: MotionChecker, goal: JointGoal) -> GoalCandidates:
@@ -82,8 +91,8 @@ def _joint_goal(checker: MotionChecker, goal: JointGoal) -> GoalCandidates:
         raise PlanningFailed(
             "GOAL_STATE_INVALID",
             limit_sentence(space, broken[0])
-            + (f"; {count(more, 'more joint')} outside limits" if more else ""),
-            {"outside_limits": broken},
+            + (f"; {counted_noun(more, 'more joint')} outside limits" if more else ""),
+            LimitFailure(broken),
         )
     positions = np.clip(positions, space.lower, space.upper)
     if not checker.state_free(positions):
@@ -91,9 +100,9 @@ def _joint_goal(checker: MotionChecker, goal: JointGoal) -> GoalCandidates:
         raise PlanningFailed(
             "GOAL_IN_COLLISION",
             f"at the goal's joint positions these are in collision: {touches(found)}",
-            {"touches": touch_facts(found)},
+            CollisionFailure(touch_records(found)),
         )
-    return GoalCandidates((positions,), {})
+    return GoalCandidates((positions,), Details())
 
 
 def _no_solution(
@@ -101,6 +110,8 @@ def _no_solution(
 ) -> PlanningFailed:
     """Explain why no solution reaches the goal, with the nearest pose."""
     missed = study.answer.missed
+    if study.answer.refused:
+        return _all_refused(study, goal)
     if missed:
         return _constraints_violated(space, study, missed[0], goal)
     target = target_of(goal)
@@ -109,20 +120,20 @@ def _no_solution(
     nearest_point = nearest_pose(space, alone, reference, seed)
     too_far = 0.0 if nearest_point.shift < _REACHED else nearest_point.shift
     nearest = nearest_pose(space, goal, nearest_point.positions, seed)
-    facts = study.facts() | {
-        "point_out_of_reach_by": too_far,
-        "wrist_out_of_reach_by": study.answer.excess,
-        "nearest_position": nearest_point.pose.translation.tolist(),
-        "position_error": nearest.shift,
-        "orientation_error": nearest.turn,
-    }
+    failure = IkFailure(
+        position_error=nearest.shift,
+        orientation_error=nearest.turn,
+        point_out_of_reach_by=too_far,
+        wrist_out_of_reach_by=study.answer.excess,
+        nearest_position=tuple(nearest_point.pose.translation.tolist()),
+    )
     if too_far:
         message = (
             f"{goal.link} cannot reach {point(target)}: the nearest point it reaches, "
-            f"{point(nearest_point.pose.translation)}, is {length(too_far)} away"
+            f"{point(nearest_point.pose.translation)}, is {length_text(too_far)} away"
         )
     elif study.answer.outside_limits and nearest.shift + nearest.turn > _REACHED:
-        ways = count(study.answer.outside_limits, "way")
+        ways = counted_noun(study.answer.outside_limits, "way")
         message = (
             f"{goal.link} would reach {point(target)} in {ways}, but only beyond the joint limits: "
             f"{_nearest_limit(space, study.answer.outside_limits)}"
@@ -131,9 +142,25 @@ def _no_solution(
         what = "orientation" if isinstance(goal, PoseGoal) else "pitch"
         message = (
             f"{goal.link} reaches {point(target)}, but not with the requested {what}: the nearest "
-            f"pose is {length(nearest.shift)} and {angle(nearest.turn)} away"
+            f"pose is {length_text(nearest.shift)} and {angle(nearest.turn)} away"
         )
-    return PlanningFailed("NO_IK_SOLUTION", message, facts)
+    return PlanningFailed("NO_IK_SOLUTION", message, study.record, failure)
+
+
+def _all_refused(study: GoalStudy, goal: PoseGoal | PositionGoal) -> PlanningFailed:
+    """The failure of a third-party solver none of whose answers reaches the goal."""
+    refused = study.answer.refused
+    nearest = refused[0]
+    solver = described(IkSolver.plugin_kind, study.answer.method)
+    what = "answer" if len(refused) == 1 else f"nearest of {len(refused)} answers"
+    turned = f" and {angle(nearest.turn)}" if nearest.turn else ""
+    return PlanningFailed(
+        "NO_IK_SOLUTION",
+        f"{solver} is wrong: by forward kinematics its {what} puts {goal.link} "
+        f"{length_text(nearest.shift)}{turned} away from {point(target_of(goal))}",
+        study.record,
+        IkFailure(nearest.shift, nearest.turn),
+    )
 
 
 def _constraints_violated(
@@ -147,7 +174,8 @@ def _constraints_violated(
         f"with {space.dof} joints {goal.link} reaches the {study.answer.task} of the pose, but is "
         f"then turned {turned_by} away from it, and {_allowed_turn(goal)} are allowed: "
         f"give {write} instead of `pose`, or a wider `tolerance`",
-        study.facts() | {"position_error": missed.shift, "orientation_error": missed.turn},
+        study.record,
+        IkFailure(missed.shift, missed.turn),
     )
 
 

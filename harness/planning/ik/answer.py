@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.recording.goal_failures import IkResidual, LimitedIkSolution, RefusedIkSolution
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,15 +25,16 @@ class LimitedSolution:
     value: float
     limit: float
 
-    def facts(self) -> dict[str, Any]:
-        """The facts as plain data."""
-        return {
-            "joint_positions": [float(value) for value in self.positions],
-            "joint": self.joint,
-            "value": self.value,
-            "limit": self.limit,
-            "excess": abs(self.value - self.limit),
-        }
+    def record(self, branch: str) -> LimitedIkSolution:
+        """The solution as a step's record has it, with the name of its branch."""
+        return LimitedIkSolution(
+            joint_positions=tuple(map(float, self.positions)),
+            joint=self.joint,
+            value=self.value,
+            limit=self.limit,
+            excess=abs(self.value - self.limit),
+            branch=branch,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +54,27 @@ class MissedSolution:
     turn: float
 
 
+@dataclass(frozen=True, eq=False)
+class RefusedSolution:
+    """An answer of a third-party solver that misses the goal.
+
+    Attributes:
+        positions: The positions of the group's joints.
+        shift: The position error [m].
+        turn: The orientation error [rad].
+    """
+
+    positions: FloatArray
+    shift: float
+    turn: float
+
+    @property
+    def record(self) -> RefusedIkSolution:
+        """The answer as a step's record has it."""
+        positions = tuple(map(float, self.positions))
+        return RefusedIkSolution(positions, IkResidual(self.shift, self.turn))
+
+
 @dataclass(frozen=True)
 class IkAnswer:
     """The complete result of inverse kinematics.
@@ -61,10 +83,11 @@ class IkAnswer:
         solutions: Solutions inside the limits and the tolerance, nearest to the seed first.
         outside_limits: Geometric solutions outside the limits.
         excess: How far the goal is beyond the chain's reach [m]; 0 when unknown or within reach.
-        method: The solver: `ur`, `open_manipulator_x` or `numeric`.
+        method: The name of the solver, a plug-in of the kind `ik_solver`.
         task: What is solved for: `pose`, or for an arm with too few joints `position and pitch`
             (four or five joints) or `position` (three).
         missed: Solutions of that task outside the pose's tolerance, least error first.
+        refused: Answers of a third-party solver that miss the goal, least error first.
     """
 
     solutions: tuple[FloatArray, ...]
@@ -73,3 +96,4 @@ class IkAnswer:
     method: str
     task: str = "pose"
     missed: tuple[MissedSolution, ...] = ()
+    refused: tuple[RefusedSolution, ...] = ()

@@ -7,31 +7,28 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from harness.core.errors import PlanningFailed
+from harness.core.registry import OWN_PACKAGE, registry
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.planning.ik.answer import IkAnswer, LimitedSolution, MissedSolution
-from harness.planning.ik.nearest_pose import distance_to_goal
-from harness.planning.ik.numeric import LinkGoal, LinkTask, pitch_of, solve_numeric
-from harness.planning.ik.open_manipulator import (
-    PlanarArm,
-    headings,
-    is_planar_arm,
-    pitch_in_plane,
-    pitches_below,
-    solve_planar,
+from harness.planning.ik.answer import (
+    IkAnswer,
+    LimitedSolution,
+    MissedSolution,
+    RefusedSolution,
 )
-from harness.planning.ik.ur import UrGeometry, is_ur_like, solve_ur
-from harness.planning.model.forward_kinematics import LinkPoses, quats_wxyz
+from harness.planning.ik.nearest_pose import distance_to_goal
+from harness.planning.ik.numeric import LinkGoal, LinkTask
+from harness.planning.ik.task import WHOLE_POSE_JOINTS, task_of
+from harness.planning.ik.third_party import solve_with_third_party
 from harness.planning.model.robot_model import GroupSpace, RobotModel
 from harness.planning.model.turns import is_within, turn_from
-from harness.ports import PoseGoal, PositionGoal
-from harness.robot.description import Joint, RobotDescription
+from harness.ports import IkRequest, IkSolver, PoseGoal, PositionGoal
+from harness.recording.goal_failures import LinkFailure
+from harness.robot.description import RobotDescription
+from harness.robot.forward_kinematics import LinkPoses, quats_wxyz
 
-WHOLE_POSE_JOINTS, PITCH_JOINTS = 6, 4
-"""Joints that an arm needs for an arbitrary pose, and for an arbitrary position and pitch."""
-
-PITCH_SAMPLES = 73
-"""Pitches tried for a position goal that leaves the pitch free: every 5 degrees of a whole turn."""
+CLOSED_FORMS = ("ur", "open_manipulator_x")
+"""Solvers that `auto` tries, in this order, before `numeric`."""
 
 _POLISHED = 1e-7  # [m, rad] largest error of a closed-form solution after refinement
 _LIMIT_SLACK = 1e-9  # [rad] a solution this far outside a limit is set to the limit
@@ -79,25 +76,49 @@ class PinocchioKinematics:
             point = goal.pose.translation
             goal = PositionGoal(goal.link, point, position_tolerance=goal.position_tolerance)
         reference = space.part(seed_positions)
-        joints = tuple(self.description.joint_by_name[name] for name in space.joint_names)
-        T_last_link = self._fixed_offset(joints[-1], goal.link)
-        solver = self.description.ik_solver
-        whole_pose = isinstance(goal, PoseGoal)
-        excess = 0.0
-        if solver in ("ur", "auto") and whole_pose and is_ur_like(joints):
-            method = "ur"
-            raw, excess = self._ur(joints, T_last_link, goal, reference)
-        elif solver in ("open_manipulator_x", "auto") and is_planar_arm(joints, T_last_link):
-            method = "open_manipulator_x"
-            raw, excess = self._planar(joints, T_last_link, goal, space, seed_positions)
-        else:
-            method = "numeric"
-            raw = solve_numeric(space, goal, reference, seed)
-            if whole_pose and not raw and space.dof < WHOLE_POSE_JOINTS:
-                raw = solve_numeric(space, reduced(space, goal), reference, seed)
-        inside, outside, missed = self._sort(space, goal, raw, reference, polish=method == "ur")
-        task = task_of(space, goal)
-        return IkAnswer(tuple(inside), tuple(outside), excess, method, task, tuple(missed))
+        request = self.request(space, goal, seed_positions, seed)
+        solver = self._solver(request)
+        is_own = is_built_in(solver.name)
+        result = solver().solve(request) if is_own else solve_with_third_party(solver, request)
+        refused: list[RefusedSolution] = []
+        solutions = result.solutions
+        if not is_own:
+            solutions = _reaching(space, request, solutions, refused)
+        inside, outside, missed = self._sort(
+            space, goal, solutions, reference, polish=solver.is_refined
+        )
+        return IkAnswer(
+            tuple(inside),
+            tuple(outside),
+            result.excess,
+            solver.name,
+            task_of(space.dof, goal),
+            tuple(missed),
+            tuple(refused),
+        )
+
+    def request(
+        self, space: GroupSpace, goal: LinkGoal, seed_positions: FloatArray, seed: int
+    ) -> IkRequest:
+        """What a solver is given for a goal; `seed_positions` in description order."""
+        return IkRequest(
+            goal,
+            space,
+            space.part(seed_positions),
+            self.description,
+            lambda positions: self.link_pose(space.whole(positions), goal.link),
+            seed,
+        )
+
+    def _solver(self, request: IkRequest) -> type[IkSolver]:
+        """The robot's solver, or the numeric one where that is not made for the request."""
+        solvers = registry(IkSolver.plugin_kind)
+        chosen = self.description.ik_solver
+        for name in CLOSED_FORMS if chosen == "auto" else (chosen,):
+            solver: type[IkSolver] = solvers[name]
+            if solver.fits(request):
+                return solver
+        return solvers["numeric"]
 
     def residual(
         self, space: GroupSpace, goal: LinkGoal, positions: FloatArray
@@ -155,44 +176,6 @@ class PinocchioKinematics:
             return []
         return [MissedSolution(kept, pose, shift, turn)]
 
-    def _ur(
-        self, joints: tuple[Joint, ...], T_last_link: SE3, goal: PoseGoal, reference: FloatArray
-    ) -> tuple[list[FloatArray], float]:
-        T_world_base = self._base_pose(joints[0])
-        T_base_wrist3 = T_world_base.inverse() @ goal.pose @ T_last_link.inverse()
-        answer = solve_ur(UrGeometry.of_joints(joints), T_base_wrist3, float(reference[-1]))
-        return list(answer.branches), max(answer.excess, 0.0)
-
-    def _planar(
-        self,
-        joints: tuple[Joint, ...],
-        T_last_link: SE3,
-        goal: LinkGoal,
-        space: GroupSpace,
-        seed_positions: FloatArray,
-    ) -> tuple[list[FloatArray], float]:
-        arm = PlanarArm.of_joints(joints, T_last_link)
-        T_base_world = self._base_pose(joints[0]).inverse()
-        target = goal.pose.translation if isinstance(goal, PoseGoal) else goal.position
-        position = T_base_world.apply(np.asarray(target, dtype=float))
-        found: list[FloatArray] = []
-        excesses: list[float] = []
-        for heading in headings(arm, position):
-            if isinstance(goal, PoseGoal):
-                x_axis = T_base_world.rotation @ goal.pose.rotation[:, 0]
-                pitches = [pitch_in_plane(heading, x_axis)]
-            elif goal.pitch is not None:
-                down = T_base_world.rotation @ np.array([0.0, 0.0, -1.0])
-                pitches = list(pitches_below(heading, down, goal.pitch))
-            else:
-                now = float(space.part(seed_positions)[1:].sum())
-                pitches = [now, *np.linspace(-np.pi, np.pi, PITCH_SAMPLES)]
-            for pitch in pitches:
-                answer = solve_planar(arm, position, heading, pitch)
-                found.extend(answer.solutions)
-                excesses.append(answer.excess)
-        return found, min(excesses, default=0.0)
-
     def _check_link(self, space: GroupSpace, link: str) -> None:
         if link not in self.description.link_names:
             raise PlanningFailed("INVALID_LINK_NAME", f"the robot has no link '{link}'")
@@ -201,32 +184,34 @@ class PinocchioKinematics:
             raise PlanningFailed(
                 "INVALID_LINK_NAME",
                 f"link '{link}' is not moved by the joints of group '{space.group}'",
-                {"link": link, "group": space.group},
+                LinkFailure(link, space.group),
             )
 
-    def _fixed_offset(self, joint: Joint, link: str) -> SE3:
-        """T_child_link from the joint's child link to a link that is fixed to it."""
-        robot = self.robot
-        return robot.placement(joint.child).inverse() @ robot.placement(link)
 
-    def _base_pose(self, joint: Joint) -> SE3:
-        """T_world_parent of the first joint's parent link, which is static."""
-        return self.link_pose(np.zeros(len(self.description.joint_names)), joint.parent)
+def is_built_in(solver: str) -> bool:
+    """Whether an inverse kinematics solver comes with the program."""
+    return registry(IkSolver.plugin_kind).package_of(solver) == OWN_PACKAGE
 
 
-def task_of(space: GroupSpace, goal: LinkGoal) -> str:
-    """The quantities that are solved for; fewer than six joints cannot reach every pose."""
-    if isinstance(goal, PositionGoal):
-        return "position" if goal.pitch is None else "position and pitch"
-    if space.dof >= WHOLE_POSE_JOINTS:
-        return "pose"
-    return "position and pitch" if space.dof >= PITCH_JOINTS else "position"
-
-
-def reduced(space: GroupSpace, goal: PoseGoal) -> PositionGoal:
-    """The part of a pose that an arm with fewer than six joints can choose."""
-    pitch = pitch_of(goal.pose.rotation) if space.dof >= PITCH_JOINTS else None
-    return PositionGoal(goal.link, goal.pose.translation, pitch)
+def _reaching(
+    space: GroupSpace,
+    request: IkRequest,
+    solutions: Sequence[FloatArray],
+    refused: list[RefusedSolution],
+) -> list[FloatArray]:
+    """Solutions that reach the goal, or the part of it that the arm can choose."""
+    kept: list[FloatArray] = []
+    for positions in solutions:
+        pose = request.link_pose(positions)
+        shift, turn = distance_to_goal(request.goal, pose)
+        at_the_point = shift <= request.goal.position_tolerance
+        has_few_joints = space.dof < WHOLE_POSE_JOINTS and isinstance(request.goal, PoseGoal)
+        if meets_tolerance(request.goal, pose) or (has_few_joints and at_the_point):
+            kept.append(positions)
+        else:
+            refused.append(RefusedSolution(positions, shift, turn))
+    refused.sort(key=lambda one: (round(one.shift + one.turn, 9), tuple(one.positions)))
+    return kept
 
 
 def into_limits(

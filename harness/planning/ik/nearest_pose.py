@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.planning.ik.numeric import LinkGoal, LinkTask, pitch_of, random_positions
+from harness.planning.ik.numeric import LinkGoal, LinkTask, pitch_of, sample_group_positions
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports import PoseGoal, PositionGoal
 
@@ -90,7 +90,7 @@ def nearest_pose(
     task = LinkTask(space, goal, metres_per_radian=metres_per_radian)
     rng = np.random.default_rng(seed)
     starts = [np.asarray(seed_positions, dtype=float)]
-    starts += [random_positions(space, rng) for _ in range(RESTARTS)]
+    starts += [sample_group_positions(space, rng) for _ in range(RESTARTS)]
     attempts = [task.least_squares(start) for start in starts]
     best = min(range(len(attempts)), key=lambda index: (round(attempts[index][1], 9), index))
     positions = attempts[best][0]

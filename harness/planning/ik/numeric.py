@@ -151,7 +151,7 @@ class LinkTask:
         return positions, float(np.sqrt(cost))
 
 
-def random_positions(space: GroupSpace, rng: np.random.Generator) -> FloatArray:
+def sample_group_positions(space: GroupSpace, rng: np.random.Generator) -> FloatArray:
     """Draw group positions uniformly inside the limits, or in one turn where there are none."""
     lower = np.where(np.isfinite(space.lower), space.lower, -np.pi)
     upper = np.where(np.isfinite(space.upper), space.upper, np.pi)
@@ -192,5 +192,5 @@ def solve_numeric(
         positions, error = task.least_squares(start)
         if error < _FOUND and all(space.distance(positions, other) > 1e-4 for other in found):
             found.append(positions)
-        start = random_positions(space, rng)
+        start = sample_group_positions(space, rng)
     return found

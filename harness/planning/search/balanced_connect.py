@@ -7,8 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.planning.collision.checker import MotionChecker
-from harness.planning.model.robot_model import GroupSpace
+from harness.ports import JointSpace, PathRequest, PathResult
 
 RANGE = 1.5
 """Longest edge [rad]."""
@@ -38,25 +37,12 @@ _BLOCK = 256
 PARAMETERS = ("range",)
 
 
-def search_connect(
-    planner_id: str,
-    checker: MotionChecker,
-    start: FloatArray,
-    goals: Sequence[FloatArray],
-    *,
-    resolution: float,
-    max_state_checks: int,
-    seed: int,
-    parameters: Mapping[str, float],
-) -> tuple[FloatArray | None, int, int, float]:
-    """Search a path; the arguments are those of `search`.
+def search_connect(request: PathRequest) -> PathResult:
+    """Search a path.
 
     RRT-Connect [1] in which the smaller tree grows [2], with dynamic domains of the vertices near
     obstacles [3] and samples from a Halton sequence, whose first index follows from the seed.
     Distances are measured in the group's metric.
-
-    Returns:
-        Waypoints or None, the number of state checks, the number of vertices, and the gap.
 
     Raises:
         ValueError: The parameter is unknown.
@@ -67,31 +53,29 @@ def search_connect(
             Balanced Bidirectional RRT Search", 2005. [3] A. Yershova et al., "Dynamic-Domain RRTs:
             Efficient Exploration by Controlling the Sampling Domain", ICRA 2005.
     """
-    step = step_length(planner_id, parameters)
-    space = checker.space
+    step = step_length(request.planner_id, request.parameters)
+    space, start, goals = request.space, request.start, request.goals
     metric = space.metric
     lower, upper = sampling_bounds(space, np.vstack([start, *goals]))
-    before = checker.checks
     trees = (
         _Tree([start * metric], step),
         _Tree([np.asarray(goal) * metric for goal in goals], step),
     )
 
     def is_free(first: FloatArray, second: FloatArray) -> bool:
-        return checker.edge_free(first / metric, second / metric, resolution)
+        return request.is_edge_free(first / metric, second / metric)
 
-    def outcome(path: FloatArray | None) -> tuple[FloatArray | None, int, int, float]:
+    def outcome(path: FloatArray | None) -> PathResult:
         count = trees[0].count + trees[1].count
-        gap = 0.0 if path is not None else _gap(*trees)
-        return path, checker.checks - before, count, gap
+        return PathResult(path, count, 0.0 if path is not None else _gap(*trees))
 
     for goal in goals:
         if is_free(trees[0].points[0], np.asarray(goal) * metric):
             return outcome(np.array([start, goal], dtype=float))
-    offset = 1 + seed % 1_000_003
+    offset = 1 + request.seed % 1_000_003
     growing = drawn = refused = 0
     samples = np.empty((0, space.dof))
-    while checker.checks - before < max_state_checks:
+    while request.state_checks() < request.max_state_checks:
         if drawn % _BLOCK == 0:
             samples = halton(offset + drawn, _BLOCK, lower * metric, upper * metric)
         sample = samples[drawn % _BLOCK]
@@ -136,7 +120,7 @@ def step_length(planner_id: str, parameters: Mapping[str, float]) -> float:
     return step
 
 
-def sampling_bounds(space: GroupSpace, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
+def sampling_bounds(space: JointSpace, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Sampling box inside the joint limits; revolute joints are sampled up to `BEYOND` the ends."""
     beyond = np.where(space.wraps, BEYOND, np.inf)
     lower = np.maximum(space.lower, ends.min(axis=0) - beyond)

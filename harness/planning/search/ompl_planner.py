@@ -5,19 +5,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import ompl.base as ob
 import ompl.geometric as og
 import ompl.util as ou
 
-from harness.core.types import FloatArray
-from harness.planning.collision.checker import MotionChecker
 from harness.planning.search.ompl_problem import OmplProblem, make_problem
-from harness.planning.search.planner_names import resolve_planner_id
 from harness.planning.search.planner_parameters import parameter_names, set_parameters
 from harness.planning.search.roadmap import find_in_roadmap
+from harness.ports import PathRequest, PathResult
 
 DEFAULTS: Mapping[str, float] = {"range": 1.5, "find_approximate_solutions": 1}
 """Parameters of the planners that have them: a tree's longest edge [rad], by default a fifth of the
@@ -35,18 +33,17 @@ STALLED = 100_000
 class _Termination:
     """Stops a planner whose budget is used, whose path is improved enough, or that stalls."""
 
-    def __init__(self, planner: ob.Planner, checker: MotionChecker, enough: int, end: int) -> None:
+    def __init__(self, planner: ob.Planner, request: PathRequest, enough: int) -> None:
         self._best_cost: Callable[[], ob.Cost] | None = getattr(planner, "bestCost", None)
-        self._checker = checker
+        self._request = request
         self._enough = enough
-        self._end = end
         self._seen = self._idle = 0
 
     def __call__(self) -> bool:
-        checks = self._checker.checks
+        checks = self._request.state_checks()
         self._idle = self._idle + 1 if checks == self._seen else 0
         self._seen = checks
-        if checks >= self._end or self._idle >= STALLED:
+        if checks >= self._request.max_state_checks or self._idle >= STALLED:
             return True
         if checks < self._enough or self._best_cost is None:
             return False
@@ -57,64 +54,45 @@ class _Termination:
         self._best_cost = None
 
 
-def search_ompl(
-    planner_id: str,
-    checker: MotionChecker,
-    start: FloatArray,
-    goals: Sequence[FloatArray],
-    *,
-    resolution: float,
-    max_state_checks: int,
-    seed: int,
-    parameters: Mapping[str, float],
-) -> tuple[FloatArray | None, int, int, float]:
-    """Search as `search` says; returns waypoints or None, checks, vertices, gap.
+def search_ompl(request: PathRequest) -> PathResult:
+    """Search a path.
 
-    The same arguments give the same path to the bit: OMPL's generator is seeded before anything
+    The same request gives the same path to the bit: OMPL's generator is seeded before anything
     that draws from it is made, and the budget is counted in state checks.
-
-    Args:
-        planner_id: A name that `resolve_planner_id` knows.
-        checker: The checker of states and edges.
-        start: The start positions of the group, free of collisions.
-        goals: Group positions, each free.
-        resolution: The resolution of the edge checks [rad].
-        max_state_checks: Budget of this search.
-        seed: The seed of OMPL's random numbers.
-        parameters: The parameters of the planner, by OMPL's names: `range`, `goal_bias` ...
 
     Raises:
         ValueError: A planner or a parameter is unknown; says which there are.
     """
-    kind = resolve_planner_id(planner_id)
-    if any(np.array_equal(start, goal) for goal in goals):
-        return np.array([start, start]), 0, 1, 0.0  # planners that sample an ellipsoid need two
-    _seed_ompl(seed)
-    before = checker.checks
-    enough, end = before + int(IMPROVING_SHARE * max_state_checks), before + max_state_checks
-    problem = make_problem(checker, start, goals, resolution, end)
+    kind, start, goals = request.planner_id, request.start, request.goals
+    if any(np.array_equal(start, goal) for goal in goals):  # samplers of an ellipsoid need two
+        return PathResult(np.array([start, start]), 1, 0.0)
+    _seed_ompl(request.seed)
+    enough = int(IMPROVING_SHARE * request.max_state_checks)
+    problem = make_problem(request)
     planner = getattr(og, kind)(problem.information)
     known = parameter_names(type(planner))
     defaults = {name: value for name, value in DEFAULTS.items() if name in known}
-    set_parameters(planner, kind, {**defaults, **parameters})
+    set_parameters(planner, kind, {**defaults, **request.parameters})
     planner.setProblemDefinition(problem.definition)
     planner.setup()
     if isinstance(planner, og.PRM):
-        improving = enough if kind == "PRMstar" else before
+        improving = enough if kind == "PRMstar" else 0
         ends = [tuple(map(float, positions)) for positions in (start, *goals)]
-        way, gap = find_in_roadmap(planner, ends, lambda: checker.checks, improving, end)
-        return way, checker.checks - before, planner.milestoneCount(), gap
-    ending = _Termination(planner, checker, enough, end)
+        way, gap = find_in_roadmap(
+            planner, ends, request.state_checks, improving, request.max_state_checks
+        )
+        return PathResult(way, planner.milestoneCount(), gap)
+    ending = _Termination(planner, request, enough)
     planner.solve(ob.PlannerTerminationCondition(ending))
     ending.release()
-    used = checker.checks - before
-    vertices, gap = _reached(planner, problem, checker.space.dof)
+    dof = request.space.dof
+    vertices, gap = _reached(planner, problem, dof)
     if not problem.definition.hasExactSolution():
         nothing_reached = min(float(np.linalg.norm(goal - start)) for goal in goals)
-        return None, used, vertices, gap or nothing_reached
+        return PathResult(None, vertices, gap or nothing_reached)
     states = problem.definition.getSolutionPath().getStates()
-    waypoints = np.array([[state[index] for index in range(checker.space.dof)] for state in states])
-    return waypoints, used, vertices, 0.0
+    waypoints = np.array([[state[index] for index in range(dof)] for state in states])
+    return PathResult(waypoints, vertices, 0.0)
 
 
 def _seed_ompl(seed: int) -> None:

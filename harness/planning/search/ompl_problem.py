@@ -4,14 +4,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import ompl.base as ob
 
 from harness.core.types import FloatArray
-from harness.planning.collision.checker import MotionChecker
+from harness.ports import JointSpace, PathRequest
 
 _BEYOND = np.pi  # [rad] how far a continuous joint may leave the range of start and goals
 
@@ -22,17 +21,16 @@ class FreeStates:
     So planners that draw whole batches terminate, and none lacks a start or a goal.
     """
 
-    def __init__(self, checker: MotionChecker, ends: FloatArray, end: int) -> None:
+    def __init__(self, request: PathRequest, ends: FloatArray) -> None:
         self.count = 0
-        self._checker = checker
+        self._request = request
         self._ends = {tuple(positions) for positions in ends.tolist()}
-        self._end = end
-        self._dof = checker.space.dof
+        self._dof = request.space.dof
 
     def __call__(self, state: ob.State) -> bool:
         positions = tuple(state[index] for index in range(self._dof))
-        if self._checker.checks < self._end:
-            free = self._checker.state_free(np.array(positions))
+        if self._request.state_checks() < self._request.max_state_checks:
+            free = self._request.is_state_free(np.array(positions))
         else:
             free = positions in self._ends
         self.count += free
@@ -40,24 +38,19 @@ class FreeStates:
 
 
 class _EdgeValidator(ob.MotionValidator):
-    def __init__(
-        self, information: ob.SpaceInformation, checker: MotionChecker, resolution: float, end: int
-    ) -> None:
+    def __init__(self, information: ob.SpaceInformation, request: PathRequest) -> None:
         super().__init__(information)
-        self._checker = checker
-        self._end = end
-        self._resolution = resolution
-        self._dof = checker.space.dof
+        self._request = request
 
     def checkMotion(self, first: ob.State, second: ob.State) -> bool:  # noqa: N802 (OMPL's name)
         """Whether the whole edge is free; none is when the budget has ended."""
-        if self._checker.checks >= self._end:
+        request = self._request
+        if request.state_checks() >= request.max_state_checks:
             return False
-        dof = self._dof
-        return self._checker.edge_free(
-            np.array([first[index] for index in range(dof)]),
-            np.array([second[index] for index in range(dof)]),
-            self._resolution,
+        joints = range(request.space.dof)
+        return request.is_edge_free(
+            np.array([first[index] for index in joints]),
+            np.array([second[index] for index in joints]),
         )
 
 
@@ -70,29 +63,16 @@ class OmplProblem:
     free_states: FreeStates
 
 
-def make_problem(
-    checker: MotionChecker,
-    start: FloatArray,
-    goals: Sequence[FloatArray],
-    resolution: float,
-    end: int,
-) -> OmplProblem:
-    """The problem of getting from the start to any of the goals.
-
-    Args:
-        checker: The checker of states and edges.
-        start: The start positions of the group, free of collisions.
-        goals: Group positions, each free.
-        resolution: The resolution of the edge checks [rad].
-        end: The checker's count at which the budget ends.
-    """
+def make_problem(request: PathRequest) -> OmplProblem:
+    """The problem of getting from the start to any of the goals."""
+    space, start, goals = request.space, request.start, request.goals
     ends = np.vstack([start, *goals])
-    states = ob.RealVectorStateSpace(checker.space.dof)
-    states.setBounds(_bounds(checker, ends))
+    states = ob.RealVectorStateSpace(space.dof)
+    states.setBounds(_bounds(space, ends))
     information = ob.SpaceInformation(states)
-    free_states = FreeStates(checker, ends, end)
+    free_states = FreeStates(request, ends)
     information.setStateValidityChecker(free_states)
-    information.setMotionValidator(_EdgeValidator(information, checker, resolution, end))
+    information.setMotionValidator(_EdgeValidator(information, request))
     information.setup()
     definition = ob.ProblemDefinition(information)
     definition.addStartState(_state(states, start))
@@ -103,8 +83,7 @@ def make_problem(
     return OmplProblem(information, definition, free_states)
 
 
-def _bounds(checker: MotionChecker, ends: FloatArray) -> ob.RealVectorBounds:
-    space = checker.space
+def _bounds(space: JointSpace, ends: FloatArray) -> ob.RealVectorBounds:
     bounds = ob.RealVectorBounds(space.dof)
     for index in range(space.dof):
         low, high = float(space.lower[index]), float(space.upper[index])

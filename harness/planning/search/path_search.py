@@ -24,11 +24,17 @@ class Effort:
 
     Attributes:
         checks: The state checks of all searches.
-        gaps: The remaining distances of the searches that failed [rad].
+        gaps: The remaining distances of the searches that failed, where they are known [rad].
+        refused: The path of the last search, if it is not free at `FINAL_RESOLUTION`.
+        planner_id: The planner of the last search.
+        is_used_up: Whether a budget was used up.
     """
 
     checks: int = 0
     gaps: list[float] = field(default_factory=list[float])
+    refused: FloatArray | None = None
+    planner_id: str = ""
+    is_used_up: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,29 +66,34 @@ def verified_paths(
     """Paths, each searched more finely than the one before, until budget and attempts end.
 
     Raises:
-        ValueError: A planner or a parameter is unknown.
+        ValueError: A pipeline, a planner or a parameter is unknown.
+        PlanningFailed: A third-party pipeline goes wrong.
     """
     for attempt in range(options.attempts):
         left = options.max_state_checks
         for level, resolution in enumerate(PLANNING_RESOLUTIONS):
             seed = _derived_seed(options.seed, attempt, level)
             result = search(
-                options.planner_id,
+                options,
                 checker,
                 start,
                 goals,
                 resolution=resolution,
                 max_state_checks=left,
                 seed=seed,
-                parameters=options.parameters,
             )
             effort.checks += result.checks
+            effort.planner_id = result.planner_id
             left -= result.checks
+            effort.is_used_up = left <= 0
+            effort.refused = None
             if result.waypoints is None:
-                effort.gaps.append(result.gap)
+                effort.gaps += [] if result.gap is None else [result.gap]
                 break
             if checker.path_free(result.waypoints, FINAL_RESOLUTION):
                 yield FoundPath(result, result.waypoints, attempt, resolution, seed)
+            else:
+                effort.refused = result.waypoints
             if left <= 0:
                 break
 

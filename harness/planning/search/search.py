@@ -1,16 +1,15 @@
-"""Searches a free path with the requested planner and a budget of state checks."""
+"""Searches a free path with the requested planning pipeline and a budget of state checks."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from harness.core.types import FloatArray
 from harness.planning.collision.checker import MotionChecker
-from harness.planning.search.planner_names import FAST_PLANNER, PATIENT_PLANNER, resolve_planner_id
-
-FAST_SHARE = 0.5
-"""Part of the budget that `auto` gives to the fast planner; the patient one gets the rest."""
+from harness.planning.search.find_pipeline import DEFAULT_PIPELINE, find_pipeline, is_built_in
+from harness.planning.search.third_party import find_third_party_path
+from harness.ports import PathRequest, PlanningOptions
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,22 +17,23 @@ class Search:
     """The result of a planner.
 
     Attributes:
-        waypoints: The path, shape (N, dof), or None when the budget is used up.
+        waypoints: The path, shape (N, dof), or None when there is none.
         checks: The number of state checks.
         vertices: The number of vertices of its trees or graph.
-        gap: The remaining joint-space distance between its trees or to the goal [rad]; 0 if solved.
-        planner_id: The name of the planner.
+        gap: The remaining joint-space distance between its trees or to the goal [rad]; 0 if solved,
+            None if unknown.
+        planner_id: The planner's name; of a pipeline other than `ompl`, the pipeline's name first.
     """
 
     waypoints: FloatArray | None
     checks: int
     vertices: int
-    gap: float
+    gap: float | None
     planner_id: str
 
 
 def search(
-    planner_id: str,
+    options: PlanningOptions,
     checker: MotionChecker,
     start: FloatArray,
     goals: Sequence[FloatArray],
@@ -41,70 +41,45 @@ def search(
     resolution: float,
     max_state_checks: int,
     seed: int,
-    parameters: Mapping[str, float],
 ) -> Search:
     """Search a path from the start to any of the goals.
 
     The same arguments give the same path to the bit.
 
     Args:
-        planner_id: A name that `resolve_planner_id` knows; `auto` is the fast planner, then the
-            patient one.
+        options: The pipeline, the planner and its parameters.
         checker: The checker of states and edges.
         start: The start positions of the group, free of collisions.
         goals: Group positions, each free.
         resolution: The resolution of the edge checks [rad].
         max_state_checks: Budget of this search.
         seed: The seed of samples.
-        parameters: The parameters of the planner, by OMPL's names: `range`, `goal_bias` ...
 
     Raises:
-        ValueError: A planner or a parameter is unknown; says which there are.
+        ValueError: A pipeline, a planner or a parameter is unknown; says which there are.
+        PlanningFailed: A third-party pipeline goes wrong.
     """
-    name = resolve_planner_id(planner_id)
-    if name == "auto":
-        budget = max(1, int(FAST_SHARE * max_state_checks))
-        first = _search_with(
-            FAST_PLANNER, checker, start, goals, resolution, budget, seed, parameters
-        )
-        left = max_state_checks - first.checks
-        if first.waypoints is not None or left <= 0:
-            return first
-        second = _search_with(
-            PATIENT_PLANNER, checker, start, goals, resolution, left, seed, parameters
-        )
-        return Search(
-            second.waypoints,
-            first.checks + second.checks,
-            first.vertices + second.vertices,
-            min(first.gap, second.gap),
-            second.planner_id,
-        )
-    return _search_with(name, checker, start, goals, resolution, max_state_checks, seed, parameters)
-
-
-def _search_with(
-    name: str,
-    checker: MotionChecker,
-    start: FloatArray,
-    goals: Sequence[FloatArray],
-    resolution: float,
-    max_state_checks: int,
-    seed: int,
-    parameters: Mapping[str, float],
-) -> Search:
-    if name == FAST_PLANNER:
-        from harness.planning.search.balanced_connect import search_connect as run
-    else:
-        from harness.planning.search.ompl_planner import search_ompl as run
-    found = run(
-        name,
-        checker,
-        start,
-        goals,
-        resolution=resolution,
+    pipeline = options.pipeline
+    planner = find_pipeline(pipeline)
+    before = checker.checks
+    request = PathRequest(
+        planner_id=planner.check(options.planner_id, options.parameters),
+        space=checker.space,
+        start=start,
+        goals=tuple(goals),
+        is_state_free=checker.state_free,
+        is_edge_free=lambda first, second: checker.edge_free(first, second, resolution),
+        state_checks=lambda: checker.checks - before,
         max_state_checks=max_state_checks,
+        resolution=resolution,
         seed=seed,
-        parameters=parameters,
+        parameters=options.parameters,
     )
-    return Search(*found, name)
+    if is_built_in(pipeline):
+        found = planner().find_path(request)
+    else:
+        found = find_third_party_path(planner, request)
+    prefix = "" if pipeline == DEFAULT_PIPELINE else pipeline
+    parts = (prefix, found.planner_id or request.planner_id)
+    name = "/".join(part for part in parts if part)
+    return Search(found.waypoints, checker.checks - before, found.vertices, found.gap, name)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
+from harness.core.details import Details
 from harness.core.types import FloatArray
 from harness.planning.timing.profiles import GRID, Curve, on_grid, smoothed
+from harness.recording.motion_failures import TrajectoryFailure
 
 EFFORT_PERIOD = 10
 """Every so many samples of the time grid the efforts are computed: every 20 ms."""
@@ -21,12 +22,12 @@ class TimingError(Exception):
     """A path cannot be given times under the limits.
 
     Attributes:
-        facts: Plain data for the record; `broken` says which limit.
+        details: The limit that is broken, and its numbers.
     """
 
-    def __init__(self, message: str, facts: Mapping[str, Any] | None = None) -> None:
+    def __init__(self, message: str, details: Details | None = None) -> None:
         super().__init__(message)
-        self.facts: dict[str, Any] = {"broken": "timing", **(facts or {})}
+        self.details = details or Details.of(TrajectoryFailure("timing"))
 
 
 class Dynamics(Protocol):
@@ -41,8 +42,8 @@ class Dynamics(Protocol):
         """Efforts of a motion, (N, dof) each."""
         ...
 
-    def standing_overload(self, positions: FloatArray) -> tuple[str, dict[str, Any]]:
-        """Message and facts of a joint whose effort does not suffice to stand still, (dof,)."""
+    def standing_overload(self, positions: FloatArray) -> tuple[str, Details]:
+        """Message and details of a joint whose effort does not suffice to stand still, (dof,)."""
         ...
 
 

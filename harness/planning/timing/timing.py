@@ -20,7 +20,7 @@ from harness.planning.timing.toppra_solver import fastest
 GRID_POINTS_PER_PIECE = 20
 """TOPP-RA's grid points on each line and blend; fewer break the limits in between."""
 
-_STILL = 1e-9  # [rad] paths shorter than this have nowhere to go
+_AT_REST = 1e-9  # [rad] paths shorter than this have nowhere to go
 
 
 def time_straight(
@@ -34,7 +34,7 @@ def time_straight(
         TimingError: The limits cannot be kept.
     """
     span = np.abs(second - first)
-    if np.linalg.norm(span) < _STILL:
+    if np.linalg.norm(span) < _AT_REST:
         return resting(joint_names, first)
     moving = span > 1e-12
     velocity = float(np.min(limits.velocity[moving] / span[moving]))

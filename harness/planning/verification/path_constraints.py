@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from harness.core.types import FloatArray
 from harness.planning.model.robot_model import GroupSpace
 from harness.planning.model.turns import FREE, turn_from
 from harness.ports import PathConstraints, PositionBox
+from harness.recording.motion_failures import ConstraintFailure
 
 INNER_SHARE = 0.8
 """Of every tolerance that projected states keep to, so that the lines between them hold it too."""
@@ -27,12 +27,12 @@ class Violation:
         what: The violation in words: `end_effector_link is turned 0.20 rad about y, 0.10 rad are
             allowed`.
         excess: Beyond its tolerance [rad or m].
-        facts: The facts as plain data.
+        record: The value and its bounds.
     """
 
     what: str
     excess: float
-    facts: dict[str, Any]
+    record: ConstraintFailure
 
 
 class HeldConstraints:
@@ -117,11 +117,9 @@ class HeldConstraints:
         return Violation(
             f"{self._names[worst].format(value=values[worst])}, {allowed}",
             float(excess[worst]),
-            {
-                "constraint_value": float(values[worst]),
-                "constraint_lower": float(self.lower[worst]),
-                "constraint_upper": float(self.upper[worst]),
-            },
+            ConstraintFailure(
+                float(values[worst]), float(self.lower[worst]), float(self.upper[worst])
+            ),
         )
 
     def project(self, positions: FloatArray) -> FloatArray | None:

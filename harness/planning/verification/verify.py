@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
+from harness.core.details import Details
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.collision import wording
-from harness.planning.collision.checker import MotionChecker, touch_facts
+from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.timing.limits import Limits
 from harness.planning.verification.path_constraints import HeldConstraints
+from harness.recording.goal_failures import CollisionFailure
+from harness.recording.motion_failures import BrokenRule, PathCollision, TrajectoryFailure
 
 FINAL_RESOLUTION = 1 / 128
 """Joint-space distance between states checked on the path that is found and shortened [rad]."""
@@ -43,10 +44,15 @@ _POSITION_SLACK = 1e-9  # [rad or m] rounding at a limit
 
 @dataclass(frozen=True)
 class Defect:
-    """What is wrong with a trajectory: in words, and as plain data."""
+    """What is wrong with a trajectory.
+
+    Attributes:
+        message: The defect in words.
+        details: The rule that is broken, and its numbers.
+    """
 
     message: str
-    facts: Mapping[str, Any]
+    details: Details
 
 
 def find_defect(
@@ -98,8 +104,32 @@ def find_departure(
     return Defect(
         f"at {time:.3f} s it would be {away[row]:.3g} rad off the path that was checked, "
         f"{deviation:.3g} rad are allowed",
-        {"broken": "path", "time": time, "path_deviation": float(away[row])},
+        Details.of(TrajectoryFailure("path", time=time, path_deviation=float(away[row]))),
     )
+
+
+def path_collision(waypoints: FloatArray, checker: MotionChecker) -> Defect | None:
+    """Where a path without times is blocked first, or None.
+
+    Args:
+        waypoints: Group positions, shape (N, dof); the first one is free.
+        checker: The checker of the edges, at `FINAL_RESOLUTION`.
+    """
+    for index, (first, second) in enumerate(pairwise(waypoints)):
+        blocked = checker.first_block(first, second, FINAL_RESOLUTION)
+        if blocked is not None:
+            share, touches = blocked
+            state = first + share * (second - first)
+            edge = f" between waypoints {index + 1} and {index + 2}" if len(waypoints) > 2 else ""
+            return Defect(
+                f"after {100 * share:.0f} % of the path{edge} it would come too near: "
+                f"{wording.touches(touches)}",
+                Details.of(
+                    TrajectoryFailure("collision"),
+                    PathCollision(touch_records(touches), tuple(map(float, state))),
+                ),
+            )
+    return None
 
 
 def distances_to_path(positions: FloatArray, waypoints: FloatArray) -> FloatArray:
@@ -116,22 +146,26 @@ def distances_to_path(positions: FloatArray, waypoints: FloatArray) -> FloatArra
 def _stamps(trajectory: JointTrajectory) -> Defect | None:
     if trajectory.times[0] == 0.0 and bool(np.all(np.diff(trajectory.times) > 0)):
         return None
-    return Defect("the time stamps do not rise from zero", {"broken": "stamps"})
+    return Defect("the time stamps do not rise from zero", Details.of(TrajectoryFailure("stamps")))
 
 
 def _ends(trajectory: JointTrajectory, start: FloatArray, end: FloatArray) -> Defect | None:
-    for place, row, expected in (("start", 0, start), ("end", -1, end)):
+    ends: tuple[tuple[BrokenRule, BrokenRule, int, FloatArray], ...] = (
+        ("start", "rest at start", 0, start),
+        ("end", "rest at end", -1, end),
+    )
+    for place, rest, row, expected in ends:
         off = float(np.max(np.abs(trajectory.positions[row] - expected)))
         if not off <= END_TOLERANCE:
             return Defect(
                 f"the trajectory's {place} is {off:.2g} rad away from where it should be",
-                {"broken": place, "distance": off},
+                Details.of(TrajectoryFailure(place, distance=off)),
             )
         speed = float(np.max(np.abs(trajectory.velocities[row])))
         if not speed <= 1e-9:
             return Defect(
                 f"the trajectory is not at rest at its {place}",
-                {"broken": f"rest at {place}", "speed": speed},
+                Details.of(TrajectoryFailure(rest, speed=speed)),
             )
     return None
 
@@ -140,17 +174,19 @@ def _limits(trajectory: JointTrajectory, checker: MotionChecker, limits: Limits)
     space = checker.space
     outside = np.maximum(space.lower - trajectory.positions, trajectory.positions - space.upper)
     share = 1 + LIMIT_TOLERANCE
-    for what, excess in (
+    rules: tuple[tuple[BrokenRule, FloatArray], ...] = (
         ("position limit", outside - _POSITION_SLACK),
         ("velocity limit", np.abs(trajectory.velocities) - limits.velocity * share),
         ("acceleration limit", np.abs(trajectory.accelerations) - limits.acceleration * share),
-    ):
+    )
+    for what, excess in rules:
         row, joint = np.unravel_index(int(np.argmax(excess)), excess.shape)
         if not excess[row, joint] <= 0:
             name, time = space.joint_names[joint], float(trajectory.times[row])
+            beyond = float(excess[row, joint])
             return Defect(
-                f"{name} is beyond its {what} by {excess[row, joint]:.3g} at {time:.3f} s",
-                {"broken": what, "joint": name, "excess": float(excess[row, joint]), "time": time},
+                f"{name} is beyond its {what} by {beyond:.3g} at {time:.3f} s",
+                Details.of(TrajectoryFailure(what, name, excess=beyond, time=time)),
             )
     return None
 
@@ -167,7 +203,7 @@ def _jerks(trajectory: JointTrajectory, limits: Limits) -> Defect | None:
     return Defect(
         f"{name} has a jerk of {jerks[row, joint]:.3g}, of at most {limits.jerk:.3g}, "
         f"at {time:.3f} s",
-        {"broken": "jerk limit", "joint": name, "time": time},
+        Details.of(TrajectoryFailure("jerk limit", name, time=time)),
     )
 
 
@@ -190,7 +226,7 @@ def _efforts(trajectory: JointTrajectory, limits: Limits) -> Defect | None:
     return Defect(
         f"{name} would need {abs(efforts[row, joint]):.1f} of at most "
         f"{dynamics.limits[joint]:.1f} N m (or N) at {time:.3f} s",
-        {"broken": "effort limit", "joint": name, "time": time},
+        Details.of(TrajectoryFailure("effort limit", name, time=time)),
     )
 
 
@@ -204,7 +240,8 @@ def _constraints(trajectory: JointTrajectory, held: HeldConstraints | None) -> D
         broken = held.violation(state)
         if broken is not None:
             return Defect(
-                f"at {time:.2f} s {broken.what}", {"broken": "path constraints", **broken.facts}
+                f"at {time:.2f} s {broken.what}",
+                Details.of(TrajectoryFailure("path constraints"), broken.record),
             )
     return None
 
@@ -226,5 +263,7 @@ def _collision(trajectory: JointTrajectory, checker: MotionChecker) -> Defect | 
     time = float(np.interp(places[index], travelled[moving], trajectory.times[moving]))
     return Defect(
         f"at {time:.2f} s it would come too near: {wording.touches(touches)}",
-        {"broken": "collision", "time": time, "touches": touch_facts(touches)},
+        Details.of(
+            TrajectoryFailure("collision", time=time), CollisionFailure(touch_records(touches))
+        ),
     )

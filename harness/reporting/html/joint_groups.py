@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.core.types import FloatArray
 from harness.recording.run import GripperRecord, JointRecord, Run
-from harness.reporting.html.group import MOST_SERIES, Group, Limit
+from harness.reporting.html.plot_group import MOST_SERIES, Group, Limit
 
 
 def _arm(run: Run) -> list[tuple[int, JointRecord]]:

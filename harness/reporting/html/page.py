@@ -24,10 +24,10 @@ from harness.reporting.html.story import (
     step_facts,
     verdict_facts,
 )
-from harness.reporting.html.summary import Picture, header_facts, outcome_pill, summary_html
+from harness.reporting.html.summary import SummaryPicture, header_facts, outcome_pill, summary_html
 
 
-def page_html(stored: StoredRun, pictures: Sequence[Picture] = ()) -> str:
+def page_html(stored: StoredRun, pictures: Sequence[SummaryPicture] = ()) -> str:
     """One self-contained page; equal text for equal runs but for their wall times.
 
     Args:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, cast
 
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.recording.link_poses import link_poses
-from harness.recording.run import Run, StepRecord
+from harness.recording.explanation import recorded_explanation
+from harness.recording.link_poses import replayed_link_poses
+from harness.recording.run import Floats, Run, StepRecord
 from harness.reporting.html.packing import Packer
 
 TCP_POINTS = 1500
@@ -73,39 +74,36 @@ def _tool_poses(
     start = min(step.start_index, len(run.signals.times) - 1)
     rows = np.tile(run.signals.joint_positions[start], (len(positions), 1))
     rows[:, [columns[name] for name in names]] = positions
-    poses = link_poses(run.robot, rows, [run.robot.tcp_link]).get(run.robot.tcp_link)
+    poses = replayed_link_poses(run.robot, rows, [run.robot.tcp_link]).get(run.robot.tcp_link)
     return None if poses is None else np.broadcast_to(poses, (len(rows), 7))
 
 
 def _nearest(run: Run, step: StepRecord) -> dict[str, Any] | None:
     """The state that explains a failure: the whole robot there, and how far it is from the goal."""
-    facts = cast("Mapping[str, Any]", step.explanation.get("nearest", {}))
-    joints = cast("Mapping[str, float]", facts.get("joint_positions") or {})
+    nearest = recorded_explanation(step.explanation).nearest
     names = [joint.name for joint in run.robot.joints]
-    if not set(names) <= set(joints):
+    if nearest is None or not set(names) <= set(nearest.joint_positions):
         return None
-    row = np.array([[float(joints[name]) for name in names]])
-    poses = link_poses(run.robot, row, [*run.robot.link_visuals, run.robot.tcp_link])
+    row = np.array([[nearest.joint_positions[name] for name in names]])
+    poses = replayed_link_poses(run.robot, row, [*run.robot.link_visuals, run.robot.tcp_link])
     return {
-        "shows": str(facts.get("shows", "")),
+        "shows": nearest.shows,
         "bodies": {name: [round(float(x), 6) for x in pose[0]] for name, pose in poses.items()},
-        "place": _numbers(facts.get("pose"), 7),
-        "target": _target(facts),
+        "place": _numbers(nearest.pose, 7),
+        "target": _target(nearest.target),
     }
 
 
-def _target(facts: Mapping[str, Any]) -> list[float] | None:
+def _target(target: Floats | None) -> list[float] | None:
     """Where a link was to be: a pose, or a point with no turn of its own."""
-    pose, point = _numbers(facts.get("target"), 7), _numbers(facts.get("target"), 3)
+    pose, point = _numbers(target, 7), _numbers(target, 3)
     return pose or (None if point is None else [*point, 1.0, 0.0, 0.0, 0.0])
 
 
-def _numbers(values: Any, count: int) -> list[float] | None:
-    if not isinstance(values, list | tuple | np.ndarray):
+def _numbers(values: Floats | None, count: int) -> list[float] | None:
+    if values is None or len(values) != count:
         return None
-    array = np.asarray(values, dtype=float)
-    if array.shape != (count,):
-        return None
+    array = np.array(values)
     return [round(float(value), 6) for value in array] if np.isfinite(array).all() else None
 
 

@@ -19,7 +19,7 @@ from harness.core.geometry import (
     bounding_radius,
 )
 from harness.core.types import FloatArray, IntArray
-from harness.recording.link_poses import link_poses
+from harness.recording.link_poses import replayed_link_poses
 from harness.recording.run import ObjectRecord, Run
 from harness.reporting.html.meshes import pack_mesh
 from harness.reporting.html.packing import Packer, differences
@@ -50,7 +50,7 @@ def frame_samples(times: FloatArray) -> tuple[float, IntArray]:
 def pack_scene(run: Run, packer: Packer) -> dict[str, Any]:
     """Bodies, meshes, frames and what the first view holds."""
     step, samples = frame_samples(run.signals.times)
-    poses = link_poses(run.robot, run.signals.joint_positions[samples])
+    poses = replayed_link_poses(run.robot, run.signals.joint_positions[samples])
     meshes = _mesh_parts(run)
     bodies: list[dict[str, Any]] = []
     columns: list[FloatArray] = []
@@ -77,7 +77,7 @@ def pack_scene(run: Run, packer: Packer) -> dict[str, Any]:
             continue
         shown = always if recorded is None else _shown(run.signals.times, recorded)
         ghost = not obj.in_simulation
-        add(obj.name, obj.shapes, rows, shown=shown, ghost=ghost, isLink=False)
+        add(obj.name, obj.looks, rows, shown=shown, ghost=ghost, isLink=False)
     unit = _pack_poses(columns, len(samples), packer)
     focus, bounds = _views(run, poses)
     return {
@@ -158,7 +158,7 @@ def _views(run: Run, poses: Mapping[str, FloatArray]) -> tuple[dict[str, Any], d
     base = poses[run.robot.base_link][0, :3] if run.robot.base_link in poses else np.zeros(3)
     wide: list[FloatArray] = []
     for obj in run.objects:
-        if any(isinstance(shape.geometry, Plane) for shape in obj.shapes):
+        if any(isinstance(shape.geometry, Plane) for shape in obj.looks):
             continue
         centres, reach = _extent(run, obj)
         corners = np.concatenate([centres - reach, centres + reach])
@@ -171,7 +171,7 @@ def _views(run: Run, poses: Mapping[str, FloatArray]) -> tuple[dict[str, Any], d
 
 def _extent(run: Run, obj: ObjectRecord) -> tuple[FloatArray, float]:
     """Where an object's centre was, a few times, and how far it reaches from there [m]."""
-    reach = max((bounding_radius(shape) for shape in obj.shapes), default=0.0)
+    reach = max((bounding_radius(shape) for shape in obj.looks), default=0.0)
     recorded = run.signals.object_poses.get(obj.name)
     rows = np.array([obj.pose or (0.0,) * 7]) if recorded is None else recorded
     rows = rows[:: max(1, len(rows) // 20)]

@@ -64,7 +64,7 @@ def step_facts(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> dict[
         "lastLine": last_line(run.source, step.line),
         "status": step.status,
         "errorCode": step.error_code,
-        "message": step.message.removeprefix(f"{step.error_code}: "),
+        "message": step.message,
         "start": step.start_time,
         "end": step.end_time,
         "depth": depth_of(step, run),

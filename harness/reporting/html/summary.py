@@ -23,7 +23,7 @@ STATUS = {
 
 
 @dataclass(frozen=True)
-class Picture:
+class SummaryPicture:
     """A small picture of a step's end.
 
     Attributes:
@@ -34,7 +34,7 @@ class Picture:
     data: bytes
 
 
-def summary_html(stored: StoredRun, pictures: Sequence[Picture]) -> str:
+def summary_html(stored: StoredRun, pictures: Sequence[SummaryPicture]) -> str:
     """Verdict, facts, pictures, expectations, steps, findings; no script, nothing fetched."""
     run = stored.run
     return "\n".join(
@@ -90,7 +90,7 @@ def _early_end(stored: StoredRun) -> str:
     return f'<p class="why">The run ended early: {escape(stored.run.ended_early)}</p>'
 
 
-def _pictures(pictures: Sequence[Picture]) -> str:
+def _pictures(pictures: Sequence[SummaryPicture]) -> str:
     figures = [
         f'<figure><img alt="" src="data:image/webp;base64,{base64.b64encode(each.data).decode()}">'
         f"<figcaption>{escape(each.caption)}</figcaption></figure>"

@@ -8,9 +8,9 @@ import numpy as np
 
 from harness.core.pose_arrays import compose, conjugate, quat_product, rotation_angle
 from harness.core.types import FloatArray
-from harness.recording.link_poses import link_poses
+from harness.recording.link_poses import replayed_link_poses
 from harness.recording.run import Pair, Run
-from harness.reporting.html.group import MOST_SERIES, Group
+from harness.reporting.html.plot_group import MOST_SERIES, Group
 
 
 def clearances(run: Run) -> Group:
@@ -64,7 +64,9 @@ def slip(run: Run) -> Group:
         rows = np.flatnonzero((times >= held.start_time) & (times <= held.end_time))
         if not len(rows):
             continue
-        carrier = link_poses(run.robot, run.signals.joint_positions[rows], [held.link])[held.link]
+        carrier = replayed_link_poses(run.robot, run.signals.joint_positions[rows], [held.link])[
+            held.link
+        ]
         believed = compose(carrier, np.array(held.pose_in_link))
         distance = np.full(len(times), np.nan)
         distance[rows] = 1e3 * np.linalg.norm(actual[rows, :3] - believed[:, :3], axis=1)

@@ -8,9 +8,10 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from harness.recording.explanation import recorded_explanation
 from harness.recording.store import PAGE, StoredRun, blames_changes, read_run
 from harness.reporting.html.page import page_html
-from harness.reporting.html.summary import Picture
+from harness.reporting.html.summary import SummaryPicture
 
 PICTURES = 6
 WIDTH = 360  # [pixels]
@@ -35,7 +36,7 @@ def write_page(folder: Path, stored: StoredRun | None = None) -> Path:
     return page
 
 
-def _pictures(folder: Path, stored: StoredRun) -> list[Picture]:
+def _pictures(folder: Path, stored: StoredRun) -> list[SummaryPicture]:
     """A few of the stills that the folder has: failures, the end, and between them."""
     executed = [step for step in stored.run.steps if step.status != "not_reached"]
     stills = {
@@ -56,12 +57,13 @@ def _pictures(folder: Path, stored: StoredRun) -> list[Picture]:
         (stills[n], f"{executed[n].summary}, t = {executed[n].end_time:.2f} s") for n in chosen
     ]
     captioned += [
-        (folder / step.explanation["picture"], f"why: {step.summary}")
+        (folder / picture, f"why: {step.summary}")
         for step in executed
-        if step.status == "failed" and "picture" in step.explanation
+        if step.status == "failed"
+        and (picture := recorded_explanation(step.explanation).picture) is not None
     ]
     return [
-        Picture(caption, small)
+        SummaryPicture(caption, small)
         for file, caption in captioned
         if (small := _small(file)) is not None
     ]

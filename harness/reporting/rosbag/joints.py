@@ -19,7 +19,7 @@ def clock(run: Run, indices: IntArray) -> Iterator[Message]:
         yield Message(time, CLOCK, Clock(clock=stamp(time)))
 
 
-def measured(run: Run, indices: IntArray) -> Iterator[Message]:
+def measured_states(run: Run, indices: IntArray) -> Iterator[Message]:
     """Positions, velocities and efforts of every movable joint."""
     signals = run.signals
     names = [joint.name for joint in run.robot.joints]

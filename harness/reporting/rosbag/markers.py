@@ -19,7 +19,7 @@ from harness.core.geometry import (
 )
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.recording.link_poses import link_poses
+from harness.recording.link_poses import replayed_link_poses
 from harness.recording.run import MeshRecord, ObjectRecord, Run, StepRecord
 from harness.reporting.rosbag.frames import WORLD, moving_objects
 from harness.reporting.rosbag.messages import (
@@ -82,7 +82,7 @@ def _of_object(run: Run, obj: ObjectRecord, time: float, *, is_moving: bool) -> 
         return []
     base, frame = (SE3.identity(), obj.name) if is_moving else (SE3.from_vector(pose), WORLD)
     markers: list[Any] = []
-    for shape in obj.shapes:
+    for shape in obj.looks:
         for kind, scale, offset in _solids(shape):
             marker = _marker(time, frame, obj.name, len(markers), kind=kind)
             marker.pose = pose_message((base @ shape.pose @ offset).as_vector().tolist())
@@ -145,7 +145,7 @@ def _planned(run: Run, step: StepRecord) -> FloatArray | None:
         return None
     rows = np.tile(run.signals.joint_positions[step.start_index], (len(positions), 1))
     rows[:, [columns[name] for name in names]] = positions
-    poses = link_poses(run.robot, rows, [tcp]).get(tcp)
+    poses = replayed_link_poses(run.robot, rows, [tcp]).get(tcp)
     return None if poses is None else poses[:, :3]
 
 

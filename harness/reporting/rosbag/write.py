@@ -122,7 +122,7 @@ def _messages(stored: StoredRun, options: BagOptions) -> Iterator[Message]:
     streams = [
         iter([_description(run, options), static_tf(run)]),
         joints.clock(run, indices),
-        joints.measured(run, indices),
+        joints.measured_states(run, indices),
         joints.commanded(run, indices),
         moving_tf(run, indices),
         _in_order(planned(run)),

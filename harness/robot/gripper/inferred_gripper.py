@@ -15,7 +15,7 @@ from harness.core.types import FloatArray
 from harness.robot.description import Joint, Link, Mimic, PlanningGroup
 from harness.robot.robot_yaml import FingerSide, GripperFacts
 from harness.robot.solids import coal_geometry
-from harness.robot.srdf.default_pairs import coal_transform, link_poses
+from harness.robot.srdf.default_pairs import coal_transform, urdf_poses
 from harness.robot.srdf.srdf import Srdf, link_pair
 from harness.robot.urdf.urdf import Urdf
 
@@ -36,7 +36,7 @@ class NoGripperError(ValueError):
 
 
 @dataclass(frozen=True, eq=False)
-class OwnGripper:
+class IntegratedGripper:
     """A recognised gripper.
 
     Attributes:
@@ -54,7 +54,7 @@ class OwnGripper:
     notes: tuple[str, ...]
 
 
-def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> OwnGripper:
+def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> IntegratedGripper:
     """The gripper of a hand's group.
 
     The two sides are the finger links that move towards each other, or one that moves towards the
@@ -101,7 +101,7 @@ def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> OwnGripper:
         f"gripper '{group.name}': {joint.name} moves {pads[0]} and {pads[1]}, up to "
         f"{1000 * gaps.max():.0f} mm apart"
     )
-    return OwnGripper(facts, urdf, hand.center(pads, closed), tuple(pairs), tuple(notes))
+    return IntegratedGripper(facts, urdf, hand.center(pads, closed), tuple(pairs), tuple(notes))
 
 
 def _one_joint(urdf: Urdf, group: PlanningGroup) -> tuple[Urdf, Joint, list[str]]:
@@ -155,7 +155,7 @@ class _Hand:
     def pose(self, link: str, position: float) -> SE3:
         """T_palm_link."""
         if position not in self._poses:
-            self._poses[position] = link_poses(self.urdf, {self.joint.name: position})
+            self._poses[position] = urdf_poses(self.urdf, {self.joint.name: position})
         poses = self._poses[position]
         return poses[self.palm].inverse() @ poses[link]
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from harness.core.spatial import SE3
 from harness.robot.description import Joint, Link, PlanningGroup
-from harness.robot.gripper.inferred_gripper import OwnGripper
-from harness.robot.srdf.default_pairs import link_poses
+from harness.robot.gripper.inferred_gripper import IntegratedGripper
+from harness.robot.srdf.default_pairs import urdf_poses
 from harness.robot.srdf.srdf import Srdf, SrdfGroup
 from harness.robot.tree import carriers
 from harness.robot.urdf.urdf import Urdf
@@ -18,8 +18,13 @@ NEAR = 0.03
 """Largest distance of an existing TCP frame from the midpoint between the pads [m]."""
 
 
-def with_own_gripper(
-    own: OwnGripper, urdf: Urdf, srdf: Srdf, arm: PlanningGroup, tip: str, tcp_link: str | None
+def with_integrated_gripper(
+    own: IntegratedGripper,
+    urdf: Urdf,
+    srdf: Srdf,
+    arm: PlanningGroup,
+    tip: str,
+    tcp_link: str | None,
 ) -> tuple[Urdf, Srdf, str]:
     """The robot with its gripper coupled, and the link that is its TCP.
 
@@ -33,7 +38,7 @@ def with_own_gripper(
         return urdf, _ending_at(srdf, arm, tip, tcp_link, carrier), tcp_link
     if carrier.get(own.facts.palm_link) != carrier.get(tip):
         return urdf, srdf, tip
-    poses = link_poses(urdf, {})
+    poses = urdf_poses(urdf, {})
     palm = poses[own.facts.palm_link]
     center = palm.apply(own.center)
     frames = {

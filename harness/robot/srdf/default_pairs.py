@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from harness.core.spatial import SE3
-from harness.robot.chain import motion
 from harness.robot.description import Joint, Link
+from harness.robot.forward_kinematics import link_poses
 from harness.robot.solids import coal_geometry
 from harness.robot.srdf.srdf import link_pair
 from harness.robot.tree import carriers
@@ -32,7 +32,7 @@ def touching_pairs(urdf: Urdf, positions: Mapping[str, float]) -> tuple[tuple[st
 
     request = coal.CollisionRequest()
     request.security_margin = NEARNESS
-    poses = link_poses(urdf, positions)
+    poses = urdf_poses(urdf, positions)
     carrier = carriers(urdf.joints, urdf.root)
     neighbours = adjacent_pairs(urdf.links, urdf.joints)
     solids = [
@@ -67,17 +67,14 @@ def adjacent_pairs(links: Iterable[Link], joints: Iterable[Joint]) -> dict[tuple
     return found
 
 
-def link_poses(urdf: Urdf, positions: Mapping[str, float]) -> dict[str, SE3]:
-    """T_root_link of every link."""
-    poses = {urdf.root: SE3.identity()}
+def urdf_poses(urdf: Urdf, positions: Mapping[str, float]) -> dict[str, SE3]:
+    """T_root_link of every link at positions of the driven joints; mimic joints follow."""
+    every = dict(positions)
     for joint in urdf.joints:
-        value = positions.get(joint.name, 0.0)
         if joint.mimic is not None:
-            value = joint.mimic.multiplier * positions.get(joint.mimic.joint, 0.0)
-            value += joint.mimic.offset
-        moved = motion(joint, value) if joint.is_movable else SE3.identity()
-        poses[joint.child] = poses[joint.parent] @ joint.pose @ moved
-    return poses
+            driven = positions.get(joint.mimic.joint, 0.0)
+            every[joint.name] = joint.mimic.multiplier * driven + joint.mimic.offset
+    return link_poses(urdf.joints, every, urdf.root)
 
 
 def coal_transform(pose: SE3) -> Any:

@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from harness.core.errors import Problem, RobotError, SpecError
+from harness.core.errors import Problem, RobotError, RobotOptionError, SpecError
 from harness.language.files.source import Source
 from harness.language.files.xml_file import XmlElement, read_bounded, read_xml
 from harness.robot.packages import PackagePath
@@ -63,8 +63,8 @@ def render(path: Path, args: Mapping[str, Any], packages: PackagePath) -> str:
     for key in args:
         if key not in declared and not includes:
             known = ", ".join(sorted(declared)) or "none"
-            raise RobotError(
-                f"robot.args: {path.name} takes no argument '{key}'; known are {known}"
+            raise RobotOptionError(
+                "args", f"{path.name} takes no argument '{key}'; known are {known}"
             )
     order = {
         "file": str(path),

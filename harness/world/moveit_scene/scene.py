@@ -16,7 +16,7 @@ from harness.language.files.source import Place, Source
 from harness.language.files.yaml_file import read_text
 from harness.language.world import MeshSpec, ObjectSpec, ShapeSpec, WorldSpec
 from harness.world.imported import ImportedWorld
-from harness.world.moveit_scene.tokens import Words
+from harness.world.moveit_scene.tokens import TokenReader
 from harness.world.notes import Notes
 from harness.world.plain_values import facing, pose_spec
 from harness.world.stl import Triangles
@@ -55,7 +55,7 @@ class _Reader:
     def __init__(self, path: Path) -> None:
         text = read_text(path, kind="MoveIt scene", largest=LARGEST_FILE)
         self._path = path
-        self._words = Words(text, Source.of_text(str(path), text))
+        self._words = TokenReader(text, Source.of_text(str(path), text))
         self._notes = Notes()
         self._meshes: dict[str, Triangles] = {}
 

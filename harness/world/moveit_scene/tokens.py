@@ -11,7 +11,7 @@ from harness.language.files.source import Place, Source
 WORD = re.compile(r"\S+")
 
 
-class Words:
+class TokenReader:
     """The words of a text, one after the other.
 
     Attributes:

@@ -11,12 +11,12 @@ from harness.core.spatial import SE3
 from harness.language.files.mistakes import did_you_mean
 from harness.language.files.xml_file import XmlElement
 from harness.world.notes import Notes
-from harness.world.sdf.scope import OWN, WORLD, Named, Scope
+from harness.world.sdf.scope import OWN, WORLD, Named, SdfScope
 from harness.world.sdf.values import text_of
 
 
 @dataclass(frozen=True, eq=False)
-class Link:
+class SdfLink:
     """A link in the world.
 
     Attributes:
@@ -28,12 +28,12 @@ class Link:
 
     name: str
     element: XmlElement
-    scope: Scope
+    scope: SdfScope
     pose: SE3
 
 
 @dataclass(eq=False)
-class Body:
+class SdfBody:
     """Links that form one rigid object.
 
     Attributes:
@@ -45,7 +45,7 @@ class Body:
 
     name: str
     pose: SE3
-    links: list[Link] = field(default_factory=list[Link])
+    links: list[SdfLink] = field(default_factory=list[SdfLink])
     is_static: bool = False
 
 
@@ -69,7 +69,7 @@ class _Groups:
             self._above[second] = first
 
 
-def bodies_of(world: Scope, notes: Notes) -> list[Body]:
+def bodies_of(world: SdfScope, notes: Notes) -> list[SdfBody]:
     """The rigid objects of a world, in file order.
 
     The links of a static model, and links that a joint connects, are one object; a movable joint is
@@ -90,7 +90,7 @@ def bodies_of(world: Scope, notes: Notes) -> list[Body]:
         for name, item in scope.named.items():
             if item.kind == "joint":
                 _join(scope, name, item, groups, fixed, notes)
-    by_group: dict[str, list[Link]] = {}
+    by_group: dict[str, list[SdfLink]] = {}
     for link in links:
         by_group.setdefault(groups.find(link.name), []).append(link)
     held = {groups.find(name) for name in fixed}
@@ -98,30 +98,30 @@ def bodies_of(world: Scope, notes: Notes) -> list[Body]:
     return [_body(members, sizes, group in held) for group, members in by_group.items()]
 
 
-def _links(world: Scope) -> list[Link]:
-    found: list[Link] = []
+def _links(world: SdfScope) -> list[SdfLink]:
+    found: list[SdfLink] = []
     for scope, name, item in world.links():
         prefix = f"{scope.path}::" if scope.path else ""
         pose = scope.in_world() @ scope.locate(name, item.element)
-        found.append(Link(f"{prefix}{name}", item.element, scope, pose))
+        found.append(SdfLink(f"{prefix}{name}", item.element, scope, pose))
     return found
 
 
-def _scopes(scope: Scope) -> list[Scope]:
+def _scopes(scope: SdfScope) -> list[SdfScope]:
     return [scope, *(inner for nested in scope.nested.values() for inner in _scopes(nested))]
 
 
-def _outermost_static(scope: Scope) -> Scope | None:
+def _outermost_static(scope: SdfScope) -> SdfScope | None:
     """The outermost static model that contains a scope; None without one."""
-    found: Scope | None = None
-    current: Scope | None = scope
+    found: SdfScope | None = None
+    current: SdfScope | None = scope
     while current is not None:
         found = current if current.is_static else found
         current = current.parent
     return found
 
 
-def _top(scope: Scope) -> Scope:
+def _top(scope: SdfScope) -> SdfScope:
     """The top-level model that contains a scope."""
     while scope.parent is not None and scope.parent.parent is not None:
         scope = scope.parent
@@ -129,7 +129,7 @@ def _top(scope: Scope) -> Scope:
 
 
 def _join(
-    scope: Scope, name: str, item: Named, groups: _Groups, fixed: set[str], notes: Notes
+    scope: SdfScope, name: str, item: Named, groups: _Groups, fixed: set[str], notes: Notes
 ) -> None:
     """Join the two sides of a joint; a side that is the world makes the other static."""
     kind = item.element.need("type").strip()
@@ -145,7 +145,7 @@ def _join(
         groups.join(first, second)
 
 
-def link_name(scope: Scope, name: str, element: XmlElement, depth: int = 0) -> str:
+def link_name(scope: SdfScope, name: str, element: XmlElement, depth: int = 0) -> str:
     """The full name of the link that a name refers to.
 
     Args:
@@ -182,7 +182,7 @@ def link_name(scope: Scope, name: str, element: XmlElement, depth: int = 0) -> s
     return link_name(scope, base, element, depth + 1)
 
 
-def _canonical(scope: Scope, element: XmlElement, depth: int) -> str:
+def _canonical(scope: SdfScope, element: XmlElement, depth: int) -> str:
     """A model's canonical link: the one that it names, else its first."""
     if scope.canonical_link:
         return link_name(scope, scope.canonical_link, element, depth + 1)
@@ -191,7 +191,7 @@ def _canonical(scope: Scope, element: XmlElement, depth: int) -> str:
     raise SpecError([element.problem(f"the model '{scope.name}' has no link")])
 
 
-def _body(members: list[Link], sizes: Mapping[int, int], is_static: bool) -> Body:
+def _body(members: list[SdfLink], sizes: Mapping[int, int], is_static: bool) -> SdfBody:
     """An object, named after its model when it has all of its links, else after its first link.
 
     Args:
@@ -202,5 +202,5 @@ def _body(members: list[Link], sizes: Mapping[int, int], is_static: bool) -> Bod
     first = members[0]
     top = _top(first.scope)
     if sum(_top(link.scope) is top for link in members) == sizes[id(top)]:
-        return Body(top.name, top.in_world(), members, is_static)
-    return Body(first.name, first.pose, members, is_static)
+        return SdfBody(top.name, top.in_world(), members, is_static)
+    return SdfBody(first.name, first.pose, members, is_static)

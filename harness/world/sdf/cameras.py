@@ -9,8 +9,8 @@ from harness.language.cameras import CameraSpec
 from harness.language.files.xml_file import XmlElement
 from harness.world.notes import Notes
 from harness.world.plain_values import pose_spec
-from harness.world.sdf.bodies import Body, Link
-from harness.world.sdf.elements import note_what_is_left
+from harness.world.sdf.bodies import SdfBody, SdfLink
+from harness.world.sdf.elements import note_unread_elements
 from harness.world.sdf.values import number, numbers_of, pose_of, text_of, validated
 
 KINDS = ("camera", "rgbd_camera", "depth", "depth_camera", "segmentation", "segmentation_camera")
@@ -22,7 +22,7 @@ PIXELS = (8, 2048)
 FASTEST = 120.0  # [Hz]
 
 
-def cameras_of(body: Body, notes: Notes, *, is_there: bool) -> list[CameraSpec]:
+def cameras_of(body: SdfBody, notes: Notes, *, is_there: bool) -> list[CameraSpec]:
     """Cameras on a body; other sensors lead to a note.
 
     Args:
@@ -45,10 +45,10 @@ def cameras_of(body: Body, notes: Notes, *, is_there: bool) -> list[CameraSpec]:
 
 
 def _camera(
-    body: Body, link: Link, sensor: XmlElement, notes: Notes, *, is_there: bool
+    body: SdfBody, link: SdfLink, sensor: XmlElement, notes: Notes, *, is_there: bool
 ) -> CameraSpec:
     """The camera, named after the sensor."""
-    note_what_is_left(sensor, "sensor", notes)
+    note_unread_elements(sensor, "sensor", notes)
     words: dict[str, Any] = {"name": sensor.need("name").strip()[:100]}
     camera = sensor.find("camera")
     pose = link.scope.in_world() @ link.scope.pose_in(
@@ -58,7 +58,7 @@ def _camera(
     if rate > 0:  # 0 is unlimited
         words["update_rate"] = min(rate, FASTEST)
     if camera is not None:
-        note_what_is_left(camera, "camera", notes)
+        note_unread_elements(camera, "camera", notes)
         pose = pose @ pose_of(camera).pose
         words |= _optics(camera, notes)
     if is_there:
@@ -82,21 +82,21 @@ def _optics(camera: XmlElement, notes: Notes) -> dict[str, Any]:
         words["horizontal_fov"] = value
     image = camera.find("image")
     if image is not None:
-        note_what_is_left(image, "image", notes)
+        note_unread_elements(image, "image", notes)
         words["image"] = {
             **{side: _pixels(image, side) for side in ("width", "height") if image.find(side)},
             **_format(image, notes),
         }
     clip = camera.find("clip")
     if clip is not None:
-        note_what_is_left(clip, "clip", notes)
+        note_unread_elements(clip, "clip", notes)
         near, far = number(clip, "near", 0.1), number(clip, "far", 100.0)
         if not 0 < near < far:
             clip.refuse(f"<near> ({near:g} m) is above 0 and less than <far> ({far:g} m)")
         words["clip"] = {"near": near, "far": far}
     noise = camera.find("noise")
     if noise is not None:
-        note_what_is_left(noise, "noise", notes)
+        note_unread_elements(noise, "noise", notes)
         words["noise"] = _noise(noise)
     frame = text_of(camera, "optical_frame_id")
     return words | ({"optical_frame_id": frame} if frame else {})

@@ -296,7 +296,7 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
 """Children of each kind of element."""
 
 
-def note_what_is_left(element: XmlElement, kind: str, notes: Notes) -> None:
+def note_unread_elements(element: XmlElement, kind: str, notes: Notes) -> None:
     """Note every child of an element that is not read.
 
     Args:

@@ -14,7 +14,7 @@ from harness.core.types import FloatArray
 from harness.language.files.xml_file import XmlElement
 from harness.language.world import ShapeSpec
 from harness.world.notes import Notes
-from harness.world.sdf.elements import note_what_is_left
+from harness.world.sdf.elements import note_unread_elements
 from harness.world.sdf.values import is_true, number, pose_of
 
 WATER = 1000.0
@@ -74,7 +74,7 @@ def link_masses(
     if inertial is None:
         notes.add(link.place, "a <link> without <inertial> has 1 kg and 1 kg m^2, as SDF specifies")
         return MassProperties(1.0, np.zeros(3), np.eye(3)).placed(T_object_link)
-    note_what_is_left(inertial, "inertial", notes)
+    note_unread_elements(inertial, "inertial", notes)
     if is_true(inertial, inertial.get("auto", "false")):
         return _automatic(inertial, shapes)
     mass = number(inertial, "mass", 1.0)

@@ -12,8 +12,8 @@ from harness.language.files.xml_file import XmlElement
 from harness.language.poses import Pose
 from harness.language.world import FrictionSpec, InertiaSpec, ObjectSpec, ShapeSpec
 from harness.world.plain_values import pose_spec, rounded, significant
-from harness.world.sdf.bodies import Body, Link
-from harness.world.sdf.elements import note_what_is_left
+from harness.world.sdf.bodies import SdfBody, SdfLink
+from harness.world.sdf.elements import note_unread_elements
 from harness.world.sdf.masses import MassProperties, link_masses, together
 from harness.world.sdf.shapes import ShapeReader
 from harness.world.sdf.values import pose_of
@@ -22,7 +22,7 @@ GEOMETRIES = ("box", "cylinder", "sphere", "capsule", "plane", "mesh")
 LONGEST_NAME = 100
 
 
-def object_of(body: Body, reader: ShapeReader) -> ObjectSpec | None:
+def object_of(body: SdfBody, reader: ShapeReader) -> ObjectSpec | None:
     """The object; None, with a note, for a body without shapes and visuals."""
     first = body.links[0]
     if len(body.name) > LONGEST_NAME:
@@ -34,7 +34,7 @@ def object_of(body: Body, reader: ShapeReader) -> ObjectSpec | None:
         touched = _collisions(body, link, reader)
         shapes += [shape for _, shape in touched]
         visuals += _visuals(body, link, reader)
-        note_what_is_left(link.element, "link", reader.notes)
+        note_unread_elements(link.element, "link", reader.notes)
         if not body.is_static:
             on_object = body.pose.inverse() @ link.pose
             masses.append(link_masses(link.element, touched, on_object, reader.notes))
@@ -49,7 +49,9 @@ def object_of(body: Body, reader: ShapeReader) -> ObjectSpec | None:
     return ObjectSpec(**words, **_looks(shapes, visuals))
 
 
-def _collisions(body: Body, link: Link, reader: ShapeReader) -> list[tuple[XmlElement, ShapeSpec]]:
+def _collisions(
+    body: SdfBody, link: SdfLink, reader: ShapeReader
+) -> list[tuple[XmlElement, ShapeSpec]]:
     found: list[tuple[XmlElement, ShapeSpec]] = []
     for element in link.element.findall("collision"):
         shape = reader.collision(element, link.scope.folder, _on_object(body, link, element))
@@ -58,7 +60,7 @@ def _collisions(body: Body, link: Link, reader: ShapeReader) -> list[tuple[XmlEl
     return found
 
 
-def _visuals(body: Body, link: Link, reader: ShapeReader) -> list[ShapeSpec]:
+def _visuals(body: SdfBody, link: SdfLink, reader: ShapeReader) -> list[ShapeSpec]:
     shapes = [
         reader.visual(element, link.scope.folder, _on_object(body, link, element))
         for element in link.element.findall("visual")
@@ -66,7 +68,7 @@ def _visuals(body: Body, link: Link, reader: ShapeReader) -> list[ShapeSpec]:
     return [shape for shape in shapes if shape is not None]
 
 
-def _on_object(body: Body, link: Link, element: XmlElement) -> SE3:
+def _on_object(body: SdfBody, link: SdfLink, element: XmlElement) -> SE3:
     """T_object_element of a collision or visual."""
     name = link.element.need("name").strip()
     in_scope = link.scope.pose_in(pose_of(element), name)

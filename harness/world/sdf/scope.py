@@ -35,7 +35,7 @@ class Named:
 
 
 @dataclass(eq=False)
-class Scope:
+class SdfScope:
     """A model, or the world.
 
     Attributes:
@@ -54,12 +54,12 @@ class Scope:
     name: str
     element: XmlElement
     folder: Path
-    parent: Scope | None = None
+    parent: SdfScope | None = None
     is_static: bool = False
     placement_frame: str = ""
     canonical_link: str = ""
     named: dict[str, Named] = field(default_factory=dict[str, Named])
-    nested: dict[str, Scope] = field(default_factory=dict[str, "Scope"])
+    nested: dict[str, SdfScope] = field(default_factory=dict[str, "SdfScope"])
     is_merged: bool = False
     _located: dict[str, SE3] = field(default_factory=dict[str, SE3])
     _open: set[str] = field(default_factory=set[str])
@@ -107,7 +107,7 @@ class Scope:
         """T_scope_this of a pose whose default frame is `base`."""
         return self.locate(placed.relative_to or base, placed.element) @ placed.pose
 
-    def links(self) -> Iterator[tuple[Scope, str, Named]]:
+    def links(self) -> Iterator[tuple[SdfScope, str, Named]]:
         """Every link with the scope and name it is in, nested models included, in file order."""
         for name, item in self.named.items():
             if item.kind == "link":

@@ -19,7 +19,7 @@ from harness.language.world import FrictionSpec, MeshSpec, ShapeSpec
 from harness.robot.mesh_file import convex_hull
 from harness.world.notes import Notes
 from harness.world.plain_values import facing, pose_spec, rounded
-from harness.world.sdf.elements import WORDS, note_what_is_left
+from harness.world.sdf.elements import WORDS, note_unread_elements
 from harness.world.sdf.model_path import ModelPath
 from harness.world.sdf.values import number, numbers_of, positive, text_of
 
@@ -60,7 +60,7 @@ class ShapeReader:
         Raises:
             SpecError: Its geometry is invalid or not supported.
         """
-        note_what_is_left(element, "collision", self.notes)
+        note_unread_elements(element, "collision", self.notes)
         geometry = self._geometry(element)
         if geometry.tag == "empty":
             return None
@@ -74,7 +74,7 @@ class ShapeReader:
 
     def visual(self, element: XmlElement, folder: Path, pose: SE3) -> ShapeSpec | None:
         """A visual shape; None when it is empty or cannot be drawn."""
-        note_what_is_left(element, "visual", self.notes)
+        note_unread_elements(element, "visual", self.notes)
         geometry = self._geometry(element)
         color = self._color(element)
         if WORDS["geometry"][geometry.tag].treatment == "refused":
@@ -125,7 +125,7 @@ class ShapeReader:
         return ShapeSpec(pose=pose_spec(pose), **words)
 
     def _mesh(self, element: XmlElement, folder: Path) -> MeshSpec:
-        note_what_is_left(element, "mesh", self.notes)
+        note_unread_elements(element, "mesh", self.notes)
         uri = element.find("uri")
         if uri is None:
             element.refuse("a <mesh> has a <uri>")
@@ -144,18 +144,18 @@ class ShapeReader:
         surface = collision.find("surface")
         if surface is None:
             return None
-        note_what_is_left(surface, "surface", self.notes)
+        note_unread_elements(surface, "surface", self.notes)
         friction = surface.find("friction")
         if friction is None:
             return None
-        note_what_is_left(friction, "friction", self.notes)
+        note_unread_elements(friction, "friction", self.notes)
         sliding, torsional = 1.0, DEFAULT_TORSIONAL
         ode, about_normal = friction.find("ode"), friction.find("torsional")
         if ode is not None:
             sliding = min(_not_negative(ode, "mu", 1.0), LARGEST_NUMBER)
             self._note_all_but_equal_mu2(ode, sliding)
         if about_normal is not None:
-            note_what_is_left(about_normal, "friction/torsional", self.notes)
+            note_unread_elements(about_normal, "friction/torsional", self.notes)
             radius = _not_negative(about_normal, "patch_radius", 0.0)
             coefficient = _not_negative(about_normal, "coefficient", 1.0)
             if radius > 0:
@@ -167,7 +167,7 @@ class ShapeReader:
         if number(ode, "mu2", sliding) == sliding:
             rest = [child for child in ode.children if child.tag != "mu2"]
             ode = XmlElement(ode.tag, ode.attributes, ode.place, rest, ode.text)
-        note_what_is_left(ode, "friction/ode", self.notes)
+        note_unread_elements(ode, "friction/ode", self.notes)
 
     def _color(self, visual: XmlElement) -> Rgba | None:
         """The colour of a visual; None without a colour or with a texture alone."""
@@ -175,7 +175,7 @@ class ShapeReader:
         material = visual.find("material")
         color: Rgba | None = None
         if material is not None:
-            note_what_is_left(material, "material", self.notes)
+            note_unread_elements(material, "material", self.notes)
             color = self._material(material)
         if color is None:
             return None if opacity == 1.0 else (0.7, 0.7, 0.7, opacity)

@@ -8,9 +8,9 @@ from pathlib import Path
 from harness.core.errors import SpecError
 from harness.language.files.xml_file import XmlElement, read_xml
 from harness.world.notes import Notes
-from harness.world.sdf.elements import note_what_is_left
+from harness.world.sdf.elements import note_unread_elements
 from harness.world.sdf.model_path import ModelPath, model_file
-from harness.world.sdf.scope import WORLD, Named, Scope
+from harness.world.sdf.scope import WORLD, Named, SdfScope
 from harness.world.sdf.values import PlacedPose, is_flag, is_true, pose_of, text_of
 
 OLDEST, NEWEST = (1, 4), (1, 11)
@@ -20,7 +20,7 @@ MERGED = "_merged__"
 
 
 @dataclass(frozen=True, eq=False)
-class Light:
+class SdfLight:
     """A light of the world, and its pose there."""
 
     element: XmlElement
@@ -52,11 +52,11 @@ class SdfTree:
         for other in worlds[1:]:
             self.notes.add(other.place, "a second <world> is left out")
         self.root = worlds[0] if worlds else sdf
-        note_what_is_left(sdf, "sdf", self.notes)
+        note_unread_elements(sdf, "sdf", self.notes)
         if worlds:
-            note_what_is_left(self.root, "world", self.notes)
-        self.world = Scope("", self.root, path.parent)
-        self.lights = [Light(light, pose_of(light)) for light in self.root.findall("light")]
+            note_unread_elements(self.root, "world", self.notes)
+        self.world = SdfScope("", self.root, path.parent)
+        self.lights = [SdfLight(light, pose_of(light)) for light in self.root.findall("light")]
         self._fill(self.world, (path.resolve(),))
 
     def _sdf(self, path: Path) -> XmlElement:
@@ -84,7 +84,7 @@ class SdfTree:
         if version > NEWEST:
             self.notes.add(sdf.place, f"SDF {text} is read as 1.11")
 
-    def _fill(self, scope: Scope, files: tuple[Path, ...]) -> None:
+    def _fill(self, scope: SdfScope, files: tuple[Path, ...]) -> None:
         """Read the children of a scope's element."""
         for child in scope.element.children:
             match child.tag:
@@ -93,7 +93,7 @@ class SdfTree:
                 case "joint":
                     self._name(scope, self._joint(child, scope))
                 case "frame":
-                    note_what_is_left(child, "frame", self.notes)
+                    note_unread_elements(child, "frame", self.notes)
                     base = child.get("attached_to").strip()
                     self._name(scope, Named("frame", child, pose_of(child), base))
                 case "model":
@@ -101,12 +101,12 @@ class SdfTree:
                 case "include":
                     self._include(scope, child, files)
 
-    def _name(self, scope: Scope, item: Named) -> str:
+    def _name(self, scope: SdfScope, item: Named) -> str:
         name = item.element.need("name").strip()
         self._claim(scope, name, item)
         return name
 
-    def _claim(self, scope: Scope, name: str, item: Named) -> None:
+    def _claim(self, scope: SdfScope, name: str, item: Named) -> None:
         element = item.element
         if not name or not name.isprintable() or len(name) > 80:
             element.refuse(
@@ -119,17 +119,17 @@ class SdfTree:
             element.refuse(f"'{name}' is defined twice; first in line {first}", at="name")
         scope.named[name] = item
 
-    def _joint(self, element: XmlElement, scope: Scope) -> Named:
-        note_what_is_left(element, "joint", self.notes)
+    def _joint(self, element: XmlElement, scope: SdfScope) -> Named:
+        note_unread_elements(element, "joint", self.notes)
         child = text_of(element, "child")
         if not child or not text_of(element, "parent"):
             element.refuse("a <joint> has a <parent> and a <child>")
         base = "" if child == WORLD or scope.parent is None else child
         return Named("joint", element, pose_of(element), base)
 
-    def _model(self, parent: Scope, element: XmlElement, files: tuple[Path, ...]) -> None:
+    def _model(self, parent: SdfScope, element: XmlElement, files: tuple[Path, ...]) -> None:
         """A model written in the file itself."""
-        scope = Scope(
+        scope = SdfScope(
             element.need("name").strip(),
             element,
             parent.folder,
@@ -141,20 +141,20 @@ class SdfTree:
         self._name(parent, Named("model", element, pose_of(element)))
         self._add(parent, scope, files)
 
-    def _add(self, parent: Scope, scope: Scope, files: tuple[Path, ...]) -> None:
+    def _add(self, parent: SdfScope, scope: SdfScope, files: tuple[Path, ...]) -> None:
         self._count += 1
         if self._count > MOST_MODELS:
             scope.element.refuse(f"more than {MOST_MODELS} models")
-        note_what_is_left(scope.element, "model", self.notes)
+        note_unread_elements(scope.element, "model", self.notes)
         parent.nested[scope.name] = scope
         self._fill(scope, files)
         if not scope.placement_frame:
             return
         scope.locate(scope.placement_frame, scope.element)
 
-    def _include(self, parent: Scope, element: XmlElement, files: tuple[Path, ...]) -> None:
+    def _include(self, parent: SdfScope, element: XmlElement, files: tuple[Path, ...]) -> None:
         """A model of another file, with the include's elements in place of its own."""
-        note_what_is_left(element, "include", self.notes)
+        note_unread_elements(element, "include", self.notes)
         uri = element.find("uri")
         if uri is None:
             element.refuse("an <include> has a <uri>")
@@ -170,7 +170,7 @@ class SdfTree:
         given = element.find("pose") is not None
         if parent.parent is None and not sdf.findall("model"):
             for light in sdf.findall("light"):
-                self.lights.append(Light(light, pose_of(element if given else light)))
+                self.lights.append(SdfLight(light, pose_of(element if given else light)))
             if sdf.findall("light"):
                 return
         model = self._model_of(sdf, path, uri)
@@ -179,7 +179,7 @@ class SdfTree:
         frame = text_of(element, "placement_frame") or (
             "" if given else model.get("placement_frame").strip()
         )
-        scope = Scope(
+        scope = SdfScope(
             f"{MERGED}{name}" if is_merged else name,
             model,
             path.parent,

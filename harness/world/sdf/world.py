@@ -16,11 +16,11 @@ from harness.world.notes import Notes
 from harness.world.plain_values import rounded
 from harness.world.sdf.bodies import bodies_of
 from harness.world.sdf.cameras import cameras_of
-from harness.world.sdf.elements import note_what_is_left
+from harness.world.sdf.elements import note_unread_elements
 from harness.world.sdf.model_path import ModelPath
 from harness.world.sdf.object import LONGEST_NAME, object_of
 from harness.world.sdf.shapes import ShapeReader
-from harness.world.sdf.tree import Light, SdfTree
+from harness.world.sdf.tree import SdfLight, SdfTree
 from harness.world.sdf.values import is_flag, is_true, numbers_of, validated
 
 SHORTEST_STEP, LONGEST_STEP = 1e-4, 0.02  # [s], as in a world file
@@ -77,7 +77,7 @@ def _physics(root: XmlElement, notes: Notes) -> PhysicsSpec:
     words: dict[str, object] = {}
     gravity = root.find("gravity")
     if physics is not None:
-        note_what_is_left(physics, "physics", notes)
+        note_unread_elements(physics, "physics", notes)
         for other in profiles:
             if other is not physics:
                 notes.add(other.place, "another <physics> is left out")
@@ -94,10 +94,10 @@ def _physics(root: XmlElement, notes: Notes) -> PhysicsSpec:
     return validated(PhysicsSpec, words, root)
 
 
-def _light(light: Light, tree: SdfTree, notes: Notes) -> LightSpec | None:
+def _light(light: SdfLight, tree: SdfTree, notes: Notes) -> LightSpec | None:
     """A directional light; None for other lights and for lights that are off."""
     element = light.element
-    note_what_is_left(element, "light", notes)
+    note_unread_elements(element, "light", notes)
     kind = element.get("type", "point").strip()
     if kind != "directional":
         notes.add(element.place, f"a {kind} light is left out: pictures have directional ones")

@@ -1,14 +1,14 @@
-"""Computes link poses of many samples as arrays."""
+"""Forward kinematics: poses of links from joint positions, of one state or of many samples."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
+from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.robot.chain import rotations_about
-from harness.robot.description import RobotDescription
+from harness.robot.description import Joint, RobotDescription
 
 
 class LinkPoses:
@@ -58,6 +58,47 @@ def _ancestors(description: RobotDescription, links: Sequence[str] | None) -> se
             needed.add(name)
             name = parent.get(name)
     return needed
+
+
+def link_poses(
+    joints: Iterable[Joint], positions: Mapping[str, float], root: str = "world"
+) -> dict[str, SE3]:
+    """T_root_link of every link in one state.
+
+    Args:
+        joints: The joints, parents before children.
+        positions: The position of every joint by name, mimic joints included [rad or m]; 0 where
+            one is missing.
+        root: The link without a parent joint.
+    """
+    poses = {root: SE3.identity()}
+    for joint in joints:
+        pose = poses[joint.parent] @ joint.pose
+        if joint.is_movable:
+            pose = pose @ motion(joint, positions.get(joint.name, 0.0))
+        poses[joint.child] = pose
+    return poses
+
+
+def robot_poses(description: RobotDescription, joint_positions: FloatArray) -> dict[str, SE3]:
+    """T_world_link of every link at joint positions in description order, shape (n,)."""
+    named = zip(description.joint_names, map(float, joint_positions), strict=True)
+    return link_poses(description.joints, dict(named))
+
+
+def motion(joint: Joint, position: float) -> SE3:
+    """Transform of a joint's frame by its position."""
+    if joint.kind == "prismatic":
+        return SE3(np.eye(3), position * joint.axis)
+    return SE3(rotations_about(joint.axis, np.array([position]))[0], np.zeros(3))
+
+
+def rotations_about(axis: FloatArray, angles: FloatArray) -> FloatArray:
+    """Rotation matrices about a unit axis, shape (N, 3, 3): Rodrigues' formula."""
+    x, y, z = axis
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    sine, cosine = np.sin(angles)[:, None, None], np.cos(angles)[:, None, None]
+    return np.eye(3) + sine * K + (1.0 - cosine) * (K @ K)
 
 
 def quats_wxyz(rotations: FloatArray) -> FloatArray:

@@ -1,0 +1,97 @@
+"""What excuses of a contact explain: how hard a hand or what it holds may press, and how far drag.
+
+A contact that gripping, carrying or putting down excuses is one only while its force, on average
+over `SPAN`, stays below `FACTOR` times what they explain, plus `SLACK`:
+
+- a link of the hand presses what it grips with the grip that the gripper's motor exerts now, and
+  with the weight of the object and of what rests on it;
+- what the hand holds presses another body with that weight; while the gripper moves, also with the
+  grip, since fingers that close on an object push it about.
+
+The average is an impulse: contacts between stiff bodies peak at ten times the force of the grip for
+a millisecond, and say nothing. In the bundled picks it reaches 1.1 times what is explained. What
+the hand holds may stay in touch while it leaves its support or is put down, but not while it is
+dragged along another body for `DRAG` or more.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.assertions.contacts import force_between, gripper_of
+from harness.assertions.hold import recent_mean, weight_of
+from harness.assertions.poses import object_poses
+from harness.assertions.support import rides_on
+from harness.assertions.window import NotObservable
+from harness.core.pose_arrays import relative
+from harness.core.types import BoolArray, FloatArray
+from harness.recording.run import Run
+
+SPAN = 0.05
+"""Over which a force is averaged: longer than any blow, shorter than any motion of an arm [s]."""
+FACTOR = 2.0
+"""As `on` requires half of the weight: an object is accelerated with at most gravity's."""
+SLACK = 1.0
+"""What a position error of a tenth of a millimetre presses with [N]: the weight of 100 g."""
+DRAG = 0.02
+"""Longer than contact points wander while an object is gripped, tilts and leaves [m]."""
+
+
+def mean_force(run: Run, first: str, second: str) -> FloatArray:
+    """Force between two bodies, mean of `SPAN` [N], shape (N,)."""
+    return recent_mean(run, force_between(run, {first}, {second})[:, None], SPAN)[:, 0]
+
+
+def load_of(run: Run, name: str) -> FloatArray:
+    """Weight of an object and of what rests on it at each sample [N], shape (N,)."""
+    load = np.full(len(run.signals.times), weight_of(run, name))
+    for record in run.objects:
+        touches = any({record.name, name} == set(pair) for pair in run.signals.contact_forces)
+        if touches and not record.is_static:
+            load = load + np.where(rides_on(run, record.name, name), weight_of(run, record.name), 0)
+    return load
+
+
+def grip_force(run: Run) -> FloatArray:
+    """Force of a finger side as the effort of the gripper's joint explains it [N], shape (N,).
+
+    By the work of a small motion: the effort times the joint's motion is the force times the change
+    of the gap. It is not known (inf) where the gripper's widths are not.
+    """
+    hand = gripper_of(run)
+    rows = np.array(sorted(hand.widths))
+    if len(rows) < 2:
+        return np.full(len(run.signals.times), np.inf)
+    column = [joint.name for joint in run.robot.joints].index(hand.joint)
+    middles = (rows[1:, 0] + rows[:-1, 0]) / 2
+    slopes = np.abs(np.diff(rows[:, 1]) / np.diff(rows[:, 0]))
+    slope = np.interp(run.signals.joint_positions[:, column], middles, slopes)
+    force = np.abs(run.signals.joint_efforts[:, column]) / np.maximum(slope, 1e-9)
+    return recent_mean(run, force[:, None], SPAN)[:, 0]
+
+
+def hand_limit(run: Run, name: str) -> FloatArray:
+    """Largest mean force with which a link of the hand presses what it grips [N], shape (N,)."""
+    return FACTOR * (grip_force(run) + load_of(run, name)) + SLACK
+
+
+def held_limit(run: Run, name: str, gripper_moves: BoolArray) -> FloatArray:
+    """Largest mean force with which a held object presses another body [N], shape (N,).
+
+    Args:
+        run: The run with its recorded signals.
+        name: The name of the held object.
+        gripper_moves: Samples of steps that move the gripper, shape (N,).
+    """
+    grip = np.where(gripper_moves, grip_force(run), 0.0)
+    return FACTOR * (load_of(run, name) + grip) + SLACK
+
+
+def dragged(run: Run, name: str, other: str, start: int, stop: int) -> FloatArray:
+    """How far an object has been moved along another since a sample [m], shape (stop - start,)."""
+    poses = object_poses(run, name)[start:stop]
+    try:
+        seen = relative(object_poses(run, other)[start:stop], poses)
+    except NotObservable:
+        seen = poses
+    return np.linalg.norm(seen[:, :3] - seen[0, :3], axis=1)

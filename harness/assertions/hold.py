@@ -1,0 +1,232 @@
+"""When the gripper holds an object: its sides press it against each other, and carry its weight."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.assertions.contacts import (
+    DEBOUNCE,
+    TOUCH_FORCE,
+    attached,
+    finger_links,
+    gripper_of,
+    side_forces,
+)
+from harness.assertions.poses import object_poses
+from harness.assertions.temporal import TIME_RESOLUTION, bridged, episodes
+from harness.assertions.text import amount
+from harness.assertions.window import NotObservable, object_record
+from harness.core.antipodal import (
+    combined_press,
+    distance_pressed,
+    is_antipodal,
+    is_opposite,
+    least_thickness,
+)
+from harness.core.pose_arrays import compose, conjugate, quat_product, relative, rotation_angle
+from harness.core.types import BoolArray, FloatArray
+from harness.recording.run import Run
+
+HOLD_TIME = 0.1
+"""How long fingers must have touched an object without a break to hold it [s].
+
+A blow between stiff bodies lasts a few milliseconds, and what flies past at 0.5 m/s is 5 cm further
+after this time.
+"""
+CARRIED_SHARE = 0.5
+"""Share of an object's weight that the hand carries at least, on average over `HOLD_TIME`.
+
+At rest it is 1; below one half the object falls with more than half of gravity's acceleration.
+"""
+STEADY = 0.005
+"""How far a held object may move in the hand within `HOLD_TIME` [m]: the default of `grasped`."""
+STEADY_TURN = 0.1
+"""How far it may turn [rad]."""
+CLOSING_SHARE = 0.01
+"""Share of its range by which a gripper's joint is commanded past where it stands if it presses."""
+
+
+def held_by_fingers(run: Run, name: str, min_force: float = TOUCH_FORCE) -> BoolArray:
+    """Samples at which every finger side touches an object that is between them, shape (N,)."""
+    forces = list(side_forces(run, name).values())
+    if not forces:
+        raise NotObservable("the gripper has no finger sides")
+    held = np.min(forces, axis=0) >= max(min_force, TOUCH_FORCE)
+    if held.any():
+        held &= between_fingers(run, name)
+    return held & ~cradled(run, name) if held.any() else held
+
+
+def between_fingers(run: Run, name: str) -> BoolArray:
+    """Samples at which an object that all sides touch is between them, shape (N,).
+
+    A slab that leans against the tips touches both fingers, and so does what lies on them like on a
+    shelf, or what closed tips rest on: `is_antipodal` says what between means. Where no direction
+    was recorded (an older run) every touch counts.
+    """
+    sides = _side_presses(run, name)
+    thickness = least_thickness(object_record(run, name).shapes)
+    pairs = [
+        is_antipodal(first, second, thickness)
+        for index, first in enumerate(sides)
+        for second in sides[index + 1 :]
+    ]
+    return np.any(pairs, axis=0) if pairs else np.ones(len(run.signals.times), dtype=bool)
+
+
+def why_not_between(run: Run, name: str, sample: int) -> str:
+    """Why an object that two sides touch is not between them; empty where it is."""
+    sides = [press[sample : sample + 1] for press in _side_presses(run, name)]
+    if cradled(run, name)[sample]:
+        return "it lies on them and they do not close"
+    if len(sides) != 2 or between_fingers(run, name)[sample]:
+        return ""
+    if not is_opposite(*sides)[0]:
+        return "they press it from the same side"
+    apart = amount(float(distance_pressed(*sides)[0]), "m")
+    thickness = amount(least_thickness(object_record(run, name).shapes), "m")
+    return f"they press it at places {apart} apart, and it is {thickness} thick"
+
+
+def _side_presses(run: Run, name: str) -> list[FloatArray]:
+    """Contact point and force of each side over the last `DEBOUNCE` seconds, (N, 6) each.
+
+    Empty where a side has no record.
+    """
+    sides = gripper_of(run).sides
+    presses = run.signals.presses
+    found: list[FloatArray] = []
+    for side in sorted(sides):
+        keys = [key for key in presses if key[0] in sides[side] and key[1] == name]
+        if not keys:
+            return []
+        side_press = combined_press([presses[key] for key in keys])
+        weight = np.linalg.norm(side_press[:, 3:], axis=1, keepdims=True)
+        recent = recent_mean(
+            run, np.hstack([weight * side_press[:, :3], side_press[:, 3:], weight]), DEBOUNCE
+        )
+        place = np.divide(
+            recent[:, :3], recent[:, 6:], out=np.zeros((len(recent), 3)), where=recent[:, 6:] > 0
+        )
+        found.append(np.hstack([place, recent[:, 3:6]]))
+    return found
+
+
+def recent_mean(run: Run, rows: FloatArray, span: float) -> FloatArray:
+    """Mean over the samples of the last `span` seconds, itself included, shape (N, k)."""
+    times = run.signals.times
+    first = np.searchsorted(times, times - span - TIME_RESOLUTION)
+    summed = np.concatenate([np.zeros((1, rows.shape[1])), np.cumsum(rows, axis=0)])
+    counts = np.arange(1, len(times) + 1) - first
+    return (summed[1:] - summed[first]) / counts[:, None]
+
+
+def weight_of(run: Run, name: str) -> float:
+    """Weight of an object [N]; 0 where its mass is not known."""
+    mass = object_record(run, name).mass
+    return float(np.nan_to_num(mass)) * float(np.linalg.norm(run.gravity))
+
+
+def _upward(run: Run, name: str, which: str) -> FloatArray:
+    """Upward part of the hand's recorded forces on an object, mean of `HOLD_TIME` [N], (N,)."""
+    gripper = gripper_of(run)
+    hand = finger_links(gripper) | {gripper.palm_link}
+    total = np.zeros((len(run.signals.times), 3))
+    for key, rows in getattr(run.signals, which).items():
+        if key[0] in hand and key[1] == name:
+            total = total + (np.nan_to_num(rows[:, 3:]) if which == "presses" else rows)
+    gravity = np.array(run.gravity)
+    up = -gravity / max(float(np.linalg.norm(gravity)), 1e-12)
+    return recent_mean(run, (total @ up)[:, None], HOLD_TIME)[:, 0]
+
+
+def carried_weight(run: Run, name: str) -> FloatArray | None:
+    """Force with which fingers and palm carry an object, friction included [N], shape (N,).
+
+    None where friction was not recorded, as in an older run. It is unknown (inf) while the object
+    is welded to the hand: then the weld carries it.
+    """
+    if not any(key[1] == name for key in run.signals.frictions):
+        return None
+    carried = _upward(run, name, "presses") + _upward(run, name, "frictions")
+    return np.where(welded(run, name), np.inf, carried)
+
+
+def cradled(run: Run, name: str) -> BoolArray:
+    """Samples at which an object lies on fingers that do not press it, shape (N,).
+
+    The normal forces alone carry half of its weight or more, as those of a trough do, and the
+    gripper's joint stands where it is commanded to. Fingers that grip are commanded further, and
+    carry by friction.
+    """
+    weight = weight_of(run, name)
+    mask = np.zeros(len(run.signals.times), dtype=bool)
+    if weight == 0:
+        return mask
+    lying = _upward(run, name, "presses") >= CARRIED_SHARE * weight
+    return lying & ~_presses_beyond(run) if lying.any() else mask
+
+
+def _presses_beyond(run: Run) -> BoolArray:
+    """Samples at which the gripper is commanded past where it stands, shape (N,)."""
+    hand = gripper_of(run)
+    column = [joint.name for joint in run.robot.joints].index(hand.joint)
+    signals = run.signals
+    short = np.abs(signals.joint_commands[:, column] - signals.joint_positions[:, column])
+    return short > CLOSING_SHARE * abs(hand.open_position - hand.closed_position)
+
+
+def held_for(run: Run, held: BoolArray) -> FloatArray:
+    """How long something has been true without a break at each sample [s], shape (N,)."""
+    times = run.signals.times
+    since = np.zeros(len(times))
+    for start, stop in episodes(held):
+        since[start:stop] = times[start:stop] - times[start]
+    return since
+
+
+def moves_in_hand(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
+    """How far an object moved [m] and turned [rad] in the hand within `HOLD_TIME`, (N,) each."""
+    in_tcp = relative(run.signals.tcp_pose, object_poses(run, name))
+    times = run.signals.times
+    before = in_tcp[np.searchsorted(times, times - HOLD_TIME - TIME_RESOLUTION)]
+    moved = np.linalg.norm(in_tcp[:, :3] - before[:, :3], axis=1)
+    return moved, rotation_angle(quat_product(conjugate(before[:, 3:]), in_tcp[:, 3:]))
+
+
+def raised_by_hand(run: Run, name: str, held: BoolArray) -> FloatArray:
+    """Height that the motion of the hand gives an object since it holds it [m], shape (N,).
+
+    It is that of the object if it stood in the hand as it did when the hold began. Gaps shorter
+    than `BRIDGE` do not end a hold.
+    """
+    poses, tcp = object_poses(run, name), run.signals.tcp_pose
+    raised = np.zeros(len(poses))
+    for start, stop in bridged(run.signals.times, episodes(held)):
+        in_hand = relative(tcp[start], poses[start])
+        raised[start:stop] = compose(tcp[start:stop], in_hand)[:, 2] - poses[start, 2]
+    return raised
+
+
+def welded(run: Run, name: str) -> BoolArray:
+    """Samples at which a grasp with `mode: weld` has an object fixed to the hand, shape (N,)."""
+    times = run.signals.times
+    mask = np.zeros(len(times), dtype=bool)
+    welds = [step for step in run.steps if step.result.get("mode") == "weld"]
+    for record in run.attachments:
+        if name in (record.object, record.represents) and any(
+            step.start_time <= record.start_time <= step.end_time for step in welds
+        ):
+            mask |= (times >= record.start_time) & (times < record.end_time)
+    return mask
+
+
+def weld_note(run: Run, name: str) -> str:
+    """What a verdict says of an object that a grasp with `mode: weld` fixed in the physics too."""
+    return "; welded to the hand by `mode: weld`" if welded(run, name).any() else ""
+
+
+def in_hand(run: Run, name: str) -> BoolArray:
+    """Samples at which an object is attached, or between all finger sides, shape (N,)."""
+    mask = attached(run, name)
+    return mask if run.robot.gripper is None else mask | held_by_fingers(run, name)

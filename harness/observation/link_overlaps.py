@@ -1,0 +1,91 @@
+"""How deep links are inside each other whose contact the SRDF excludes from planner and physics."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.observation.body_tracks import (
+    TrackedShape,
+    link_track,
+    links_with_shapes,
+    relative_track,
+)
+from harness.observation.nearest import ShapePair, pairs_between, smallest_distances
+from harness.observation.sampled_clearance import at_samples, between, knots
+from harness.planning.model.robot_model import RobotModel
+from harness.recording.run import Finding, Pair, Run, Signals
+from harness.robot.description import RobotDescription
+from harness.robot.forward_kinematics import LinkPoses
+
+LEAST_DEPTH = 0.001
+"""Convex hulls and a calibration are off by as much; less is no overlap [m]."""
+
+
+def with_link_overlaps(signals: Signals, description: RobotDescription) -> Signals:
+    """The signals with the depth of every excluded pair of links that overlaps in this run.
+
+    Pairs that touch with all joints at zero, or as near to it as their limits let them, do so by
+    design, as the two sides of a joint do. The others are excluded because somebody, or a sampling
+    of random states, found that they never meet. Fingers may meet.
+    """
+    count = len(signals.times)
+    if not count:
+        return signals
+    samples = knots(signals.times, (), ())
+    measured = at_samples(signals, samples)
+    moving = LinkPoses(description, measured.joint_positions)
+    overlaps: dict[Pair, FloatArray] = {}
+    for pair, pairs in _pairs_apart_by_design(description, moving):
+        distances, _ = smallest_distances(pairs, 0.0)
+        if float(distances.min()) < -LEAST_DEPTH:
+            overlaps[pair] = np.maximum(-between(samples, distances, count), 0.0)
+    return replace(signals, link_overlaps=overlaps)
+
+
+def _pairs_apart_by_design(
+    description: RobotDescription, moving: LinkPoses
+) -> Iterator[tuple[Pair, list[ShapePair]]]:
+    """Excluded pairs of links, and their shapes along the run."""
+    robot = RobotModel(description)
+    shapes = links_with_shapes({link.name: link.collisions for link in description.links})
+    lower = np.array([joint.lower for joint in description.movable_joints])
+    upper = np.array([joint.upper for joint in description.movable_joints])
+    zero = description.with_mimics(np.clip(np.zeros(len(lower)), lower, upper))
+    still = LinkPoses(description, zero[None])
+    fingers = set() if description.gripper is None else set(description.gripper.links)
+    for first, second in sorted(description.allowed_collisions):
+        is_rigid = robot.parent_joint(first) == robot.parent_joint(second)
+        if {first, second} <= set(shapes) and not is_rigid and not {first, second} <= fingers:
+            at_zero = _shape_pairs(shapes, still, first, second)
+            if min(pair.distance(0) for pair in at_zero) > LEAST_DEPTH:
+                yield (first, second), _shape_pairs(shapes, moving, first, second)
+
+
+def _shape_pairs(
+    shapes: Mapping[str, tuple[TrackedShape, ...]], poses: LinkPoses, first: str, second: str
+) -> list[ShapePair]:
+    seen = relative_track(link_track(poses, first), link_track(poses, second))
+    return pairs_between(shapes[first], shapes[second], seen)
+
+
+def link_overlap_findings(run: Run) -> tuple[Finding, ...]:
+    """Links that were inside each other, and that the SRDF excludes from collision checking."""
+    found: list[Finding] = []
+    for (first, second), depth in run.signals.link_overlaps.items():
+        deepest = int(np.argmax(depth))
+        time = float(run.signals.times[deepest])
+        found.append(
+            Finding(
+                "link_overlap",
+                f"{first} and {second}, which the SRDF excludes from collision checking, were"
+                f" {1e3 * depth[deepest]:.1f} mm inside each other; with every joint at zero they"
+                " are apart: enable the pair, or expect `collision` with `count_allowed`",
+                time,
+                values={"pair": [first, second], "depth": float(depth[deepest])},
+            )
+        )
+    return tuple(found)

@@ -1,0 +1,1 @@
+"""The built-in inverse kinematics solvers, one module for each."""

@@ -1,0 +1,58 @@
+"""The closed form of OpenMANIPULATOR-X as a solver."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+
+from harness.planning.ik.arm_frames import arm_joints, base_pose, fixed_offset
+from harness.planning.ik.open_manipulator import (
+    PlanarArm,
+    headings,
+    is_planar_arm,
+    pitch_in_plane,
+    pitches_below,
+    solve_planar,
+)
+from harness.ports import IkRequest, IkResult, IkSolver, PoseGoal
+
+PITCH_SAMPLES = 73
+"""Pitches tried for a position goal that leaves the pitch free: every 5 degrees of a whole turn."""
+
+
+class PlanarArmSolver(IkSolver):
+    """Closed form of OpenMANIPULATOR-X: position and pitch, four branches."""
+
+    name: ClassVar[str] = "open_manipulator_x"
+
+    @classmethod
+    def fits(cls, request: IkRequest) -> bool:
+        """Whether four joints are a turntable and three parallel joints."""
+        joints = arm_joints(request)
+        return len(joints) == 4 and is_planar_arm(joints, fixed_offset(request))
+
+    def solve(self, request: IkRequest) -> IkResult:
+        """Solve for every heading and pitch that the goal allows."""
+        goal = request.goal
+        arm = PlanarArm.of_joints(arm_joints(request), fixed_offset(request))
+        T_base_world = base_pose(request).inverse()
+        target = goal.pose.translation if isinstance(goal, PoseGoal) else goal.position
+        position = T_base_world.apply(np.asarray(target, dtype=float))
+        found: list[np.ndarray] = []
+        excesses: list[float] = []
+        for heading in headings(arm, position):
+            if isinstance(goal, PoseGoal):
+                x_axis = T_base_world.rotation @ goal.pose.rotation[:, 0]
+                pitches = [pitch_in_plane(heading, x_axis)]
+            elif goal.pitch is not None:
+                down = T_base_world.rotation @ np.array([0.0, 0.0, -1.0])
+                pitches = list(pitches_below(heading, down, goal.pitch))
+            else:
+                now = float(request.seed_positions[1:].sum())
+                pitches = [now, *np.linspace(-np.pi, np.pi, PITCH_SAMPLES)]
+            for pitch in pitches:
+                answer = solve_planar(arm, position, heading, pitch)
+                found.extend(answer.solutions)
+                excesses.append(answer.excess)
+        return IkResult(tuple(found), min(excesses, default=0.0))

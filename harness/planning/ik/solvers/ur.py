@@ -1,0 +1,32 @@
+"""The closed form of Universal Robots' arms as a solver."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from harness.planning.ik.arm_frames import arm_joints, base_pose, fixed_offset
+from harness.planning.ik.ur import UrGeometry, is_ur_like, solve_ur
+from harness.ports import IkRequest, IkResult, IkSolver, PoseGoal
+
+
+class UrSolver(IkSolver):
+    """Closed form of Universal Robots: all eight branches of a pose."""
+
+    name: ClassVar[str] = "ur"
+    is_refined: ClassVar[bool] = True
+
+    @classmethod
+    def fits(cls, request: IkRequest) -> bool:
+        """Whether the goal is a pose, and the six joints are arranged like a UR's."""
+        return isinstance(request.goal, PoseGoal) and is_ur_like(arm_joints(request))
+
+    def solve(self, request: IkRequest) -> IkResult:
+        """Solve for the branches."""
+        goal, joints = request.goal, arm_joints(request)
+        if not isinstance(goal, PoseGoal):
+            raise TypeError("the goal is no pose")
+        T_last_link = fixed_offset(request)
+        T_base_wrist3 = base_pose(request).inverse() @ goal.pose @ T_last_link.inverse()
+        wrist_3 = float(request.seed_positions[-1])
+        answer = solve_ur(UrGeometry.of_joints(joints), T_base_wrist3, wrist_3)
+        return IkResult(tuple(answer.branches), max(answer.excess, 0.0))

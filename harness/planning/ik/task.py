@@ -1,0 +1,17 @@
+"""What an arm with some number of joints can reach."""
+
+from __future__ import annotations
+
+from harness.ports import PoseGoal, PositionGoal
+
+WHOLE_POSE_JOINTS, PITCH_JOINTS = 6, 4
+"""Joints that an arm needs for an arbitrary pose, and for an arbitrary position and pitch."""
+
+
+def task_of(dof: int, goal: PoseGoal | PositionGoal) -> str:
+    """The quantities that are solved for; fewer than six joints cannot reach every pose."""
+    if isinstance(goal, PositionGoal):
+        return "position" if goal.pitch is None else "position and pitch"
+    if dof >= WHOLE_POSE_JOINTS:
+        return "pose"
+    return "position and pitch" if dof >= PITCH_JOINTS else "position"

@@ -1,0 +1,62 @@
+"""Finds a planning pipeline by its name, without importing a planner."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from harness.core.registry import OWN_PACKAGE, registry
+from harness.ports import PathPlanner, PlanningOptions
+
+DEFAULT_PIPELINE = "ompl"
+
+
+def find_pipeline(name: str) -> type[PathPlanner]:
+    """The class of a planning pipeline.
+
+    Raises:
+        ValueError: There is none; says which there are.
+    """
+    try:
+        return registry(PathPlanner.plugin_kind).find(name)
+    except LookupError as error:
+        raise ValueError(error.args[0]) from None
+
+
+def check_planner(pipeline: str, planner_id: str, parameters: Mapping[str, float]) -> str:
+    """Normalise the name of a pipeline's planner, and check that it accepts the parameters.
+
+    Raises:
+        ValueError: There is no such pipeline, planner or parameter; says which there are.
+    """
+    return find_pipeline(pipeline).check(planner_id, parameters)
+
+
+def planner_names() -> tuple[str, ...]:
+    """Every planner that can be compared: those of `ompl`, then each other pipeline's."""
+    others = [
+        f"{pipeline}/{each}" if each else pipeline
+        for pipeline, planner in registry(PathPlanner.plugin_kind).items()
+        if pipeline != DEFAULT_PIPELINE
+        for each in planner.planner_ids or ("",)
+    ]
+    return (*find_pipeline(DEFAULT_PIPELINE).planner_ids, *others)
+
+
+def with_planner(options: PlanningOptions, name: str) -> PlanningOptions:
+    """Options with another planner: a planner of `ompl`, `PIPELINE`, or `PIPELINE/PLANNER`.
+
+    Raises:
+        ValueError: There is no such planner; says which there are.
+    """
+    first, _, rest = name.partition("/")
+    is_pipeline = first in registry(PathPlanner.plugin_kind)
+    pipeline, planner = (first, rest) if is_pipeline else (DEFAULT_PIPELINE, name)
+    parameters = options.parameters if pipeline == options.pipeline else {}
+    planner_id = check_planner(pipeline, planner, {})
+    return replace(options, pipeline=pipeline, planner_id=planner_id, parameters=parameters)
+
+
+def is_built_in(pipeline: str) -> bool:
+    """Whether a planning pipeline comes with the program."""
+    return registry(PathPlanner.plugin_kind).package_of(pipeline) == OWN_PACKAGE

@@ -1,0 +1,1 @@
+"""The built-in planning pipelines, one module for each."""

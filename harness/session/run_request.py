@@ -1,0 +1,70 @@
+"""What is requested of one run of a scenario."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Protocol
+
+
+class Draw(Protocol):
+    """The values of a random sample.
+
+    Attributes:
+        overrides: Dotted path in the file -> new value, as YAML text.
+        values: What varies, for tables: path -> value.
+    """
+
+    @property
+    def overrides(self) -> Mapping[str, str]: ...
+
+    @property
+    def values(self) -> Mapping[str, Any]: ...
+
+
+class Redraw(Protocol):
+    """Draws a random sample again."""
+
+    def redrawn(self, draw: int) -> Draw:
+        """The sample's values in one of the further draws.
+
+        Args:
+            draw: The number of the draw, from 1.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class RunRequest:
+    """One case of a scenario file, how it is run and what is written of it.
+
+    Attributes:
+        file: The scenario file as the user names it.
+        overrides: Dotted path in the file -> new value, as YAML text.
+        seed: Seed that replaces the file's seed.
+        report_dir: Folder of the report; None writes no report.
+        stills: Whether the report gets a picture of every step.
+        page: Whether the report gets its page.
+        bag: Whether the report gets a rosbag2.
+        reporters: Names of other reporters that write into the report.
+        case: Name of the case; empty when the file has one case.
+        only_failed: Whether a report is written only where the case does not pass.
+        text: Content that is read in place of the file's; None reads the file.
+        redraw: Draws the sample again while objects overlap at the start; None draws it once.
+        strict: Whether a warning of a verdict fails the case.
+    """
+
+    file: Path
+    overrides: Mapping[str, str] = field(default_factory=dict[str, str])
+    seed: int | None = None
+    report_dir: Path | None = None
+    stills: bool = True
+    page: bool = True
+    bag: bool = False
+    reporters: tuple[str, ...] = ()
+    case: str = ""
+    only_failed: bool = False
+    text: str | None = None
+    redraw: Redraw | None = None
+    strict: bool = False

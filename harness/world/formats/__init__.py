@@ -1,0 +1,1 @@
+"""The built-in world formats, one module for each."""

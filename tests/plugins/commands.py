@@ -1,0 +1,24 @@
+"""The command line in processes of its own, with a folder of packages on Python's path."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+EXAMPLE = Path(__file__).with_name("example_package")
+MODULES = EXAMPLE / "example_arm_plugins"
+
+
+def harness(folder, *arguments, site=None, code=0):
+    """What a command prints, run in a folder."""
+    paths = [*([str(site)] if site else []), *sys.path]
+    done = subprocess.run(
+        [sys.executable, "-m", "harness.cli", *map(str, arguments)],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == code, done.stdout + done.stderr
+    return done.stdout + done.stderr

@@ -1,0 +1,76 @@
+"""Typed records of failures: what run.json says of them, and that they are read back from it."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from harness.core.details import Details
+from harness.core.errors import PlanningFailed
+from harness.recording.explanation import (
+    Explanation,
+    FreeShift,
+    LoweredMargin,
+    LoweredMargins,
+    NearestState,
+    Stage,
+    lowered_margins_of,
+    recorded_explanation,
+)
+from harness.recording.goal_failures import CollisionFailure, IkFailure, TouchRecord
+from harness.recording.motion_failures import SearchFailure
+
+TOUCH = TouchRecord(("wrist_3_link", "Table"), -0.004)
+STAGES = (
+    Stage("reach", "passed", "reached"),
+    Stage("path", "failed", "blocked", "PLANNING_FAILED", ("after 30 %",)),
+)
+NEAREST = NearestState(
+    "goal in collision",
+    {"elbow_joint": 0.5},
+    target=(0.1, 0.2, 0.3),
+    touches=(TOUCH,),
+    nearest_free=FreeShift((0.0, 0.0, 0.05), {"elbow_joint": 0.4}),
+)
+
+
+def test_a_failure_finds_its_details_by_type_and_writes_them_as_one_mapping():
+    failure = PlanningFailed("PLANNING_FAILED", "no way", CollisionFailure((TOUCH,)))
+    failure.details += Details.of(SearchFailure(400, gap=1.5), None)
+    assert failure.details.find(SearchFailure).gap == 1.5
+    assert failure.details.find(IkFailure) is None
+    assert failure.facts == {
+        "touches": [{"pair": ["wrist_3_link", "Table"], "distance": -0.004}],
+        "state_checks": 400,
+        "gap": 1.5,
+    }
+
+
+def test_later_details_replace_the_values_of_earlier_ones_and_leave_the_rest():
+    first, second = Explanation(STAGES, NEAREST, "move it"), Explanation(advice="turn it")
+    merged = Details.of(first, second).plain()
+    assert merged["advice"] == "turn it"
+    assert merged["stages"] == first.plain()["stages"]
+    assert Details.of(first).replaced(second).find(Explanation) is second
+
+
+@pytest.mark.parametrize(
+    "explanation", [Explanation(STAGES, NEAREST, "move it", "images/1.jpg"), Explanation()]
+)
+def test_an_explanation_is_read_back_from_its_json(explanation):
+    assert recorded_explanation(json.loads(json.dumps(explanation.plain()))) == explanation
+
+
+def test_what_does_not_fit_is_left_out_of_an_explanation():
+    plain = Explanation(STAGES, NEAREST, "move it").plain()
+    plain["nearest"]["joint_positions"] = [1.0, 2.0]
+    assert recorded_explanation(plain) == replace(
+        Explanation(STAGES, NEAREST, "move it"), nearest=None
+    )
+
+
+def test_lowered_margins_are_read_back_and_empty_where_no_motion_was_planned():
+    margin = LoweredMargin(("cube", "Table"), 0.0, -0.0005)
+    plain = LoweredMargins((margin,)).plain()
+    assert lowered_margins_of(json.loads(json.dumps(plain))) == (margin,)
+    assert lowered_margins_of({}) == ()
