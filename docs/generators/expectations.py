@@ -43,6 +43,25 @@ and 1). The tightest one decides, and its margin is the margin of the verdict. W
 observed does not pass: the verdict is `not reached` if the step was not reached or the object was
 not in the scene, and `not observable` if the signal was not recorded.
 
+Every verdict states how much it observed: the number of known and of unknown samples, the pairs of
+bodies, and how often a premise held. Where the unknown samples could change the verdict it is `not
+observable`; a violation at a known sample has failed all the same. A verdict that passes and shows
+little carries a named warning. `harness run --strict`, `harness judge --strict` and `pytest
+--harness-strict` turn warnings into failures:
+
+| warning | condition |
+| --- | --- |
+| already true at the start | `eventually`, `lifted`, `displaced`, the second part of `until`, \
+or what a formula awaits, holds at the first sample of its window; `placed`, `released` and `in` \
+at the end, where the robot never touched the object and it moved by no more than 5 mm, or was \
+in the container since the run began |
+| premise never held | the left side of an `implies` holds at no sample of the window |
+| hardly observed | `always` or `never` of something that is in the scene at 1 % of the samples \
+at most, as an object that the next step adds |
+| contact may be missed | `never: in_contact` or `never: collision` of an object that moves \
+between two samples by more than its least width and the other's together: the physics looks for \
+contacts at the samples |
+
 A step that fails unexpectedly ends the run. Expectations that could still have become true are
 then `not reached` and name that step: `lifted`, `eventually`, and everything that is judged at
 the end. An expectation that no continuation could have fulfilled has failed: an `always` that was

@@ -10,10 +10,12 @@ from collections.abc import Collection
 
 import numpy as np
 
+from harness.assertions.poses import SCENE_VERBS, present
 from harness.assertions.temporal import trailing_max
 from harness.assertions.window import NotObservable
+from harness.core.antipodal import least_thickness
 from harness.core.types import BoolArray, FloatArray
-from harness.recording.run import GripperRecord, Run
+from harness.recording.run import GripperRecord, Run, VerdictWarning
 
 TOUCH_FORCE = 1e-3
 """A tenth of the weight of one gram; less is no support and no grip [N]."""
@@ -117,11 +119,17 @@ def robot_contact(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
     return force, attached(run, name).astype(float)
 
 
+def was_in_robot(run: Run, name: str, stop: int) -> bool:
+    """Whether the robot touched or held an object at some sample before one."""
+    force, hold = robot_contact(run, name)
+    return bool((force[:stop] > TOUCH_FORCE).any() or hold[:stop].any())
+
+
 def bodies(run: Run, word: str) -> frozenset[str]:
     """Links and objects that a word of `between` means: `robot`, `gripper`, `any`, or a name.
 
     Raises:
-        NotObservable: The run knows no such body.
+        NotObservable: The run knows no such body, or only the planner knows it.
     """
     robot = run.robot
     links = frozenset(robot.link_names)
@@ -134,9 +142,86 @@ def bodies(run: Run, word: str) -> frozenset[str]:
         case "any":
             return links | objects | {name for pair in run.signals.contact_forces for name in pair}
         case _ if word in links or word in objects:
+            if any(record.name == word and not record.in_simulation for record in run.objects):
+                raise NotObservable(f"{word} is not in the physics: nothing can touch it")
             return frozenset({word})
         case _:
             raise NotObservable(f"there is no body '{word}' in this run")
+
+
+def could_touch(run: Run, pairs: Collection[tuple[str, str]]) -> BoolArray:
+    """Samples at which both bodies of a pair are in the physics, for some of the pairs, (N,)."""
+    here = {name: is_there(run, name) for name in sorted({name for pair in pairs for name in pair})}
+    together = np.zeros(len(run.signals.times), dtype=bool)
+    for first, second in pairs:
+        together |= here[first] & here[second]
+        if together.all():
+            break
+    return together
+
+
+def pairs_of(firsts: Collection[str], seconds: Collection[str]) -> frozenset[tuple[str, str]]:
+    """Pairs of two different bodies, one of each set, each pair once."""
+    return frozenset(
+        (min(first, second), max(first, second))
+        for first in firsts
+        for second in seconds
+        if first != second
+    )
+
+
+def skipped_contacts(run: Run, pairs: Collection[tuple[str, str]]) -> tuple[VerdictWarning, ...]:
+    """A warning for each object that may have passed through another between two samples.
+
+    Contacts are looked for at each sample: an object that moves by more than the least widths of
+    both bodies together is before the other at one sample and after it at the next.
+    """
+    found: list[VerdictWarning] = []
+    for name in sorted({name for pair in pairs for name in pair}):
+        poses = run.signals.object_poses.get(name)
+        width = _least_known_width(run, name)
+        if poses is None or not width:
+            continue
+        moved = np.nan_to_num(np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1))
+        moved[_jumps(run, len(moved))] = 0.0
+        others = [first if second == name else second for first, second in pairs
+                  if name in (first, second)]  # fmt: skip
+        thinnest = min((_least_known_width(run, other) for other in others), default=0.0)
+        if len(moved) and moved.max() > width + thinnest:
+            most = float(moved.max())
+            time = float(run.signals.times[int(moved.argmax()) + 1])
+            found.append(
+                VerdictWarning(
+                    "contact may be missed",
+                    f"{name} moves by {1000 * most:.0f} mm between two samples at t={time:.3f} s"
+                    f" and is {1000 * width:.0f} mm thick: it may have passed through something",
+                )
+            )
+    return tuple(found)
+
+
+def _least_known_width(run: Run, name: str) -> float:
+    """The least width of an object [m]; 0 of a link, and of a mesh."""
+    shapes = [record.shapes for record in run.objects if record.name == name]
+    return least_thickness(shapes[0]) if shapes else 0.0
+
+
+def _jumps(run: Run, count: int) -> BoolArray:
+    """Intervals between samples in which a step may put objects somewhere, shape (N - 1,)."""
+    mask = np.zeros(count, dtype=bool)
+    for step in run.steps:
+        if step.verb in SCENE_VERBS:
+            mask[max(step.start_index - 1, 0) : step.end_index + 1] = True
+    return mask
+
+
+def is_there(run: Run, name: str) -> BoolArray:
+    """Samples at which a body is in the physics: a link always, an object while it is present."""
+    for record in run.objects:
+        if record.name == name:
+            never = np.zeros(len(run.signals.times), dtype=bool)
+            return present(run, name) if record.in_simulation else never
+    return np.ones(len(run.signals.times), dtype=bool)
 
 
 def sample_time(run: Run) -> float:

@@ -16,9 +16,10 @@ from harness.assertions.observations import (
     merged,
     restricted,
 )
+from harness.assertions.poses import present
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, NotReached, Window, window_of
-from harness.assertions.words import Terms, decide, terms_of
+from harness.assertions.words import ALREADY_TRUE, Terms, decide, terms_of
 from harness.cell.scope import At
 from harness.core.errors import HarnessError
 from harness.language.annotations import units_of
@@ -32,7 +33,7 @@ from harness.language.expectation import (
     TemporalFields,
 )
 from harness.language.plugin_field import PluginField
-from harness.recording.run import Measure, Run, Verdict
+from harness.recording.run import Measure, Run, Verdict, VerdictWarning
 
 SPECIAL_BODIES = ("robot", "gripper", "any")
 """Words that stand for several bodies where two bodies are named."""
@@ -87,10 +88,13 @@ class Predicate(Expectation, PredicateFields):
 
     Attributes:
         is_opposed: Whether its measures show its violation: contacts of a collision.
+        is_change: Whether it holds because something changed since the run began, so that a window
+            in which it holds from the first sample on shows nothing of the change.
     """
 
     word: ClassVar[str] = ""
     is_opposed: ClassVar[bool] = False
+    is_change: ClassVar[bool] = False
 
     @classmethod
     def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
@@ -130,14 +134,27 @@ class Predicate(Expectation, PredicateFields):
             raise ExpectationError(said) from error
         return found if isinstance(found, MarginSignal) else self._with_measures(found, window)
 
+    def unchanged(self, window: Window) -> str:  # noqa: ARG002 - subclasses read it
+        """Why the run did not have to change anything for it to hold at the end of a window.
+
+        Returns:
+            One sentence; empty where something had to change, or where no change is expected.
+        """
+        return ""
+
     def verdict(self, run: Run, step: str) -> Verdict:
         terms = self.terms(step)
         window = window_of(run, terms.step)
-        return decide(terms, window, self.margins(window))
+        answer = decide(terms, window, self.margins(window))
+        if answer.status == "passed" and terms.word == "at_end" and (why := self.unchanged(window)):
+            return replace(answer, warnings=(VerdictWarning(ALREADY_TRUE, why),))
+        return answer
 
     def terms(self, step: str) -> Terms:
         """How it is judged where it stands bare."""
-        return terms_of(self.judged, (self,), step, is_opposed=self.is_opposed)
+        return terms_of(
+            self.judged, (self,), step, is_opposed=self.is_opposed, is_change=self.is_change
+        )
 
     def _with_measures(self, margins: Margin, window: Window) -> MarginSignal:
         """Bare margins with the measure that its class declares, against its bound."""
@@ -172,14 +189,29 @@ class ObjectPredicate(Predicate):
     def check(self, at: At) -> None:
         at.scope.check_object(self.object, at.key("object"), simulated=True)
 
+    def margins(self, window: Window) -> MarginSignal:
+        found = super().margins(window)
+        if found.present is not None or not _is_recorded(window.run, self.object):
+            return found
+        return replace(found, present=window.cut(present(window.run, self.object)))
+
+
+def _is_recorded(run: Run, name: str) -> bool:
+    return any(record.name == name for record in run.objects)
+
 
 InnerPredicate = Annotated[Predicate, PluginField(KIND, CHECK)]
 
 
 class TemporalWord(Expectation, TemporalFields):
-    """A word that says at which samples of the window its predicate holds."""
+    """A word that says at which samples of the window its predicate holds.
+
+    Attributes:
+        is_change: Whether its predicate must come true in the window.
+    """
 
     word: ClassVar[str] = ""
+    is_change: ClassVar[bool] = False
 
     predicate: InnerPredicate = Field(description="The predicate that is judged.")
 
@@ -197,8 +229,13 @@ class TemporalWord(Expectation, TemporalFields):
 
     def terms(self, step: str) -> Terms:
         """How its predicate is judged."""
-        opposed = self.predicate.is_opposed
-        return terms_of(self.word, (self, self.predicate), step, is_opposed=opposed)
+        return terms_of(
+            self.word,
+            (self, self.predicate),
+            step,
+            is_opposed=self.predicate.is_opposed,
+            is_change=self.is_change,
+        )
 
 
 def _bounded_quantity(cls: type[Predicate]) -> tuple[Quantity, ...]:

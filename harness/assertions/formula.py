@@ -32,6 +32,7 @@ from harness.assertions.formula_signals import values_of
 from harness.assertions.temporal import TIME_RESOLUTION, range_min
 from harness.assertions.text import amounts
 from harness.assertions.window import NotObservable, NotReached, Window
+from harness.assertions.words import ALREADY_TRUE
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.language.formula.formula import (
     Comparison,
@@ -40,10 +41,12 @@ from harness.language.formula.formula import (
     Node,
     Signal,
     Temporal,
+    implications_of,
     signals_of,
+    text_of,
 )
 from harness.language.formula.parser import parse_formula
-from harness.recording.run import Measure, Verdict, VerdictStatus
+from harness.recording.run import Measure, Observed, Verdict, VerdictStatus, VerdictWarning
 
 PLOTS = {
     "position": "position",
@@ -121,6 +124,8 @@ def formula_verdict(text: str, window: Window) -> Verdict:
         time,
         reason=f"{reason} at t={time:.3f} s",
         measures=(measure,),
+        observed=evaluation.observed(root),
+        warnings=evaluation.warnings(root) if holds else (),
     )
 
 
@@ -275,6 +280,39 @@ class Evaluation:
             case _:
                 return []
 
+    # -- how much was observed --------------------------------------------------------------------
+
+    def observed(self, root: Node) -> Observed:
+        """Samples at which every signal is known, and at which the premises hold."""
+        unknown = np.zeros(len(self.times), dtype=bool)
+        for node in signals_of(root):
+            unknown |= np.isnan(values_of(node, self.window).values)
+        premises = [self._times_true(node.operands[0]) for node in implications_of(root)]
+        known = int((~unknown).sum())
+        return Observed(known, int(unknown.sum()), premises=min(premises, default=None))
+
+    def warnings(self, root: Node) -> tuple[VerdictWarning, ...]:
+        """What makes a formula that holds say less than it seems to."""
+        found = [
+            VerdictWarning(
+                "premise never held",
+                f"at none of {len(self.times)} samples did what stands before `implies` hold:"
+                f" {text_of(node.operands[0])}",
+            )
+            for node in implications_of(root)
+            if not self._times_true(node.operands[0])
+        ]
+        inner = _awaited(root)
+        if inner is not None and self.bounds(inner).low[0] > 0:
+            time = self.window.time(0)
+            message = f"{text_of(inner)} held at t={time:.3f} s, the first sample"
+            found.append(VerdictWarning(ALREADY_TRUE, message))
+        return tuple(found)
+
+    def _times_true(self, node: Node) -> int:
+        """Samples at which a part may hold."""
+        return int((self.bounds(node).high > 0).sum())
+
     def first_unknown(self, root: Node) -> str:
         """The first sample at which a signal of the formula is not known; empty if all are."""
         for node in signals_of(root):
@@ -283,6 +321,15 @@ class Evaluation:
                 time = self.window.time(int(np.argmax(unknown)))
                 return f"{node} is not known, or not there, at t={time:.3f} s"
         return ""
+
+
+def _awaited(root: Node) -> Node | None:
+    """What must come true for a formula whose outermost word is `eventually` or `until`."""
+    match root:
+        case Temporal(operator="eventually" | "until", operands=(*_, inner), interval=interval):
+            return inner if interval.first == 0 else None
+        case _:
+            return None
 
 
 def _each(function: np.ufunc, left: Bounds, right: Bounds) -> Bounds:

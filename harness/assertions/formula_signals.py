@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from harness.assertions.contacts import bodies, force_between
+from harness.assertions.contacts import bodies, could_touch, force_between, pairs_of
 from harness.assertions.distances import recorded_distances
 from harness.assertions.joints import joint_column, joint_unit
 from harness.assertions.poses import UP, frame_poses, physical_poses, speeds
@@ -80,7 +80,9 @@ def _recorded(node: Signal, window: Window) -> Values:
             return Values(window.cut(speeds(window.run, _poses(window, name))[0]), "m/s")
         case "force", (first, second):
             run = window.run
-            force = force_between(run, bodies(run, first), bodies(run, second))
+            firsts, seconds = bodies(run, first), bodies(run, second)
+            together = could_touch(run, pairs_of(firsts, seconds))
+            force = np.where(together, force_between(run, firsts, seconds), np.nan)
             return Values(window.cut(force), "N")
         case "distance", (first, second):
             rows = recorded_distances(window.run, first, second)
@@ -104,14 +106,14 @@ def _poses(window: Window, name: str) -> FloatArray:
 
 def _joint(name: str, joint: str, window: Window) -> Values:
     column, record = joint_column(window.run, joint)
-    signals = window.run.signals
-    array, unit = {
-        "position": (signals.joint_positions, joint_unit(record)),
-        "velocity": (signals.joint_velocities, f"{joint_unit(record)}/s"),
-        "effort": (signals.joint_efforts, _effort_unit(record)),
-        "command": (signals.joint_commands, joint_unit(record)),
+    field, unit = {
+        "position": ("joint_positions", joint_unit(record)),
+        "velocity": ("joint_velocities", f"{joint_unit(record)}/s"),
+        "effort": ("joint_efforts", _effort_unit(record)),
+        "command": ("joint_commands", joint_unit(record)),
     }[name]
-    return Values(window.cut(array)[:, column], unit)
+    recorded = getattr(window.run.signals, field)  # only this one need have been recorded
+    return Values(window.cut(recorded)[:, column], unit)
 
 
 def _effort_unit(joint: JointRecord) -> str:

@@ -12,7 +12,7 @@ import numpy as np
 from harness.assertions.window import Window
 from harness.core.types import BoolArray, FloatArray
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure
+from harness.recording.run import Measure, VerdictWarning
 
 Comparison = Literal["<=", ">=", "=="]
 Margin = FloatArray
@@ -50,6 +50,10 @@ class MarginSignal:
         applies: Samples at which the predicate is defined (default all): distance to an object has
             no value before the object exists. `always` skips the others, nothing holds at them.
         progress: Chooses the sample to show among equal margins.
+        present: Samples at which its object is there (default all): a value that is missing at one
+            of them is unknown, at another one it does not exist.
+        pairs: How many pairs of bodies it reads; None where it reads none.
+        warnings: What makes a verdict that holds say less than it seems to.
     """
 
     values: FloatArray
@@ -57,6 +61,16 @@ class MarginSignal:
     evidence: Callable[[int], Evidence]
     applies: BoolArray | None = None
     progress: FloatArray | None = None
+    present: BoolArray | None = None
+    pairs: int | None = None
+    warnings: tuple[VerdictWarning, ...] = ()
+
+    def unknown(self) -> BoolArray:
+        """Samples at which there is a value that is not known, shape (n,)."""
+        unknown = np.isnan(self.values)
+        for mask in (self.applies, self.present):
+            unknown = unknown if mask is None else unknown & mask
+        return unknown
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,4 +225,4 @@ def all_of(
         return Evidence(text(index, measures[0]), measures, margin, unit, is_moment)
 
     unit = parts[0].unit if len(parts) == 1 else "1"
-    return MarginSignal(values, unit, evidence, applies)
+    return MarginSignal(values, unit, evidence, applies, present=present)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.assertions.temporal import TIME_RESOLUTION, trailing_max
-from harness.assertions.window import NotObservable, Window, object_record
+from harness.assertions.temporal import TIME_RESOLUTION, episodes, trailing_max
+from harness.assertions.window import NotObservable, object_record
 from harness.core.pose_arrays import IDENTITY
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import Run
@@ -81,6 +81,13 @@ def present(run: Run, name: str) -> BoolArray:
     return mask
 
 
+def frame_present(run: Run, frame: str) -> BoolArray:
+    """Samples at which a frame is in the scene: `world` and links always, shape (N,)."""
+    if any(record.name == frame for record in run.objects):
+        return present(run, frame)
+    return np.ones(len(run.signals.times), dtype=bool)
+
+
 def start_poses(run: Run, name: str) -> FloatArray:
     """Where the object started: its pose when it last appeared or was put somewhere, shape (N, 7).
 
@@ -119,7 +126,19 @@ def speeds(run: Run, poses: FloatArray) -> tuple[FloatArray, FloatArray]:
     return linear, angular
 
 
-def calm(window: Window, speed: FloatArray) -> FloatArray:
-    """The largest speed of the last `STILL` seconds of the window; NaN where it is not known."""
-    known = trailing_max(np.nan_to_num(speed, nan=0.0), window.times, STILL)
+def calm(run: Run, speed: FloatArray) -> FloatArray:
+    """The largest speed of the last `STILL` seconds at each sample; NaN where it is not known.
+
+    It looks beyond the start of a step, whose window may begin at a turning point.
+    """
+    known = trailing_max(np.nan_to_num(speed, nan=0.0), run.signals.times, STILL)
     return np.where(np.isnan(speed), np.nan, known)
+
+
+def observed_for(run: Run, here: BoolArray, span: float) -> BoolArray:
+    """Samples at which something has been there for a span of time [s], shape (N,)."""
+    times = run.signals.times
+    since = np.full(len(times), np.inf)
+    for start, stop in episodes(here):
+        since[start:stop] = times[start]
+    return times - since >= span - TIME_RESOLUTION

@@ -91,9 +91,19 @@ def bridged(times: FloatArray, spans: list[tuple[int, int]]) -> list[tuple[int, 
     return joined
 
 
-def longest_hold(values: FloatArray, times: FloatArray) -> float:
-    """Longest time without a break for which a margin is not negative [s]."""
-    spans = [times[stop - 1] - times[start] for start, stop in episodes(values >= 0)]
+def longest_hold(values: FloatArray, times: FloatArray, *, is_first: bool = False) -> float:
+    """Longest time without a break for which a margin is not negative [s].
+
+    Args:
+        values: The margins of a predicate, shape (n,).
+        times: The times of the samples [s], shape (n,).
+        is_first: Only the time that begins with the first sample counts.
+    """
+    spans = [
+        times[stop - 1] - times[start]
+        for start, stop in episodes(values >= 0)
+        if not (is_first and start)
+    ]
     return float(max(spans, default=0.0))
 
 

@@ -14,9 +14,17 @@ from harness.assertions.orientation import against
 from harness.assertions.temporal import Decision, TooShort, later, longest_hold, with_future
 from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, NotReached, Window
-from harness.core.types import FloatArray
+from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.language.expectation import PredicateFields, TemporalFields
-from harness.recording.run import Verdict, VerdictStatus
+from harness.recording.run import Observed, Verdict, VerdictStatus, VerdictWarning
+
+ALREADY_TRUE = "already true at the start"
+"""The name of the warning that nothing had to change for an expectation to pass."""
+
+HARDLY_OBSERVED = "hardly observed"
+LEAST_SHARE = 0.01
+"""The smallest share of a window's samples that says something of the window: what is there for
+less, as an object that a step adds at its end, was added next to it rather than in it."""
 
 
 @dataclass(frozen=True)
@@ -29,6 +37,7 @@ class Terms:
         within: The latest beginning after the window's start [s].
         step: The step it is judged over; empty for the whole run.
         is_opposed: Whether the predicate's measures show its violation.
+        is_change: Whether something must come true that was not so when the window began.
     """
 
     word: str
@@ -36,10 +45,16 @@ class Terms:
     within: float | None
     step: str
     is_opposed: bool = False
+    is_change: bool = False
 
 
 def terms_of(
-    word: str, fields: Sequence[PredicateFields | TemporalFields], step: str, *, is_opposed: bool
+    word: str,
+    fields: Sequence[PredicateFields | TemporalFields],
+    step: str,
+    *,
+    is_opposed: bool,
+    is_change: bool = False,
 ) -> Terms:
     """Words inside and outside a temporal word both count; of two numbers the stricter one.
 
@@ -48,6 +63,7 @@ def terms_of(
         fields: The temporal word, if there is one, and the predicate.
         step: The step where the expectation stands.
         is_opposed: Whether the measures show a violation, as in `Terms`.
+        is_change: Whether something must come true, as in `Terms`.
 
     Raises:
         NotObservable: It names two steps.
@@ -60,6 +76,7 @@ def terms_of(
         min(withins, default=None),
         one_step(tuple(each.during for each in fields), step),
         is_opposed,
+        is_change,
     )
 
 
@@ -84,10 +101,14 @@ def decide(terms: Terms, window: Window, margins: MarginSignal) -> Verdict:
 
     Raises:
         NotReached: There was nothing to judge.
+        NotObservable: Samples that are not known decide it.
     """
     values, times = margins.values, window.times
     applies = np.ones(len(values), dtype=bool) if margins.applies is None else margins.applies
+    unknown = margins.unknown()
     if not (applies & ~np.isnan(values)).any():
+        if unknown.any():
+            raise NotObservable("its value is not known at any time it is judged over")
         raise NotReached("what it is about was not there in the time it is judged over")
     chosen = np.arange(len(values))
     if terms.word == "always":
@@ -102,6 +123,8 @@ def decide(terms: Terms, window: Window, margins: MarginSignal) -> Verdict:
         return _too_short(terms, times[chosen])
     if is_open and (terms.word == "at_end" or not decision.holds):
         raise NotReached(window.cut_short)
+    if not decision.holds and unknown.any():
+        _refuse_unknown(terms, window, unknown, chosen, arguments)
     index = int(chosen[decision.index])
     time = window.time(index)
     status: VerdictStatus = "passed" if decision.holds else "failed"
@@ -122,7 +145,74 @@ def decide(terms: Terms, window: Window, margins: MarginSignal) -> Verdict:
     measures = tuple(evidence.measures)
     if terms.word == "never" or terms.is_opposed:
         measures = against(measures, is_passed=decision.holds)
-    return Verdict("", status, margin + 0.0, unit, time, reason=reason, measures=measures)
+    observed = Observed(int((applies & ~np.isnan(values)).sum()), int(unknown.sum()), margins.pairs)
+    warnings: tuple[VerdictWarning, ...] = ()
+    if decision.holds:
+        warnings = (
+            *(margins.warnings if terms.word == "never" else ()),
+            *_already_true(terms, values, window),
+            *_hardly_observed(terms, observed.samples, window),
+        )
+    return Verdict(
+        "",
+        status,
+        margin + 0.0,
+        unit,
+        time,
+        reason=reason,
+        measures=measures,
+        observed=observed,
+        warnings=warnings,
+    )
+
+
+def _refuse_unknown(
+    terms: Terms,
+    window: Window,
+    unknown: BoolArray,
+    chosen: IntArray,
+    arguments: tuple[FloatArray, FloatArray, BoolArray, FloatArray | None],
+) -> None:
+    """Refuse a verdict that the unknown samples would turn round if they were favourable.
+
+    Raises:
+        NotObservable: They would.
+    """
+    values, times, applies, progress = arguments
+    best = -np.inf if terms.word == "never" else np.inf
+    favourable = np.where(unknown[chosen], best, values)
+    if _reduce(terms, favourable, times, applies, progress).holds:
+        first, last = np.flatnonzero(unknown)[[0, -1]]
+        raise NotObservable(
+            f"{int(unknown.sum())} samples from t={window.time(int(first)):.3f} s to"
+            f" t={window.time(int(last)):.3f} s are not known, and would decide it"
+        )
+
+
+def _already_true(terms: Terms, values: FloatArray, window: Window) -> tuple[VerdictWarning, ...]:
+    """A warning where something that must come true was so at the first known sample."""
+    known = np.flatnonzero(~np.isnan(values))
+    if not terms.is_change or not len(known):
+        return ()
+    first = int(known[0])
+    if terms.hold is None:
+        held = bool(values[first] >= 0)
+    else:
+        held = longest_hold(values[first:], window.times[first:], is_first=True)
+        held = held >= terms.hold - temporal.TIME_RESOLUTION
+    if not held:
+        return ()
+    message = f"it held at t={window.time(first):.3f} s, the first sample it is judged at"
+    return (VerdictWarning(ALREADY_TRUE, message),)
+
+
+def _hardly_observed(terms: Terms, samples: int, window: Window) -> tuple[VerdictWarning, ...]:
+    """A warning where what must always or never hold was there for a moment of the window."""
+    count = len(window.times)
+    if terms.word not in ("always", "never") or samples > LEAST_SHARE * count:
+        return ()
+    message = f"what it is about was there at {samples} of {count} samples"
+    return (VerdictWarning(HARDLY_OBSERVED, message),)
 
 
 def _reduce(

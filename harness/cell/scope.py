@@ -11,8 +11,10 @@ from harness.core.errors import Problem, SpecError
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
+from harness.language.files.mistakes import MistakeError
 from harness.language.files.source import Loc, SourceMap
 from harness.language.poses import Pose
+from harness.language.units import in_si
 from harness.ports import LONGEST_RUN
 from harness.robot.description import RobotDescription
 
@@ -93,6 +95,24 @@ class Problems:
             return
         locate = self._lines.problem_at_key if is_key else self._lines.problem
         self._found.setdefault(loc, locate(loc, message, hint))
+
+    def add_in_text(self, loc: Loc, start: int, message: str, hint: str = "") -> None:
+        """Note a problem at a character of a text, from 0."""
+        self._found.setdefault(
+            (*loc, start), self._lines.problem_in_text(loc, start, 1, message, hint)
+        )
+
+    def check_unit(
+        self, loc: Loc, unit: str, *, needs: tuple[Prerequisite, ...] = EVERYTHING
+    ) -> None:
+        """Note a value whose written unit has another dimension than an SI unit."""
+        value = self._lines.find(loc).item.value
+        if not isinstance(value, str):
+            return
+        try:
+            in_si(value, (unit,))
+        except MistakeError as mistake:
+            self.add(loc, mistake.message, mistake.hint, needs=needs)
 
     def raise_if_any(self) -> None:
         """Raise SpecError with everything found, if anything was."""
@@ -240,6 +260,13 @@ class Scope:
             where = f"joint of '{group}'"
         if name not in names:
             self.problems.unknown(loc, where, name, names, is_key=is_key, needs=("robot",))
+        elif is_key:
+            self.check_joint_unit(name, loc)
+
+    def check_joint_unit(self, name: str, loc: Loc) -> None:
+        """A value at a place of the file: an angle for a joint that turns, a length for others."""
+        unit = "m" if self.description.joint_by_name[name].kind == "prismatic" else "rad"
+        self.problems.check_unit(loc, unit, needs=("robot",))
 
     def check_gripper(self, loc: Loc, what: str) -> bool:
         """Whether the robot has a gripper, which `what` needs."""

@@ -30,12 +30,13 @@ def _run(arguments: argparse.Namespace) -> int:
     topics = BagTopics(
         arguments.joint_states, tuple(arguments.objects), dict(arguments.object_poses)
     )
+    options = dict(arguments.overrides), arguments.allowed
     if arguments.json:
         with only_json_on_stdout() as write_json:
-            grade = grade_bag(scenarios[0], Path(arguments.bag), topics, dict(arguments.overrides))
+            grade = grade_bag(scenarios[0], Path(arguments.bag), topics, *options)
             write_json(_document(grade))
         return _code(grade)
-    grade = grade_bag(scenarios[0], Path(arguments.bag), topics, dict(arguments.overrides))
+    grade = grade_bag(scenarios[0], Path(arguments.bag), topics, *options)
     _print_grade(grade)
     return _code(grade)
 
@@ -58,10 +59,17 @@ def _print_grade(grade: Grade) -> None:
         is_seen = verdict.status != "not observable"
         mark = style.mark(verdict.status == "passed") if is_seen else "?"
         say(f"{mark} {_points(row):>9}  {place}{verdict.expectation}: {verdict_line(verdict)}")
+        for warning in verdict.warnings:
+            say(f"{'':15}warning: {warning}")
         if verdict.status == "failed":
             for measure in verdict.measures:
                 say(f"{'':15}{measure_text(measure)}")
     text = f"{grade.earned:g} of {grade.points:g} points"
+    if grade.withheld:
+        kinds = dict.fromkeys(kind for row in grade.rows for kind in row.withheld)
+        text += f"; {grade.withheld:g} of them are withheld: " + ", ".join(
+            f"--allow {kind}" for kind in kinds
+        )
     if grade.open:
         text += f"; {grade.open:g} of them cannot be seen in this recording"
     say(text)
@@ -70,7 +78,8 @@ def _print_grade(grade: Grade) -> None:
 def _points(row: Graded) -> str:
     if row.verdict.status == "not observable":
         return f"?/{row.points:g}"
-    return f"{row.earned:g}/{row.points:g}"
+    mark = "*" if row.withheld and row.verdict.status == "passed" else ""
+    return f"{row.earned:g}{mark}/{row.points:g}"
 
 
 def _document(grade: Grade) -> object:
@@ -81,6 +90,7 @@ def _document(grade: Grade) -> object:
         "points": grade.points,
         "earned": grade.earned,
         "not_observable": grade.open,
+        "withheld": grade.withheld,
         "rows": grade.rows,
         "notes": grade.notes,
     }

@@ -37,6 +37,8 @@ def _run(arguments: argparse.Namespace) -> int:
     has_passed = bool(verdicts) and all(verdict.status == "passed" for verdict in verdicts)
     # half a run, and a run that is not as it was recorded, is no run that passed
     has_passed = has_passed and not ended_early and not changes
+    if arguments.strict:
+        has_passed = has_passed and not any(verdict.warnings for verdict in verdicts)
     code = 0 if has_passed else EXIT_CODES["failed"]
     if arguments.json:
         with only_json_on_stdout() as write_json:
@@ -55,6 +57,8 @@ def _run(arguments: argparse.Namespace) -> int:
         place = f"line {verdict.line}: " if verdict.line else ""
         mark = style.mark(verdict.status == "passed")
         say(f"{mark} {place}{verdict.expectation}: {verdict_line(verdict)}")
+        for warning in verdict.warnings:
+            say(f"    warning: {warning}")
         if verdict.status != "passed":
             for measure in verdict.measures:
                 say(f"    {measure_text(measure)}")

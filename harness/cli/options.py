@@ -20,6 +20,7 @@ from harness.cli.robot_options import ROBOT, add_robot_options
 IMPORTS = ("sdf", "scene", "srdf", "moveit")
 FORMATS = ("full", "short", "json", "github")
 BAGS = ("mcap", "sqlite3")
+DOUBTS = ("publishers", "tf", "frames", "steps")
 LISTS = (
     "robots",
     "worlds",
@@ -32,6 +33,8 @@ LISTS = (
     "world-formats",
     "reporters",
 )
+
+STRICT = "fail where a verdict has a warning, such as `already true at the start`"
 
 
 def _format_options(command: argparse.ArgumentParser) -> None:
@@ -96,6 +99,11 @@ def for_run(run: argparse.ArgumentParser) -> None:
         "--resume",
         action="store_true",
         help="go on where the same command was interrupted, without computing again",
+    )
+    run.add_argument(
+        "--strict",
+        action="store_true",
+        help=STRICT,
     )
     run.add_argument(
         "--report-dir", metavar="DIR", default="reports", help="where reports go (default: reports)"
@@ -213,6 +221,7 @@ def for_judge(judge: argparse.ArgumentParser) -> None:
     _plugin_option(judge)
     judge.add_argument("--contacts", action="store_true",
                        help="list who touched whom: first time, duration, peak force")  # fmt: skip
+    judge.add_argument("--strict", action="store_true", help=STRICT)
     judge.add_argument("--json", action="store_true", help="one JSON document on stdout")
 
 
@@ -232,6 +241,10 @@ def for_grade(grade: argparse.ArgumentParser) -> None:
     grade.add_argument("--set", metavar="PATH=VALUE", dest="overrides", action="append",
                        type=override_argument, default=[],
                        help="change a value of the file")  # fmt: skip
+    grade.add_argument("--allow", metavar="DOUBT", dest="allowed", action="append", default=[],
+                       choices=DOUBTS,
+                       help="award points in spite of a doubt about the recording: "
+                       + ", ".join(DOUBTS))  # fmt: skip
     _package_option(grade)
     grade.add_argument("--json", action="store_true", help="one JSON document on stdout")
 

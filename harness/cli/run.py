@@ -101,6 +101,7 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
         page=not arguments.no_page,
         bag=arguments.bag,
         shard=shard,
+        strict=arguments.strict,
         reporters=arguments.reporters,
     )
     plan = planned_cases(files, request)
@@ -116,7 +117,7 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
         resume=arguments.resume,
         is_part=shard is not None,
     )
-    return SuiteRun(plan, how)
+    return SuiteRun(plan, how, files)
 
 
 def write_files(arguments: argparse.Namespace, suite: SuiteRun) -> Path | None:
@@ -182,6 +183,8 @@ def show_results(
     rate_text = f"; {style.outcome('failed', rates)}" if rates else ""
     if suite.results:
         say(f"{summary(list(suite.results.values()), seconds, style)}{rate_text}")
+    if len(suite.files) > 1:
+        say(suite.files_text)
     if suite.resumed:
         say(f"{suite.resumed} of them were known from before")
     written = [result for result in suite.results.values() if result.report_dir]
@@ -264,8 +267,8 @@ def _command(arguments: argparse.Namespace, job: RunRequest) -> str:
         words += ["--seed", str(arguments.seed)]
     if arguments.samples is not None:
         words += ["--samples", str(arguments.samples)]
-    if arguments.bag:
-        words.append("--bag")
+    words += ["--strict"] if arguments.strict else []
+    words += ["--bag"] if arguments.bag else []
     for name in arguments.reporters:
         words += ["--reporter", name]
     if arguments.report_dir != "reports":

@@ -26,6 +26,13 @@ from harness.robot.description import RobotDescription
 from harness.world.objects import ObjectUnusableError, resolve_object, resolve_world
 
 MOST_STEPS = 10_000  # a file of more is a mistake, and would fill the memory
+RESERVED = {
+    "robot": "every link",
+    "gripper": "its fingers and palm",
+    "any": "every link and object",
+    "tcp": "the tool centre point",
+}
+"""Names that no object may have, and what expectations mean by them."""
 MOST_OBJECTS = 1000  # of all kinds; 300 that move already take 2 s of wall time for each simulated
 
 
@@ -159,6 +166,9 @@ class _Compiler:
             self.object_locs[spec.name] = ("world",)
             if spec.name in resolved:
                 problems.append(f"two objects are called '{spec.name}'")
+            if spec.name in RESERVED:
+                said = f"a word of expectations: {RESERVED[spec.name]}"
+                problems.append(f"'{spec.name}' cannot be an object's name: it is {said}")
             frame, base = spec.pose.frame, SE3.identity()
             if frame in resolved:
                 base = resolved[frame].pose
@@ -213,6 +223,9 @@ class _Compiler:
                     "choose another",
                     needs=("robot",),
                 )
+        if spec.name in RESERVED:
+            said = f"'{spec.name}' is a word of expectations: {RESERVED[spec.name]}"
+            self.problems.add((*loc, "name"), said, "choose another", needs=())
         try:
             return self._object(spec, pose, self.sources.base_dir)
         except ObjectUnusableError as unusable:

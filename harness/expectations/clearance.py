@@ -26,7 +26,13 @@ LOSS = Quantity("clearance below plan", "m", "at most `max_below_plan`", "cleara
 
 
 class Clearance(Predicate):
-    """The distance between two bodies is at least a limit, or little less than planned."""
+    """The distance between two bodies is at least a limit, or little less than planned.
+
+    Distances are measured every 5 ms, at every sample around the smallest, and wherever two bodies
+    could come nearer by more than 2 mm in between, by the bound of their motion; where they could
+    between two samples, at interpolated positions too. A recorded distance is therefore at most
+    2 mm larger than the smallest until the next sample.
+    """
 
     short = "at_least"
     subject = "between"

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
 from pydantic import Field
 
 from harness.assertions.collision import Pair, colliding, why_not_excused
-from harness.assertions.contacts import bodies
+from harness.assertions.contacts import bodies, could_touch, pairs_of, skipped_contacts
 from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import Evidence, MarginSignal, measured
 from harness.assertions.observations import Observations
@@ -50,6 +51,9 @@ class Collision(Predicate):
     Planner and physics leave out the contact of links that the SRDF excludes. Those that are apart
     with every joint at zero, and overlap by more than 1 mm during the run (convex hulls are not
     exact), are a finding of the run, and a collision where `count_allowed` says so.
+
+    It is judged while two of the bodies are in the physics: with an object that only the planner
+    knows it is not observable, before an object is there it is not reached.
     """
 
     short = "between"
@@ -82,7 +86,28 @@ class Collision(Predicate):
         of their samples, so that the first contact decides. Where there is none the margin is the
         distance that was left [m] if it was recorded, else 1. Where bodies overlap when the run
         begins it is their depth [m].
+
+        Raises:
+            NotObservable: Only the planner knows one of the bodies, or the run knows none.
         """
+        run = window.run
+        links = bodies(run, "robot")
+        first, second = (
+            (links, bodies(run, "any"))
+            if self.between is None
+            else (bodies(run, word) for word in self.between)
+        )
+        possible = pairs_of(first, second)
+        together = window.cut(could_touch(run, possible))
+        return replace(
+            self._contacts(window),
+            applies=together,
+            pairs=len(possible),
+            warnings=skipped_contacts(run, possible),
+        )
+
+    def _contacts(self, window: Window) -> MarginSignal:
+        """The margins of `signal`, whether or not the bodies are in the physics."""
         run = window.run
         pairs = self._pairs(run)
         allowed_too = self.count_allowed

@@ -21,6 +21,7 @@ class Displaced(ObjectPredicate):
     """The object is away from where it started."""
 
     quantities = (DISTANCE,)
+    is_change = True
 
     at_least: PositiveLength = Field(
         default=0.01, description="The smallest distance from its place at the start [m]."

@@ -7,3 +7,5 @@ from harness.assertions.expectation import TemporalWord
 
 class Eventually(TemporalWord):
     """The predicate holds at some sample of the window; with `for`, for that long."""
+
+    is_change = True

@@ -11,7 +11,14 @@ from harness.assertions.formula import formula_verdict
 from harness.assertions.observations import CLEARANCE_ROOM, Observations
 from harness.assertions.window import window_of
 from harness.cell.scope import At
-from harness.language.formula.formula import SIGNALS, Node, constants_of, frames_of, signals_of
+from harness.language.formula.formula import (
+    SIGNALS,
+    Node,
+    constants_of,
+    frames_of,
+    mixed_units,
+    signals_of,
+)
 from harness.language.formula.parser import parse_formula, readable
 from harness.recording.run import Run, Verdict
 
@@ -34,9 +41,21 @@ class Formula(Expectation):
         robot = at.scope.description
         bodies = (*SPECIAL_BODIES, *at.scope.objects, *robot.link_names)
         frames = ("tcp", *at.scope.objects, *robot.link_names)
+        root = parse_formula(self.formula)
+        units = {
+            joint.name: "m" if joint.kind == "prismatic" else "rad"
+            for joint in robot.movable_joints
+        }
+        for start, first, second in mixed_units(root, units):
+            at.scope.problems.add_in_text(
+                at.key("formula"),
+                start,
+                f"the formula joins {first} and {second}",
+                "both sides must be of one kind",
+            )
         known = {"joint": robot.joint_names, "frame": frames, "body": bodies}
         kind_names = {"joint": "joint", "frame": "link or object", "body": "object or link"}
-        for signal in signals_of(parse_formula(self.formula)):
+        for signal in signals_of(root):
             kinds, _, _ = SIGNALS[signal.name]
             for kind, name, start in zip(kinds, signal.arguments, signal.starts, strict=True):
                 if name not in known[kind]:

@@ -25,7 +25,7 @@ from harness.assertions.text import amount, amounts
 from harness.assertions.window import Window, object_record
 from harness.cell.scope import At
 from harness.core.pose_arrays import conjugate, quat_product, relative, rotation_angle
-from harness.language.base import Force, NonNegativeAngle, PositiveLength
+from harness.language.base import AngleBetween, Force, PositiveLength
 from harness.language.expectation import Quantity
 from harness.recording.run import Measure, Run
 
@@ -55,7 +55,7 @@ class Grasped(ObjectPredicate):
         default=0.005,
         description="The largest distance moved in the hand since the grasp began [m].",
     )
-    max_rotation: NonNegativeAngle = Field(
+    max_rotation: Annotated[AngleBetween, Field(ge=0)] = Field(
         default=0.1, description="The largest rotation in the hand since the grasp began [rad]."
     )
 

@@ -66,6 +66,11 @@ class GripperState(Predicate):
     def check(self, at: At) -> None:
         at.scope.check_gripper(at.loc, "`gripper`")
         hand = at.scope.description.gripper
+        if self.width is not None:
+            at.scope.problems.check_unit(at.key("tolerance"), "m")
+        elif hand is not None:
+            for key in self.model_fields_set.intersection(("position", "tolerance")):
+                at.scope.check_joint_unit(hand.joint, at.key(key))
         if self.named_target is not None and hand is not None:
             at.scope.check_state(hand.group, self.named_target, at.key("named_target"))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
@@ -16,7 +17,7 @@ from harness.cell.scope import At
 from harness.core.geometry import Box, Capsule, Cylinder, Shape, Sphere
 from harness.core.pose_arrays import angle_between, relative, rotate
 from harness.core.types import FloatArray
-from harness.language.base import Angle, Name
+from harness.language.base import AngleBetween, Name
 from harness.language.expectation import Quantity
 from harness.recording.run import Measure, ObjectRecord
 
@@ -34,7 +35,7 @@ class In(ObjectPredicate):
     quantities = (DEPTH, LEAN)
 
     container: Name = Field(description="The name of the container that the object is in.")
-    max_lean: Annotated[Angle, Field(gt=0)] = Field(
+    max_lean: Annotated[AngleBetween, Field(gt=0)] = Field(
         default=0.7853981633974483,
         description="The largest angle between the container's z axis and the vertical; a container"
         " that leans further has tipped over [rad].",
@@ -71,6 +72,14 @@ class In(ObjectPredicate):
             )
 
         return all_of(window, parts, text, present=there)
+
+    def unchanged(self, window: Window) -> str:
+        before = replace(window, start=0)
+        margins = self.margins(before).values
+        known = margins[~np.isnan(margins)]
+        if (known < 0).any():
+            return ""
+        return f"{self.object} was in {self.container} since the run began"
 
 
 def outline(record: ObjectRecord) -> tuple[FloatArray, FloatArray]:

@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
 from pydantic import Field
 
-from harness.assertions.contacts import TOUCH_FORCE, bodies, force_between, sample_time
+from harness.assertions.contacts import (
+    TOUCH_FORCE,
+    bodies,
+    could_touch,
+    force_between,
+    pairs_of,
+    sample_time,
+    skipped_contacts,
+)
 from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import amount
@@ -21,7 +30,11 @@ CONTACT = Quantity("contact force", "N", "at least `min_force`, and 0.001 N", "c
 
 
 class InContact(Predicate):
-    """The two bodies touch."""
+    """The two bodies touch.
+
+    It is judged while both are in the physics: with an object that only the planner knows it is not
+    observable, before an object is there it is not reached.
+    """
 
     short = "between"
     judged = "eventually"
@@ -39,10 +52,16 @@ class InContact(Predicate):
             at.scope.check_body(name, at.key("between", index), special=SPECIAL_BODIES)
 
     def signal(self, window: Window) -> MarginSignal:
-        """Force between the two bodies [N], sample by sample."""
+        """Force between the two bodies [N], sample by sample, while both are in the physics.
+
+        Raises:
+            NotObservable: Only the planner knows one of them, or the run knows none.
+        """
         first, second = self.between
         run = window.run
-        force = window.cut(force_between(run, bodies(run, first), bodies(run, second)))
+        firsts, seconds = bodies(run, first), bodies(run, second)
+        pairs = pairs_of(firsts, seconds)
+        force = window.cut(force_between(run, firsts, seconds))
         limit = max(self.min_force, TOUCH_FORCE)
         part = Part(CONTACT, force, limit, ">=", detail=f"{first} and {second}")
 
@@ -56,4 +75,9 @@ class InContact(Predicate):
             peak = amount(float(force.max()), "N")
             return f"{now} (first at t={begun:.3f} s, {amount(seconds, 's')} in all, up to {peak})"
 
-        return all_of(window, [part], text)
+        together = window.cut(could_touch(run, pairs))
+        return replace(
+            all_of(window, [part], text, applies=together),
+            pairs=len(pairs),
+            warnings=skipped_contacts(run, pairs),
+        )

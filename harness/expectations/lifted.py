@@ -67,6 +67,7 @@ class Lifted(ObjectPredicate):
 
     judged = "eventually"
     quantities = (HEIGHT, FINGERS, OTHERS, HELD, CARRIED, MOTION)
+    is_change = True
 
     above: PositiveLength = Field(
         default=0.01, description="The height above the object's own start height [m]."

@@ -7,15 +7,25 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from harness.assertions.contacts import TOUCH_FORCE, robot_contact
+from harness.assertions.contacts import TOUCH_FORCE, robot_contact, was_in_robot
 from harness.assertions.expectation import ObjectPredicate
 from harness.assertions.hold import in_hand
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.observations import Observations
-from harness.assertions.poses import UP, calm, frame_poses, object_poses, present, speeds
+from harness.assertions.poses import (
+    JUMP,
+    STILL,
+    UP,
+    calm,
+    frame_poses,
+    object_poses,
+    observed_for,
+    present,
+    speeds,
+)
 from harness.assertions.support import supports
 from harness.assertions.text import amounts
-from harness.assertions.window import Window, object_record
+from harness.assertions.window import NotReached, Window, object_record
 from harness.cell.scope import At
 from harness.core.pose_arrays import (
     angle_between,
@@ -56,7 +66,8 @@ class Placed(ObjectPredicate):
     """The object rests on a support, released and still, at a pose if one is given.
 
     A `pose` without a rotation allows every turn about the vertical after which the object's
-    collision shapes are the same.
+    collision shapes are the same. It is still where it was slow for 50 ms, which may begin before
+    the step's window.
     """
 
     quantities = (SUPPORT, SPEED, TURNING, CONTACT, ATTACHED, POSITION, LEAN, ORIENTATION)
@@ -94,6 +105,9 @@ class Placed(ObjectPredicate):
         """Rests on a support from below, untouched by the robot, still, and at the pose if given.
 
         What is in the hand is no support but for a `placed` that names it.
+
+        Raises:
+            NotReached: The object is not there for `STILL` seconds at any sample.
         """
         run, name = window.run, self.object
         carried = {
@@ -104,7 +118,7 @@ class Placed(ObjectPredicate):
         support = np.max([np.zeros(len(run.signals.times)), *carried.values()], axis=0)
         force, hold = robot_contact(run, name)
         speed, turning = (
-            calm(window, window.cut(rate)) for rate in speeds(run, object_poses(run, name))
+            window.cut(calm(run, rate)) for rate in speeds(run, object_poses(run, name))
         )
         by = f"support by {self.on or 'anything but the robot'}"
         parts = [
@@ -124,7 +138,17 @@ class Placed(ObjectPredicate):
                 rests = f"does not rest on {self.on}"
             return f"{name} {rests}; {_against(tightest)}"
 
-        return all_of(window, parts, text, present=window.cut(present(run, name)))
+        here = present(run, name)
+        judged = observed_for(run, here, STILL)
+        if window.cut(here).any() and not window.cut(judged).any():
+            raise NotReached(f"what stands still is known after {1000 * STILL:.0f} ms, not before")
+        return all_of(window, parts, text, present=window.cut(here), applies=window.cut(judged))
+
+    def unchanged(self, window: Window) -> str:
+        run, name = window.run, self.object
+        if was_in_robot(run, name, window.stop) or _moved(run, name, window.stop) > JUMP:
+            return ""
+        return f"the robot never touched {name}, and it stands where it stood when the run began"
 
     def _at_pose(self, window: Window) -> list[Part]:
         if self.pose is None:
@@ -158,6 +182,13 @@ def _is_carried(run: Run, body: str) -> BoolArray:
     if all(record.name != body for record in run.objects):
         return np.zeros(len(run.signals.times), dtype=bool)
     return in_hand(run, body)
+
+
+def _moved(run: Run, name: str, stop: int) -> float:
+    """The largest distance of an object from its first known place before a sample [m]."""
+    places = object_poses(run, name)[:stop, :3]
+    known = places[~np.isnan(places[:, 0])]
+    return float(np.linalg.norm(known - known[0], axis=1).max()) if len(known) else 0.0
 
 
 def _turned(target: FloatArray, actual: FloatArray, turns: int) -> FloatArray:

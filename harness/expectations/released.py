@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from harness.assertions.contacts import TOUCH_FORCE, robot_contact
+from harness.assertions.contacts import TOUCH_FORCE, robot_contact, was_in_robot
 from harness.assertions.expectation import ObjectPredicate
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.poses import present
@@ -40,3 +40,8 @@ class Released(ObjectPredicate):
             return f"the robot touches {name} with {amount(float(force[index]), 'N')}; {belief}"
 
         return all_of(window, parts, text, present=window.cut(present(run, name)))
+
+    def unchanged(self, window: Window) -> str:
+        if was_in_robot(window.run, self.object, window.stop):
+            return ""
+        return f"the robot never touched {self.object}"

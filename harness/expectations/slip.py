@@ -12,7 +12,7 @@ from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import amount
 from harness.assertions.window import Window
 from harness.cell.scope import At
-from harness.language.base import Angle, PositiveLength
+from harness.language.base import AngleBetween, PositiveLength
 from harness.language.expectation import Quantity
 from harness.recording.run import Measure
 
@@ -29,7 +29,7 @@ class Slip(ObjectPredicate):
     max_distance: PositiveLength = Field(
         default=0.003, description="The largest distance between the two [m]."
     )
-    max_rotation: Annotated[Angle, Field(gt=0)] = Field(
+    max_rotation: Annotated[AngleBetween, Field(gt=0)] = Field(
         default=0.05235987755982988,
         description="The largest rotation between the two; turns about the axis of a round object"
         " do not count [rad].",

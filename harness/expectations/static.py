@@ -9,9 +9,9 @@ from pydantic import Field
 
 from harness.assertions.expectation import Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
-from harness.assertions.poses import calm, physical_poses, present, speeds
+from harness.assertions.poses import STILL, calm, observed_for, physical_poses, present, speeds
 from harness.assertions.text import amount
-from harness.assertions.window import Window
+from harness.assertions.window import NotReached, Window
 from harness.cell.scope import At
 from harness.language.base import AngularVelocity, LinearVelocity, Name
 from harness.language.expectation import Quantity
@@ -27,7 +27,12 @@ JOINT_SPEED = Quantity(
 
 
 class Static(Predicate):
-    """The object, or everything, moves slower than a limit."""
+    """The object, or everything, moves slower than a limit.
+
+    It counts as still where it was slower for 50 ms: at the turning point of a swing it is slow for
+    a moment. Those 50 ms may begin before the step's window. Where less was recorded of an object
+    it is not judged, since what is let go in the air is slow at first.
+    """
 
     short = "object"
     quantities = (SPEED, TURNING, JOINT_SPEED)
@@ -50,14 +55,26 @@ class Static(Predicate):
             at.scope.check_object(self.object, at.key("object"), simulated=True)
 
     def signal(self, window: Window) -> MarginSignal:
-        """Speeds of an object; by default of every dynamic object and of the robot's joints."""
+        """Speeds of an object; by default of every dynamic object and of the robot's joints.
+
+        Judged where the speeds of `STILL` seconds before are recorded, in the window or before it.
+
+        Raises:
+            NotReached: They are not at any sample.
+        """
         run = window.run
+        here = np.ones(len(run.signals.times), dtype=bool)
+        if self.object is not None:
+            here = present(run, self.object)
+        judged = window.cut(observed_for(run, here, STILL))
+        if window.cut(here).any() and not judged.any():
+            raise NotReached(f"what stands still is known after {1000 * STILL:.0f} ms, not before")
         parts: list[Part] = []
         names = [self.object] if self.object is not None else _dynamic(run)
         for name in names:
             here = None if self.object is not None else window.cut(present(run, name))
             linear, angular = (
-                calm(window, window.cut(speed)) for speed in speeds(run, physical_poses(run, name))
+                window.cut(calm(run, speed)) for speed in speeds(run, physical_poses(run, name))
             )
             turning = self.max_angular_velocity
             parts += [
@@ -70,16 +87,16 @@ class Static(Predicate):
         def text(_: int, measure: Measure) -> str:
             return f"{measure.detail} moves with {amount(measure.value, measure.unit)}"
 
-        return all_of(window, parts, text)
+        return all_of(window, parts, text, applies=judged)
 
     def _of_joints(self, window: Window) -> list[Part]:
         parts: list[Part] = []
         for column, joint in enumerate(window.run.robot.joints):
-            speed = np.abs(window.cut(window.run.signals.joint_velocities)[:, column])
+            speed = np.abs(window.run.signals.joint_velocities[:, column])
             slides = joint.kind == "prismatic"
             limit = self.max_velocity if slides else self.max_angular_velocity
             unit = "m/s" if slides else "rad/s"
-            still = calm(window, speed)
+            still = window.cut(calm(window.run, speed))
             parts.append(
                 Part(JOINT_SPEED, still, limit, "<=", detail=joint.name, measured_unit=unit)
             )

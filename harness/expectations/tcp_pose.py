@@ -10,7 +10,7 @@ from pydantic import Field
 from harness.assertions.expectation import Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.observations import Observations
-from harness.assertions.poses import frame_poses, link_poses
+from harness.assertions.poses import frame_poses, frame_present, link_poses
 from harness.assertions.text import amounts
 from harness.assertions.window import Window
 from harness.cell.scope import At
@@ -85,4 +85,4 @@ class TcpPose(Predicate):
             )
             return f"{what} is off its target by {errors}"
 
-        return all_of(window, parts, text)
+        return all_of(window, parts, text, present=window.cut(frame_present(run, self.pose.frame)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -11,12 +12,12 @@ from pydantic import Field, model_validator
 from harness.assertions import temporal
 from harness.assertions.expectation import InnerPredicate, Predicate, TemporalWord
 from harness.assertions.margins import MarginSignal
-from harness.assertions.temporal import TooShort
+from harness.assertions.temporal import TIME_RESOLUTION, TooShort, longest_hold
 from harness.assertions.text import amount
-from harness.assertions.window import NotReached, Window, window_of
-from harness.assertions.words import one_step
+from harness.assertions.window import NotObservable, NotReached, Window, window_of
+from harness.assertions.words import ALREADY_TRUE, one_step
 from harness.core.types import FloatArray
-from harness.recording.run import Run, Verdict, VerdictStatus
+from harness.recording.run import Observed, Run, Verdict, VerdictStatus, VerdictWarning
 
 
 class Until(TemporalWord):
@@ -65,8 +66,51 @@ class Until(TemporalWord):
             )
         if is_open and not decision.holds:
             raise NotReached(window.cut_short)
+        if not decision.holds:
+            self._refuse_unknown((first, second), low, window, hold, within)
         margins = second if is_second else first
-        return self._worded(window, margins, decision, hold if is_second else None, is_second)
+        answer = self._worded(window, margins, decision, hold if is_second else None, is_second)
+        return replace(
+            answer,
+            observed=Observed(
+                int(np.sum(~(first.unknown() | second.unknown()))),
+                int(np.sum(first.unknown() | second.unknown())),
+            ),
+            warnings=self._came_at_once(low[1], window, hold) if decision.holds else (),
+        )
+
+    def _came_at_once(
+        self, second: FloatArray, window: Window, hold: float | None
+    ) -> tuple[VerdictWarning, ...]:
+        """A warning where the second holds from the first sample on: the first was not judged."""
+        held = longest_hold(second, window.times, is_first=True)
+        if second[0] < 0 or held < (hold or 0.0) - TIME_RESOLUTION:
+            return ()
+        message = (
+            f"`{self.until.word}` held at t={window.time(0):.3f} s, the first sample, so that"
+            f" `{self.predicate.word}` was judged at none"
+        )
+        return (VerdictWarning(ALREADY_TRUE, message),)
+
+    def _refuse_unknown(
+        self,
+        signals: tuple[MarginSignal, MarginSignal],
+        low: list[FloatArray],
+        window: Window,
+        hold: float | None,
+        within: float | None,
+    ) -> None:
+        """Refuse a verdict that unknown samples would turn round if they were favourable.
+
+        Raises:
+            NotObservable: They would.
+        """
+        unknown = [margins.unknown() for margins in signals]
+        best = [np.where(mask, np.inf, values) for mask, values in zip(unknown, low, strict=True)]
+        decision, _ = temporal.until(best[0], best[1], window.times, hold, within)
+        if decision.holds:
+            count = int((unknown[0] | unknown[1]).sum())
+            raise NotObservable(f"{count} samples are not known, and would decide it")
 
     def _worded(
         self,

@@ -12,7 +12,7 @@ from harness.assertions.poses import UP, physical_poses
 from harness.assertions.text import amount
 from harness.assertions.window import Window
 from harness.core.pose_arrays import angle_between, rotate
-from harness.language.base import Angle
+from harness.language.base import AngleBetween
 from harness.language.expectation import Quantity
 from harness.recording.run import Measure
 
@@ -24,7 +24,7 @@ class Upright(ObjectPredicate):
 
     quantities = (LEAN,)
 
-    tolerance: Annotated[Angle, Field(gt=0)] = Field(
+    tolerance: Annotated[AngleBetween, Field(gt=0)] = Field(
         default=0.1, description="The largest angle between its z axis and the vertical [rad]."
     )
 

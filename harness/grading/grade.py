@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from harness.assertions.judge import judge
+from harness.assertions.placed import PlacedExpectation
 from harness.grading.bag.content import BagTopics
-from harness.grading.bag.recorded_run import Recorded, run_of_bag
+from harness.grading.bag.recorded_run import DOUBT, Recorded, run_of_bag
 from harness.recording.run import Run, Verdict
 from harness.session.prepare import Prepared, prepare
 from harness.session.record import robot_record
@@ -24,11 +26,13 @@ class Graded:
     Attributes:
         points: The points that can be earned; 0 where only other rows have points.
         earned: The points that were earned.
+        withheld: The doubts about the recording for which points are withheld.
     """
 
     verdict: Verdict
     points: float
     earned: float
+    withheld: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -56,6 +60,12 @@ class Grade:
         return sum(row.earned for row in self.rows)
 
     @property
+    def withheld(self) -> float:
+        """Points of what the recording shows, and is doubtful."""
+        passed = (row for row in self.rows if row.withheld and row.verdict.status == "passed")
+        return sum(row.points for row in passed)
+
+    @property
     def open(self) -> float:
         """Points of what this recording cannot show: neither earned nor lost."""
         return sum(row.points for row in self.rows if row.verdict.status == "not observable")
@@ -66,6 +76,7 @@ def grade_bag(
     bag: Path,
     topics: BagTopics | None = None,
     overrides: Mapping[str, str] | None = None,
+    allowed: Collection[str] = (),
 ) -> Grade:
     """Judge a recording by the expectations of a scenario; nothing is planned or simulated.
 
@@ -74,6 +85,7 @@ def grade_bag(
         bag: A rosbag2 folder, an .mcap or a .db3 file.
         topics: Where joints and objects are in it.
         overrides: Dotted path in the file -> new value, as YAML text.
+        allowed: Doubts about the recording that withhold no points: `steps`, `frames`, ...
 
     Raises:
         SpecError: The scenario or the recording cannot be used.
@@ -93,9 +105,37 @@ def grade_bag(
     run = run_of_bag(bag, topics or BagTopics(), known)
     if prepared.observations.reads_distances:
         run = _with_distances(prepared, run)
-    verdicts = [_honest(verdict) for verdict in judge(run, prepared.expectations)]
     notes = tuple(finding.message for finding in run.findings)
-    return Grade(run, graded(verdicts), notes)
+    doubts = [
+        finding.values
+        for finding in run.findings
+        if finding.kind == DOUBT and finding.values["doubt"] not in allowed
+    ]
+    rows = [
+        _withheld(row, expectation, doubts)
+        for row, expectation in zip(
+            graded(judge(run, prepared.expectations)), prepared.expectations, strict=True
+        )
+    ]
+    return Grade(run, tuple(rows), notes)
+
+
+def _withheld(
+    row: Graded, expectation: PlacedExpectation, doubts: Sequence[Mapping[str, Any]]
+) -> Graded:
+    """A row without its points where a doubt concerns what it expects."""
+    spec = expectation.spec
+    is_of_step = bool(expectation.step) or any(
+        part.during for part in (spec, *spec.predicates().values())
+    )
+    kinds: list[str] = []
+    for doubt in doubts:
+        kind, names = doubt["doubt"], doubt["names"]
+        is_named = any(re.search(rf"(?<!\w){re.escape(name)}(?!\w)", row.verdict.expectation)
+                       for name in names)  # fmt: skip
+        if is_of_step if kind == "steps" else is_named or not names:
+            kinds.append(kind)
+    return replace(row, earned=0.0, withheld=tuple(dict.fromkeys(kinds))) if kinds else row
 
 
 def graded(verdicts: Sequence[Verdict]) -> tuple[Graded, ...]:
@@ -106,14 +146,6 @@ def graded(verdicts: Sequence[Verdict]) -> tuple[Graded, ...]:
         Graded(verdict, points, points if verdict.status == "passed" else 0.0)
         for verdict, points in zip(verdicts, worth, strict=True)
     )
-
-
-def _honest(verdict: Verdict) -> Verdict:
-    """A failure for a missing number alone is not an observation; a simulated run fails."""
-    if verdict.status != "failed" or math.isfinite(verdict.margin):
-        return verdict
-    reason = f"{verdict.reason}: the recording has a gap there"
-    return replace(verdict, status="not observable", reason=reason)
 
 
 def _steps(prepared: Prepared) -> dict[str, tuple[int, str]]:

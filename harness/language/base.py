@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, ClassVar, cast
 
 from pydantic import (
@@ -111,6 +112,8 @@ JointEffort = Annotated[float, BeforeValidator(quantity("N*m", "N"))]
 
 PositiveLength = Annotated[Length, Field(gt=0), AfterValidator(refuse_tiny)]
 NonNegativeLength = Annotated[Length, Field(ge=0)]
+AngleBetween = Annotated[Angle, Field(le=math.pi)]
+"""A tolerance of the angle between two directions or orientations, which is never beyond pi."""
 NonNegativeAngle = Annotated[Angle, Field(ge=0)]
 PositiveDuration = Annotated[Duration, Field(gt=0)]
 Fraction = Annotated[Share, Field(gt=0, le=1)]

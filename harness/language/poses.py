@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field, field_validator, model_validator
 
 from harness.language.base import (
+    AngleBetween,
     Name,
-    NonNegativeAngle,
     Number,
     PositiveLength,
     Quaternion,
@@ -114,6 +114,6 @@ class PoseTolerance(SpecModel):
     """The tolerance of a pose: MoveIt's goal tolerances."""
 
     position: PositiveLength = Field(default=1e-3, description="The radius around the target [m].")
-    orientation: NonNegativeAngle = Field(
+    orientation: Annotated[AngleBetween, Field(ge=0)] = Field(
         default=1e-2, description="The largest rotation about each axis [rad]."
     )

@@ -139,7 +139,10 @@ class ObjectSpec(SpecModel):
     One with `visuals` alone is seen and touches nothing.
     """
 
-    name: Name = Field(description="The name of the object, unique in the scene.")
+    name: Name = Field(
+        description="The name of the object, unique in the scene; not `robot`, `gripper`, `any`,"
+        " `tcp` or `world`."
+    )
     pose: Pose = Field(
         default=Pose(),
         description="The pose of the object at the start; its origin is its centre. `frame` "

@@ -18,13 +18,23 @@ from harness.observation.body_tracks import (
     relative_track,
     tracked_shapes,
 )
-from harness.observation.nearest import ShapePair, pairs_between, smallest_distances
+from harness.observation.nearest import (
+    ShapePair,
+    largest_travel,
+    pairs_between,
+    smallest_distances,
+)
 from harness.observation.sampled_clearance import (
+    LARGEST_ERROR,
     around_smallest,
     at_samples,
     between,
+    inside_of,
+    interpolated,
     knots,
+    largest_dip,
     nearest_measured,
+    parts_of,
 )
 from harness.planning.model.robot_model import RobotModel
 from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
@@ -41,6 +51,7 @@ class _Clearances:
     count: int
     distances: dict[tuple[str, str], FloatArray] = field(default_factory=dict)
     links: dict[tuple[str, str], IntArray] = field(default_factory=dict)
+    travels: dict[tuple[str, str], FloatArray] = field(default_factory=dict)
 
     def put(
         self,
@@ -48,8 +59,12 @@ class _Clearances:
         samples: BoolArray,
         distances: FloatArray,
         links: IntArray | None,
+        travel: FloatArray,
     ) -> None:
-        """Set a pair's distances at some samples; NaN elsewhere until set."""
+        """Set a pair's distances and travel at some samples; NaN or 0 elsewhere until set."""
+        if key not in self.travels:
+            self.travels[key] = np.zeros(self.count)
+        self.travels[key][samples] = travel
         if key not in self.distances:
             self.distances[key] = np.full(self.count, np.nan)
         self.distances[key][samples] = distances
@@ -72,8 +87,26 @@ class _Clearances:
             indices[old] = values
             indices[new] = finer.links.get(key, -1)
             self.links[key] = indices
+        follows = np.diff(near, prepend=-2) == 1  # the others' travel is since an earlier one
+        for key, values in self.travels.items():
+            travel = np.zeros(len(merged))
+            travel[old] = values
+            if key in finer.travels:
+                travel[new[follows]] = finer.travels[key][follows]
+            self.travels[key] = travel
         self.count = len(merged)
         return merged
+
+    def dips(self) -> dict[tuple[str, str], FloatArray]:
+        """By how much each distance may be smaller before the next sample than at both [m].
+
+        Two bodies that are d1 and d2 apart at the ends of an interval in which they move by s
+        against each other are at least (d1 + d2 - s) / 2 apart in it.
+        """
+        return {
+            key: np.nan_to_num((self.travels[key][1:] - np.abs(np.diff(values))) / 2)
+            for key, values in self.distances.items()
+        }
 
 
 class CoalClearance:
@@ -98,13 +131,17 @@ class CoalClearance:
             return replace(signals, clearance_cutoff=cutoff)
         samples = knots(signals.times, objects, attachments)
         found = self._measured(at_samples(signals, samples), objects, attachments, cutoff)
-        near = around_smallest(found.distances, samples, count)
+        near = np.union1d(
+            around_smallest(found.distances, samples, count),
+            inside_of(samples, largest_dip(found.dips()) > LARGEST_ERROR),
+        )
         if len(near):
             finer = self._measured(at_samples(signals, near), objects, attachments, cutoff)
             samples = found.refined(finer, samples, near)
         distances = {
             key: between(samples, values, count) for key, values in found.distances.items()
         }
+        self._look_between(distances, found, samples, signals, objects, attachments, cutoff)
         links = {
             key: nearest_measured(samples, values, distances[key], cutoff)
             for key, values in found.links.items()
@@ -112,6 +149,27 @@ class CoalClearance:
         return replace(
             signals, clearances=distances, clearance_links=links, clearance_cutoff=cutoff
         )
+
+    def _look_between(
+        self,
+        distances: Mapping[tuple[str, str], FloatArray],
+        found: _Clearances,
+        samples: IntArray,
+        signals: Signals,
+        objects: Sequence[ObjectRecord],
+        attachments: Sequence[AttachmentRecord],
+        cutoff: float,
+    ) -> None:
+        """Lower distances to the smallest before the next sample, where bodies are that fast."""
+        dips = largest_dip(found.dips())
+        fast = np.flatnonzero((dips > LARGEST_ERROR) & (np.diff(samples) == 1))
+        if not len(fast):
+            return
+        owners, shares = parts_of(samples[fast], dips[fast])
+        finer = self._measured(interpolated(signals, owners, shares), objects, attachments, cutoff)
+        for key, values in finer.distances.items():
+            absent = np.isnan(distances[key][owners])
+            np.fmin.at(distances[key], owners, np.where(absent, np.nan, values))
 
     def distances(
         self,
@@ -213,7 +271,8 @@ class CoalClearance:
                 pairs = pairs_between(shapes.get(name, ()), shapes[record.name], seen)
                 if pairs:
                     distances, _ = smallest_distances(pairs, cutoff)
-                    found.put((name, record.name), there, distances, None)
+                    moved = largest_travel(pairs)
+                    found.put((name, record.name), there, distances, None, moved)
 
     def _measure(
         self,
@@ -225,7 +284,7 @@ class CoalClearance:
     ) -> None:
         distances, which = smallest_distances(pairs, cutoff)
         of_pair = np.array([self._index[pair.first.body] for pair in pairs] + [-1])
-        found.put(key, there, distances, of_pair[which])
+        found.put(key, there, distances, of_pair[which], largest_travel(pairs))
 
     def _is_self_pair(self, first: str, second: str) -> bool:
         robot = self._robot

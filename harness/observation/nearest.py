@@ -58,6 +58,14 @@ def pairs_between(
     ]
 
 
+def largest_travel(pairs: Sequence[ShapePair]) -> FloatArray:
+    """The most that any of several pairs moves since the sample before [m], shape (N,)."""
+    moved = np.zeros(len(pairs[0].travel))
+    for pair in pairs:
+        moved[1:] = np.maximum(moved[1:], np.diff(pair.travel))
+    return moved
+
+
 def smallest_distances(pairs: Sequence[ShapePair], cutoff: float) -> tuple[FloatArray, IntArray]:
     """The smallest distance over the pairs at every sample, and which pair it was.
 

@@ -48,6 +48,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         help="run scenarios inside the pytest process, so that a debugger can attach",
     )
     group.addoption(
+        "--harness-strict",
+        action="store_true",
+        default=False,
+        help="fail scenarios where a verdict has a warning, such as `already true at the start`",
+    )
+    group.addoption(
         "--harness-plugin",
         metavar="MODULE",
         action="append",

@@ -77,9 +77,10 @@ def run_item(item: pytest.Item, header: ScenarioHeader, case: str, number: int) 
     if root is not None and not item.config.stash.get(CLEANED, False):
         item.config.stash[CLEANED] = True
         clean_report_folder(root)
+    request = SuiteRequest(report_root=root, strict=bool(item.config.getoption("--harness-strict")))
     plan = [
         each
-        for each in planned_cases([shown(item.path)], SuiteRequest(report_root=root))
+        for each in planned_cases([shown(item.path)], request)
         if case == (each.case.name if each.case.sample is None else each.case.group)
     ]
     sampling = Sampling(plan)
@@ -134,7 +135,7 @@ def _run(
     results: dict[int, CaseResult] = {}
     for index, result in arriving:
         results[index] = result
-        sampling.note(index, result.outcome)
+        sampling.note(index, result.outcome, result.digest)
     return results
 
 

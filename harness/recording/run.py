@@ -272,6 +272,40 @@ class Measure:
 
 
 @dataclass(frozen=True)
+class Observed:
+    """How much of a run a verdict is based on.
+
+    Attributes:
+        samples: Samples of the window at which the expectation applies and its value is known.
+        unknown: Samples at which it applies and its value is not known.
+        pairs: Pairs of bodies whose contact or distance it reads; None where it reads none.
+        premises: Samples at which the premise of a formula's implication holds, the least of its
+            implications; None without one.
+    """
+
+    samples: int
+    unknown: int = 0
+    pairs: int | None = None
+    premises: int | None = None
+
+
+@dataclass(frozen=True)
+class VerdictWarning:
+    """Why a verdict that passed shows less than it seems to.
+
+    Attributes:
+        name: One of a few fixed names: `already true at the start`, `premise never held`.
+        message: One sentence with the numbers.
+    """
+
+    name: str
+    message: str
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.message}"
+
+
+@dataclass(frozen=True)
 class Verdict:
     """The result of an expectation.
 
@@ -286,6 +320,8 @@ class Verdict:
         reason: One sentence with the numbers, for a failure why.
         measures: What was measured at the deciding sample.
         points: The points of a graded expectation.
+        observed: How much it is based on; None where nothing could be judged.
+        warnings: Why it shows less than it seems to; `--strict` turns them into failures.
     """
 
     expectation: str
@@ -298,6 +334,8 @@ class Verdict:
     reason: str = ""
     measures: tuple[Measure, ...] = ()
     points: float | None = None
+    observed: Observed | None = None
+    warnings: tuple[VerdictWarning, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -88,7 +88,7 @@ class CaseResult:
         page: The page in it; empty when none was written.
         problems: The problems of the file, when it is invalid; else what was predicted without
             physics.
-        message: Why, when the harness or a native library broke.
+        message: Why, when the harness or a native library broke; in a strict run the warnings.
         notes: Worth a line: no renderer, no meshes, nothing expected, an angle like 90 rad.
         overlap: Depth of the deepest pair of bodies that overlap at the start [m]; 0: none do.
         redraws: How often the sample was drawn again because objects overlapped.

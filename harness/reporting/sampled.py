@@ -37,6 +37,7 @@ class SuccessRate:
         redrawn: Samples that were drawn again because objects overlapped.
         redraws: How often, of all of them together.
         invalid: Samples that could not be run; they are not in `total`.
+        is_one_run: Whether all samples have one digest: they are one run, and show no rate.
     """
 
     passed: int
@@ -51,6 +52,7 @@ class SuccessRate:
     redrawn: int = 0
     redraws: int = 0
     invalid: int = 0
+    is_one_run: bool = False
 
 
 @dataclass(frozen=True)
@@ -104,10 +106,13 @@ def rate_text(name: str, rate: SuccessRate) -> str:
     line += f" ({rate.low:.1%} to {rate.high:.1%} at {rate.confidence:.0%} confidence)"
     if rate.invalid:
         line += f", {count} invalid and not counted"
+    if rate.is_one_run:
+        line += f"; the {rate.total} samples are one and the same run (equal digests): nothing that"
+        line += " `randomize` or the seed changes matters here, so they show no rate"
     if rate.at_least is None:
         is_shown = rate.verdict == "shown"
         line += "" if is_shown else "; every one must pass, as the file has no `expect_rate`"
-    else:
+    elif not rate.is_one_run:
         required = f"at least {rate.at_least:.1%}"
         line += {
             "shown": f": {required} is confirmed",

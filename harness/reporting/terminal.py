@@ -221,6 +221,15 @@ def verdict_failure(file: str, verdict: Verdict, source: Sequence[str] = ()) -> 
     return _joined(lines)
 
 
+def verdict_warnings(file: str, verdicts: Iterable[Verdict]) -> tuple[str, ...]:
+    """The place, expectation and text of every warning of a file's verdicts."""
+    return tuple(
+        f"{file}:{verdict.line}: {verdict.expectation}: warning: {warning}"
+        for verdict in verdicts
+        for warning in verdict.warnings
+    )
+
+
 def _excerpt(source: Sequence[str], number: int) -> list[str]:
     is_known = 0 < number <= len(source)
     return [f"{number:>5} | {source[number - 1].expandtabs(4)}"] if is_known else []

@@ -14,6 +14,7 @@ from harness.recording.digest import digest
 from harness.recording.run import Run
 from harness.recording.store import PAGE, StoredRun
 from harness.reporting.result import CaseResult, StepLine
+from harness.reporting.terminal import verdict_warnings
 from harness.session.observe import observed_run, with_distances
 from harness.session.prepare import Prepared
 from harness.session.progress import Notify, Progress
@@ -46,7 +47,8 @@ def run_case(request: RunRequest, notify: Notify = lambda _: None) -> CaseResult
         del start  # the simulator is the largest object, and the run holds its recording
         observe = partial(observed_run, request, prepared, executed, clock, progress.activity)
         run = observe(is_kept=folder is not None and not request.only_failed)
-        judged = _judged(run, prepared, clock, progress)
+        judged = _judged(request, run, prepared, clock, progress)
+        warned = verdict_warnings(str(request.file), judged.verdicts)
         if request.only_failed and judged.outcome == "passed":
             folder = None
         if folder is not None:
@@ -70,7 +72,8 @@ def run_case(request: RunRequest, notify: Notify = lambda _: None) -> CaseResult
         page=str(folder / PAGE) if folder is not None and request.page else "",
         steps=tuple(StepLine.of(step) for step in judged.run.steps),
         verdicts=judged.verdicts,
-        notes=(*_notes(prepared, overlaps), *notes),
+        message="\n".join(warned) if request.strict else "",
+        notes=(*warned, *_notes(prepared, overlaps), *notes),
         overlap=-overlaps[0].distance if overlaps else 0.0,
         redraws=draw,
         values=request.redraw.redrawn(draw).values if request.redraw is not None and draw else {},
@@ -100,11 +103,16 @@ def _executed(request: RunRequest, start: Start, clock: Clock, progress: Progres
     return executed_run(request, prepared, execution, signals, simulator.overlaps_at_start)
 
 
-def _judged(run: Run, prepared: Prepared, clock: Clock, progress: Progress) -> StoredRun:
+def _judged(
+    request: RunRequest, run: Run, prepared: Prepared, clock: Clock, progress: Progress
+) -> StoredRun:
+    """The run with its verdicts; a strict request fails with a warning."""
     progress.activity("judging")
     with clock.part("judge"):
         verdicts = judge(run, prepared.expectations)
     is_good = not run.ended_early and all(verdict.status == "passed" for verdict in verdicts)
+    if request.strict and verdict_warnings(str(request.file), verdicts):
+        is_good = False
     outcome, fingerprint = "passed" if is_good else "failed", digest(run, verdicts)
     judged = StoredRun(run, verdicts, outcome, fingerprint, clock.seconds)
     progress.judged(judged)

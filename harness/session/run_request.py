@@ -52,6 +52,7 @@ class RunRequest:
         only_failed: Whether a report is written only where the case does not pass.
         text: Content that is read in place of the file's; None reads the file.
         redraw: Draws the sample again while objects overlap at the start; None draws it once.
+        strict: Whether a warning of a verdict fails the case.
     """
 
     file: Path
@@ -66,3 +67,4 @@ class RunRequest:
     only_failed: bool = False
     text: str | None = None
     redraw: Redraw | None = None
+    strict: bool = False

@@ -100,6 +100,7 @@ def check_gripper_position(position: float | None, at: At) -> None:
     if position is None or hand is None:
         return
     joint = at.scope.description.joint_by_name[hand.joint]
+    at.scope.check_joint_unit(hand.joint, at.key("position"))
     if not joint.lower <= position <= joint.upper:
         at.scope.problems.add(
             at.key("position"),

@@ -34,6 +34,7 @@ class SuiteRequest:
         page: Whether to write the page of a report.
         bag: Whether to write a rosbag2.
         shard: The part of the suite to run; None runs the whole suite.
+        strict: Whether a warning of a verdict fails a case.
         reporters: Names of other reporters that write into the reports.
     """
 
@@ -47,6 +48,7 @@ class SuiteRequest:
     page: bool = True
     bag: bool = False
     shard: Shard | None = None
+    strict: bool = False
     reporters: Sequence[str] = ()
 
 
@@ -170,6 +172,7 @@ def _job(file: Path, case: Case, folder: Path | None, request: SuiteRequest) -> 
         case=case.name,
         only_failed=keep == "failed",
         redraw=fixed.redraw,
+        strict=request.strict,
     )
 
 

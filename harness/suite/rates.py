@@ -74,14 +74,21 @@ class Tally:
         self.passed, self.total = 0, 0
         self.is_decided = False
         self._at_least, self._confidence, self._stop_early = at_least, confidence, stop_early
+        self._digests: set[str] = set()
 
-    def add(self, is_good: bool) -> None:
-        """Count the next sample."""
+    @property
+    def is_one_run(self) -> bool:
+        """Whether several samples were one and the same run: nothing that matters varied."""
+        return self.total > 1 and len(self._digests) == 1 and "" not in self._digests
+
+    def add(self, is_good: bool, digest: str) -> None:
+        """Count the next sample; equal digests decide nothing, however many there are."""
         if self.is_decided:
             return
         self.passed += is_good
         self.total += 1
-        if self._at_least is not None and self._stop_early:
+        self._digests.add(digest)
+        if self._at_least is not None and self._stop_early and not self.is_one_run:
             verdict = decided(self.passed, self.total, self._at_least, self._confidence)
             self.is_decided = verdict != "open"
 
@@ -99,6 +106,8 @@ class Tally:
             verdict = "open"
         elif required is None:
             verdict = "shown" if passed == total else "refuted"
+        elif self.is_one_run:
+            verdict = "open"
         elif self.is_decided:
             verdict = decided(passed, total, required, self._confidence)
         elif low >= required:
@@ -107,5 +116,14 @@ class Tally:
             verdict = "refuted"
         early = self.is_decided and total < planned
         return SuccessRate(
-            passed, total, low, high, self._confidence, required, verdict, early, invalid=invalid
+            passed,
+            total,
+            low,
+            high,
+            self._confidence,
+            required,
+            verdict,
+            early,
+            invalid=invalid,
+            is_one_run=self.is_one_run,
         )

@@ -35,11 +35,11 @@ class Sampling:
                 self._places[index] = group, group.planned
                 group.planned += 1
 
-    def note(self, index: int, outcome: Outcome) -> None:
-        """Take in an outcome."""
+    def note(self, index: int, outcome: Outcome, digest: str) -> None:
+        """Take in an outcome, and the digest of the run; empty where nothing ran."""
         if index in self._places:
             group, place = self._places[index]
-            group.note(place, outcome)
+            group.note(place, outcome, digest)
 
     def is_needless(self, index: int) -> bool:
         """Whether a sample no longer counts, or would only repeat another sample's mistake."""
@@ -93,17 +93,17 @@ class _Group:
         self.has_required_rate = variation.at_least is not None
         stop_early = variation.stop_early and not is_part
         self.tally = Tally(variation.at_least, variation.confidence, stop_early=stop_early)
-        self._outcomes: dict[int, Outcome] = {}
+        self._outcomes: dict[int, tuple[Outcome, str]] = {}
         self._next = 0
         self.invalid = 0
 
-    def note(self, place: int, outcome: Outcome) -> None:
-        self._outcomes[place] = outcome
+    def note(self, place: int, outcome: Outcome, digest: str) -> None:
+        self._outcomes[place] = outcome, digest
         self.invalid += outcome == "invalid"
         while self._next in self._outcomes:
-            counted = self._outcomes[self._next]
+            counted, of_run = self._outcomes[self._next]
             if counted != "invalid":
-                self.tally.add(counted == "passed")
+                self.tally.add(counted == "passed", of_run)
             self._next += 1
 
     def is_needless(self, place: int) -> bool:

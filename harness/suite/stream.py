@@ -113,6 +113,7 @@ def _validator() -> TypeAdapter[CaseResult]:
 def fingerprint(job: RunRequest) -> str:
     """What a case's result follows from: file, files it names, values, seed, version."""
     said = [__version__, file_hash(job.file), job.case, str(job.seed), *_sorted(job.overrides)]
+    said += ["strict"] if job.strict else []
     return hashlib.sha256("\0".join(said).encode()).hexdigest()
 
 

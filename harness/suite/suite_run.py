@@ -51,6 +51,7 @@ class SuiteRun:
 
     Attributes:
         plan: Cases, in file order.
+        files: The scenario files that were found.
         jobs: Their runs: with repetitions, `repeat` of each case side by side.
         results: The results by index into `jobs`; of samples, those that count.
         resumed: How many results are from an earlier run.
@@ -59,8 +60,11 @@ class SuiteRun:
         unfinished: The last event of each run that has begun and not ended, by index into `jobs`.
     """
 
-    def __init__(self, plan: Sequence[PlannedCase], how: SuiteOptions) -> None:
+    def __init__(
+        self, plan: Sequence[PlannedCase], how: SuiteOptions, files: Sequence[Path] = ()
+    ) -> None:
         self.plan = plan
+        self.files = files
         self._repetitions = (
             Repetitions([each.job for each in plan], how.repeat) if how.repeat > 1 else None
         )
@@ -159,7 +163,7 @@ class SuiteRun:
         if self._repetitions is not None:
             result = self._repetitions.take(index, result)
         else:
-            self._sampling.note(index, result.outcome)
+            self._sampling.note(index, result.outcome, result.digest)
         self.results[index] = result
         return result
 
@@ -191,6 +195,13 @@ class SuiteRun:
             replace(group, rate=with_starts(group.rate, starts.get((group.file, group.group), [])))
             for group in self._sampling.groups()
         ]
+
+    @property
+    def files_text(self) -> str:
+        """How many files were found, have a selected case, and were run."""
+        collected = {each.job.file for each in self.plan}
+        ran = {self.jobs[index].file for index in self.results}
+        return f"{len(self.files)} files found, {len(collected)} collected, {len(ran)} run"
 
     def values(self, index: int) -> Mapping[str, Any]:
         """What varies in a run, as it was drawn at last."""

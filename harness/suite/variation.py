@@ -102,6 +102,8 @@ class Variation:
             seed=int(values.get("seed") or 0),
             redraw_overlaps=values.get("redraw_overlaps") is True,
         )
+        if not count_of(variation.parametrize):
+            raise ValueError("no case")
         list(itertools.islice(variation.cases(), 3))
         if count_of(variation.parametrize) > MOST_CASES or variation.count > MOST_SAMPLES:
             raise ValueError("more cases than a file may have")

@@ -150,7 +150,7 @@ OVERLAP_SCENES = (
         "links that overlap at their joints",
         "the boxes of neighbours overlap around each joint, by design, and nothing else does",
         _fold(0.5, 1.2, -0.8),
-        "shapes of an excluded pair overlap",
+        "shapes of an excluded pair overlap: too strict",
         lambda run: inside_base(run, "upper") and inside_upper(run, "lower"),
         (),
         (STRICT,),

@@ -6,29 +6,76 @@ import tempfile
 from pathlib import Path
 
 from harness.recording.store import read_run
+from harness.session.check import check_file
 from tests.adversarial.contact_scenes import CONTACT_SCENES
+from tests.adversarial.file_scenes import FILES
 from tests.adversarial.overlap_scenes import OVERLAP_SCENES
+from tests.adversarial.recording_scenes import RECORDINGS, graded_scene, recorded_run
 from tests.adversarial.scenes import SCENES, WEIGHTLESS
+from tests.adversarial.window_scenes import WINDOW_SCENES
 from tests.running import run_case
 
-EVERY = (*SCENES, *CONTACT_SCENES, *OVERLAP_SCENES)
+ALL_SCENES = (*SCENES, *CONTACT_SCENES, *OVERLAP_SCENES, *WINDOW_SCENES)
+
 PAGE = Path(__file__).parents[2] / "docs/reference/verdicts.md"
 RENEW = "python -m tests.adversarial.table"
 HEAD = """# Verdicts that cannot lie
 
-The test suite runs each of these scenes in the physics (`tests/adversarial`). The naive check is
-common in success functions, and it passes in every scene; the expectation, judged from the same
-recording, does not. The last column lists expectations that hold in the same run, so that no scene
-is simply rejected as a whole. A naive check marked as too strict raises a false alarm where the
-expectations pass. `python -m tests.adversarial.table` writes this page from the runs.
+The test suite runs each of these {count} scenes (`tests/adversarial`). The naive check is common in
+success functions, and it passes in every scene; the expectation, judged from the same recording,
+does not, or it passes with a warning that `--strict` turns into a failure. The last column lists
+expectations that hold in the same run, so that no scene is simply rejected as a whole, and for each
+rule there is a scene in which it must not fire. A naive check marked as too strict raises a false
+alarm where the expectations pass. `python -m tests.adversarial.table` writes this page from the
+runs.
+
+## Scenes in the physics
 
 | scene | naive check: passes | expectation: does not pass | holds |
 | --- | --- | --- | --- |
 """
+RECORDED = """
+## Recordings
+
+One run, as a student's recorder saw it in Gazebo, and what was done to the recording. Points that
+are withheld can be awarded with `harness grade --allow`.
+
+| recording | the naive check: passes | expectation: earns no points | earns its points |
+| --- | --- | --- | --- |
+"""
+WRITTEN = """
+## Files
+
+Every key of these files is known, and a check of the keys alone accepts them.
+
+| file | result |
+| --- | --- |
+"""
+LIMITS = """
+## What the verdicts do not claim
+
+- **Between two samples** (1 ms of physics) contacts are not looked for. Where an object moves by
+  more than its own and the other's least width in one, `never: in_contact` and `never: collision`
+  carry the warning `contact may be missed`. Distances are interpolated there, to within 2 mm.
+- **Resting** is slow motion, at most 5 mm/s and 0.05 rad/s for 50 ms, not a proof of equilibrium:
+  what creeps more slowly rests.
+- **`sees`** reads pictures. What a transparent body covers is hidden in the segmentation
+  too, although a person sees it through the body; nothing is refracted or mirrored.
+- **"Below" and "up"** are along the world's z axis. Under gravity in another direction `on`,
+  `placed`, `upright` and `lifted` keep that meaning.
+- **`on` on slopes**: forces are counted by their upward part; on a slope steeper than 45 degrees
+  less than half of the weight may be carried as normal force, and friction is not counted.
+- **Efforts** are those of the motors, which the simulation clamps at their limits: `effort` and
+  `within_limits` see that a motor reached its limit, not what it would have needed.
+- **Planner's beliefs** are not judged as facts: where an object of the planning scene alone stands
+  is not observable, but for distances, which are distances to the belief.
+- **A forged recording** is judged as it is: events, stamps and poses are what programs wrote.
+"""
 CORRUPTED = """
 Recordings can be wrong as well. `tests/assertions/test_mutations.py` traces the signals that each
 predicate reads; it shifts, freezes and drops each of them and fills it with NaN. No corrupted
-recording may pass (`pytest -m mutation`).
+recording may pass (`pytest -m mutation`). `tests/assertions/test_metamorphic.py` shifts, turns and
+renames the world; no verdict may change (`pytest -m metamorphic`).
 
 A second opinion comes from a slow and simple judge (`tests/second_opinion`) that shares no code
 with the verdicts: geometry and a balance of forces from MuJoCo's raw states, on random pick, push,
@@ -47,19 +94,58 @@ def run_scene(scene, folder):
         (folder / name).write_text(text)
     path = folder / "scene.scenario.yaml"
     path.write_text(scene.scenario("weightless.yaml"))
-    result = run_case(path, report_dir=folder / "report", stills=False)
-    expected = "failed" if scene.expect else "passed"
+    result = run_case(path, report_dir=folder / "report", stills=False, strict=True)
+    expected = "failed" if scene.expect or scene.warned else "passed"
     assert result.outcome == expected, (result.outcome, result.problems, result.message)
     return result, read_run(folder / "report").run
 
 
+def parts_of(scene, result):
+    """The verdicts that must be refuted, those with a warning, and those that hold."""
+    first, second = len(scene.expect), len(scene.expect) + len(scene.warned)
+    return result.verdicts[:first], result.verdicts[first:second], result.verdicts[second:]
+
+
 def row_of(scene, result):
     """A scene's line of the table."""
-    refuted, kept = result.verdicts[: len(scene.expect)], result.verdicts[len(scene.expect) :]
-    ours = "<br>".join(f"`{v.expectation}`: {v.status}: {v.reason}" for v in refuted)
+    refuted, warned, kept = parts_of(scene, result)
+    said = [f"`{v.expectation}`: {v.status}: {v.reason}" for v in refuted]
+    said += [f"`{v.expectation}`: warning, {v.warnings[0]}" for v in warned]
+    ours = "<br>".join(said) or "all of it passes"
     holds = "<br>".join(f"`{verdict.expectation}`" for verdict in kept)
-    naive = scene.naive if scene.expect else f"{scene.naive}: too strict"
-    return f"| **{scene.title}**: {scene.happens} | {naive} | {ours} | {holds} |"
+    return f"| **{scene.title}**: {scene.happens} | {scene.naive} | {ours} | {holds} |"
+
+
+def recording_row(scene, grade):
+    """A recording's line of the table."""
+    lost, kept = recording_parts(scene, grade)
+    said = "<br>".join(
+        f"`{row.verdict.expectation}`: {row.verdict.status}"
+        + (f", withheld: {row.withheld[0]}" if row.withheld else f": {row.verdict.reason}")
+        for row in lost
+    )
+    holds = "<br>".join(f"`{row.verdict.expectation}`" for row in kept)
+    ours = said or "all of it earns its points"
+    return f"| **{scene.title}**: {scene.happens} | {scene.naive} | {ours} | {holds} |"
+
+
+def recording_parts(scene, grade):
+    """The rows that must earn nothing, and those that must earn their points."""
+    return grade.rows[: len(scene.expect)], grade.rows[len(scene.expect) :]
+
+
+def file_row(scene, problems):
+    """A file's line of the table."""
+    line = scene.varied or (f"name: {scene.name}" if scene.name != "cube" else scene.expect)
+    said = problems[0].message if problems else "accepted"
+    return f"| **{scene.title}**: `{line}` | {said} |"
+
+
+def checked(scene, folder):
+    """The problems of a file."""
+    path = folder / "file.scenario.yaml"
+    path.write_text(scene.text())
+    return check_file(path).problems
 
 
 def without_numbers(text):
@@ -67,19 +153,27 @@ def without_numbers(text):
     return re.sub(r"-?\d+(\.\d+)?", "#", text)
 
 
-def page(rows):
+def page(rows, recordings, files):
     """The whole page."""
-    return HEAD + "\n".join(rows) + "\n" + CORRUPTED
+    count = len(rows) + len(recordings) + len(files)
+    tables = [HEAD.replace("{count}", str(count)), *(f"{row}\n" for row in rows), RECORDED]
+    tables += [*(f"{row}\n" for row in recordings), WRITTEN, *(f"{row}\n" for row in files)]
+    return "".join([*tables, LIMITS, CORRUPTED])
 
 
 def main():
     """Run every scene and write the page."""
-    rows = []
-    for scene in EVERY:
+    rows, recordings, files = [], [], []
+    for scene in ALL_SCENES:
         with tempfile.TemporaryDirectory() as folder:
             result, _ = run_scene(scene, Path(folder))
         rows.append(row_of(scene, result))
-    PAGE.write_text(page(rows), encoding="utf-8")
+    with tempfile.TemporaryDirectory() as folder:
+        run = recorded_run(Path(folder))
+        for scene in RECORDINGS:
+            recordings.append(recording_row(scene, graded_scene(scene, run, Path(folder))[1]))
+        files = [file_row(scene, checked(scene, Path(folder))) for scene in FILES]
+    PAGE.write_text(page(rows, recordings, files), encoding="utf-8")
 
 
 if __name__ == "__main__":

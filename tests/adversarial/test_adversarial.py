@@ -2,7 +2,22 @@
 
 import pytest
 
-from tests.adversarial.table import EVERY, PAGE, RENEW, page, row_of, run_scene, without_numbers
+from tests.adversarial.file_scenes import FILES
+from tests.adversarial.recording_scenes import RECORDINGS, graded_scene, recorded_run
+from tests.adversarial.table import (
+    ALL_SCENES,
+    PAGE,
+    RENEW,
+    checked,
+    file_row,
+    page,
+    parts_of,
+    recording_parts,
+    recording_row,
+    row_of,
+    run_scene,
+    without_numbers,
+)
 
 
 @pytest.fixture(scope="module")
@@ -18,19 +33,57 @@ def run_of(tmp_path_factory):
     return run
 
 
-@pytest.mark.parametrize("scene", EVERY, ids=lambda scene: scene.title)
+@pytest.mark.parametrize("scene", ALL_SCENES, ids=lambda scene: scene.title)
 def test_the_naive_check_is_fooled_and_the_harness_is_not(scene, run_of):
     result, run = run_of(scene)
     assert scene.truth(run), f"it is not so: {scene.happens}"
     assert scene.says(run), f"the naive check would not be fooled: {scene.naive}"
-    refuted, kept = result.verdicts[: len(scene.expect)], result.verdicts[len(scene.expect) :]
+    refuted, warned, kept = parts_of(scene, result)
     assert len(refuted) == len(scene.expect)
+    assert [verdict.status for verdict in warned] == ["passed"] * len(scene.warned), warned
+    assert all(verdict.warnings for verdict in warned), warned
+    assert not [verdict for verdict in kept if verdict.warnings], kept
     for verdict in refuted:
         assert verdict.status != "passed", verdict
         assert verdict.reason, verdict
     assert [verdict.status for verdict in kept] == ["passed"] * len(scene.stays), kept
 
 
-def test_the_page_of_verdicts_is_current(run_of):
-    said = page([row_of(scene, run_of(scene)[0]) for scene in EVERY])
+@pytest.fixture(scope="module")
+def grade_of(tmp_path_factory):
+    """Each damaged recording and its grade, graded once."""
+    folder, known = tmp_path_factory.mktemp("recordings"), {}
+
+    def grade(scene):
+        if scene.title not in known:
+            known[scene.title] = graded_scene(scene, recorded_run(folder), folder)
+        return known[scene.title]
+
+    return grade
+
+
+@pytest.mark.parametrize("scene", RECORDINGS, ids=lambda scene: scene.title)
+def test_a_recording_that_fools_the_naive_check_earns_no_points(scene, grade_of):
+    recording, grade = grade_of(scene)
+    assert scene.says(recording), f"the naive check would not be fooled: {scene.naive}"
+    lost, kept = recording_parts(scene, grade)
+    found = [row.withheld[0] if row.withheld else row.verdict.status for row in lost]
+    assert found == list(scene.expect.values()), lost
+    assert all(row.earned == 0 for row in lost)
+    assert all(row.earned == row.points > 0 for row in kept), kept
+
+
+@pytest.mark.parametrize("scene", FILES, ids=lambda scene: scene.title)
+def test_a_file_that_says_something_else_than_it_seems_is_refused(scene, tmp_path):
+    problems = checked(scene, tmp_path)
+    assert bool(problems) == bool(scene.says), problems
+    assert all(scene.says in problem.message for problem in problems)
+
+
+def test_the_page_of_verdicts_is_current(run_of, grade_of, tmp_path):
+    said = page(
+        [row_of(scene, run_of(scene)[0]) for scene in ALL_SCENES],
+        [recording_row(scene, grade_of(scene)[1]) for scene in RECORDINGS],
+        [file_row(scene, checked(scene, tmp_path)) for scene in FILES],
+    )
     assert without_numbers(PAGE.read_text(encoding="utf-8")) == without_numbers(said), RENEW

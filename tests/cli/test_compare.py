@@ -12,7 +12,7 @@ from harness.recording.run import Verdict
 from harness.recording.scenario_lines import MOST, line_changes
 from harness.recording.store import StoredRun
 from harness.reporting.comparison import comparison_lines
-from tests.assertions.synthetic_run import make_run
+from tests.assertions.synthetic_run import ROBOT, make_run
 from tests.running import run_case
 
 PICK = Path(__file__).parents[2] / "scenarios/lessons/04_ur_pick_by_friction.scenario.yaml"
@@ -119,3 +119,13 @@ def test_a_plain_number_has_no_unit(before, after, said):
     run = make_run()
     stored = [StoredRun(run, (each,), "passed", each.status, {}) for each in (before, after)]
     assert f"  {said}" in list(comparison_lines(compare(*stored)))
+
+
+def test_runs_of_different_robots_are_compared_by_their_names():
+    """Joints that one run has and the other has not are no reason to stop."""
+    other = replace(ROBOT, name="one_joint", joints=ROBOT.joints[:1], gripper=None)
+    stored = [StoredRun(run, (), "passed", run.robot.name, {})
+              for run in (make_run(), make_run(150, robot=other))]  # fmt: skip
+    comparison = compare(*stored)
+    assert not comparison.is_same
+    assert "  hand -> one_joint" in list(comparison_lines(comparison))

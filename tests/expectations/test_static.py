@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from harness.expectations.always import Always
+from harness.expectations.eventually import Eventually
+from harness.expectations.placed import Placed
 from harness.expectations.static import Static
-from tests.assertions.synthetic_run import BOX, DT, TABLE, at, changed, make_run, verdict
+from tests.assertions.synthetic_run import BOX, DT, TABLE, at, changed, make_run, step, verdict
 
 ABSENT = np.full((200, 7), np.nan)
 
@@ -30,3 +32,27 @@ def test_everything_stands_still_until_one_thing_moves():
     turning[:, 0] = 0.06
     assert "shoulder" in verdict(changed(run, joint_velocities=turning), Static()).reason
     assert verdict(absent_box(), Static(object="box")).status == "not reached"
+
+
+def thrown(apex):
+    """A box at its turning point at a time [s]: under 5 mm/s for one sample alone."""
+    seconds = np.arange(200) * DT - apex
+    return make_run(
+        object_poses={"box": at(200, np.outer(1.0 - 4.9 * seconds**2, (0, 0, 1)))},
+        steps=(step("top", 99, 103), step("first", 0, 3)),
+    )
+
+
+def test_a_window_that_begins_at_the_top_of_a_throw_does_not_cut_the_motion_before_it_off():
+    run = thrown(1.005)
+    assert verdict(run, Static(object="box", max_velocity=0.06), "top").status == "failed"
+    assert verdict(run, Placed(object="box", max_velocity=0.06), "top").status == "failed"
+    still = replace(make_run(), steps=run.steps)
+    assert verdict(still, Static(object="box"), "top").status == "passed"
+
+
+def test_what_was_seen_for_less_than_50_ms_is_not_known_to_stand_still():
+    run = thrown(0.005)  # let go in the air
+    assert verdict(run, Static(object="box", max_velocity=0.2), "first").status == "not reached"
+    assert verdict(run, Placed(object="box", max_velocity=0.2), "first").status == "not reached"
+    assert verdict(run, Eventually(predicate=Static(object="box"))).status == "failed"

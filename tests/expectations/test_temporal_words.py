@@ -1,16 +1,35 @@
 """always, never, eventually, `for` and `within`: what a window of samples says."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from harness.expectations.always import Always
+from harness.expectations.collision import Collision
+from harness.expectations.displaced import Displaced
 from harness.expectations.eventually import Eventually
+from harness.expectations.formula import Formula
+from harness.expectations.in_contact import InContact
 from harness.expectations.lifted import Lifted
 from harness.expectations.never import Never
 from harness.expectations.placed import Placed
+from harness.expectations.released import Released
 from harness.expectations.static import Static
+from harness.expectations.until import Until
+from harness.expectations.upright import Upright
 from harness.expectations.within_limits import WithinLimits
-from tests.assertions.synthetic_run import at, force, lift_run, make_run, step, verdict
+from tests.assertions.synthetic_run import (
+    BOX,
+    TABLE,
+    at,
+    force,
+    lift_run,
+    make_run,
+    step,
+    thing,
+    verdict,
+)
 
 STANDING = {("Table", "box"): force(200, (0, 200))}
 
@@ -71,10 +90,117 @@ def test_what_is_unknown_counts_against_every_word():
     velocities = np.zeros((200, 2))
     velocities[120] = np.nan
     run = make_run(joint_velocities=velocities, joint_commands=commands)
-    assert verdict(run, Always(predicate=WithinLimits())).status == "failed"
+    answer = verdict(run, Always(predicate=WithinLimits()))
+    assert answer.status == "not observable"
+    assert "1 samples from t=1.200 s" in answer.reason
     assert verdict(run, Never(predicate=WithinLimits(position=False))).status == "failed"
     gone = at(200, (0, 0, 0.02))
     gone[150:] = np.nan
-    removed = make_run(object_poses={"box": gone}, contact_forces=STANDING)
+    unknown = make_run(object_poses={"box": gone}, contact_forces=STANDING)
+    assert verdict(unknown, Placed(object="box")).status == "not observable"
+    removed = replace(unknown, objects=(TABLE, replace(BOX, present=((0.0, 1.49),))))
     assert verdict(removed, Placed(object="box")).status == "failed"
     assert verdict(removed, Eventually(predicate=Placed(object="box"))).status == "passed"
+
+
+def test_what_is_unknown_decides_nothing_that_the_known_samples_decide():
+    """A violation stands, whatever the unknown samples were; what came true has come true."""
+    poses = at(200, (0, 0, 0.02))
+    poses[50, 0] = np.nan
+    poses[120:, 0] += 0.05
+    run = make_run(object_poses={"box": poses})
+    spec = Displaced(object="box", at_least=0.02)
+    assert verdict(run, Never(predicate=spec)).status == "failed"
+    assert verdict(run, Eventually(predicate=spec)).status == "passed"
+    far = Displaced(object="box", at_least=0.2)
+    assert verdict(run, Eventually(predicate=far)).status == "not observable"
+    assert verdict(run, Never(predicate=far)).status == "not observable"
+
+
+ALREADY = "already true at the start"
+
+
+def warned(run, spec, during=""):
+    answer = verdict(run, spec, during)
+    assert answer.status == "passed", answer
+    return [warning.name for warning in answer.warnings]
+
+
+def test_what_comes_true_before_its_window_begins_is_reported():
+    run = lift_run()  # at 50 mm from 1.25 s on
+    up = Lifted(object="box", above=0.05)
+    late = replace(run, steps=(*run.steps, step("hold", 150, 200)))
+    assert warned(run, up) == warned(run, up, "lift") == []
+    assert warned(late, up, "hold") == [ALREADY]
+    assert warned(late, Eventually(predicate=up), "hold") == [ALREADY]
+    assert warned(late, Always(predicate=up), "hold") == []
+    held = Lifted(object="box", above=0.05, **{"for": 0.3})
+    assert warned(late, held, "hold") == [ALREADY]
+    assert warned(late, Displaced(object="box"), "hold") == [ALREADY]
+    assert warned(run, Displaced(object="box")) == []
+
+
+def test_what_stands_where_it_stood_was_not_placed():
+    run = make_run(contact_forces=STANDING)
+    assert warned(run, Placed(object="box")) == [ALREADY]
+    assert warned(run, Released(object="box")) == [ALREADY]
+    touch = {**STANDING, ("left_finger", "box"): force(200, (50, 60))}
+    touched = make_run(contact_forces=touch)
+    assert warned(touched, Placed(object="box")) == []
+    assert warned(touched, Released(object="box")) == []
+    poses = at(200, (0, 0, 0.02))
+    poses[50:, 0] += 0.1
+    pushed = make_run(contact_forces=STANDING, object_poses={"box": poses})
+    assert warned(pushed, Placed(object="box")) == []
+
+
+def test_an_until_that_comes_at_once_judges_nothing_before_it():
+    run = lift_run()
+    at_once = Until(predicate=Upright(object="box"), until=Released(object="box"))
+    later = Until(predicate=Upright(object="box"), until=Lifted(object="box"))
+    assert warned(run, at_once) == [ALREADY]
+    assert warned(run, later) == []
+
+
+@pytest.mark.parametrize(
+    ("formula", "names", "premises"),
+    [
+        ("always (z(box) > 1 implies tilt(box) < 0.1)", ["premise never held"], 0),
+        ("always (z(box) > 0.05 implies tilt(box) < 0.1)", [], 84),
+        ("always (z(box) > 0.05 implies (z(box) > 1 implies z(box) < 2))",
+         ["premise never held"], 0),
+        ("eventually z(box) > 0.01", [ALREADY], None),
+        ("eventually z(box) > 0.05", [], None),
+        ("(z(box) < 1) until z(box) > 0.01", [ALREADY], None),
+        ("(z(box) < 1) until z(box) > 0.05", [], None),
+        ("always z(box) > 0.01", [], None),
+    ],
+)  # fmt: skip
+def test_a_formula_says_how_often_its_premise_held(formula, names, premises):
+    answer = verdict(lift_run(), Formula(formula=formula))
+    assert answer.status == "passed"
+    assert [warning.name for warning in answer.warnings] == names
+    assert answer.observed.premises == premises
+    assert answer.observed.samples == 200
+
+
+def test_contact_with_what_is_not_in_the_physics_is_not_observable():
+    ghost = thing("ghost", physics=False)
+    late = replace(thing("late"), present=((1.0, 1e9),))
+    run = make_run(
+        objects=(TABLE, BOX, ghost, late), object_poses={"late": at(200, (1, 1, 1))},
+        steps=(step("early", 0, 50), step("edge", 0, 101)),
+    )  # fmt: skip
+    for spec in (InContact, Collision):
+        assert verdict(run, Never(predicate=spec(between=("ghost", "robot")))).status == (
+            "not observable"
+        )
+        never = Never(predicate=spec(between=("late", "robot")))
+        assert verdict(run, never, "early").status == "not reached"
+        assert warned(run, never, "edge") == ["hardly observed"]
+        assert warned(run, never) == []
+        assert verdict(run, never).observed.samples == 100
+        assert verdict(run, never).observed.pairs == 6
+    assert verdict(run, Formula(formula="always force(ghost, robot) < 1")).status == (
+        "not observable"
+    )

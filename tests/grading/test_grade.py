@@ -258,7 +258,7 @@ def test_a_gap_is_no_failure_and_no_success(recording, tmp_path):
     grade = grade_bag(file, bag, GAZEBO)
     [_, held, _, bare] = [row.verdict for row in grade.rows]
     assert held.status == "not observable"
-    assert held.reason.endswith("the recording has a gap there")
+    assert held.reason.endswith("are not known, and would decide it")
     assert bare.status == "passed"
     assert any("green_cylinder: no pose for" in note for note in grade.notes)
 
@@ -290,6 +290,134 @@ def test_a_student_can_record_when_steps_began(recording, tmp_path):
     assert run.steps[0].start_time == pytest.approx(4.0, abs=0.05)
     assert run.steps[0].end_time == pytest.approx(10.1, abs=0.05)
     assert run.steps[0].line > 1
+
+
+def test_points_for_steps_that_the_student_chose_are_withheld(recording, tmp_path, capsys):
+    for time, step in ((4.0, "hold"), (10.1, "place")):
+        content = {"data": json.dumps({"event": "step_started", "step": step})}
+        recording.add("/armharness/events", "std_msgs/msg/String", time, content)
+    bag = recording.write(tmp_path / "chosen.mcap")
+    file = tmp_path / "chosen.scenario.yaml"
+    text = SCENARIO.read_text()
+    file.write_text(text[: text.index("expect:\n  - eventually")] + (
+        "expect:\n  - {eventually: {upright: green_cylinder}, during: hold, points: 2}\n"
+        "  - {upright: green_cylinder, points: 3}\n"
+    ))  # fmt: skip
+    [*_, chosen, whole] = grade_bag(file, bag, GAZEBO).rows
+    assert (chosen.verdict.status, chosen.earned, chosen.withheld) == ("passed", 0, ("steps",))
+    assert (whole.earned, whole.withheld) == (3, ())
+    [*_, chosen, _] = grade_bag(file, bag, GAZEBO, allowed=["steps"]).rows
+    assert (chosen.earned, chosen.withheld) == (2, ())
+    words = ["grade", str(file), str(bag), "--objects", POSES]
+    main(words)
+    said = capsys.readouterr().out
+    assert "0*/2" in said
+    assert "2 of them are withheld: --allow steps" in said
+    main([*words, "--allow", "steps"])
+    assert "withheld" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("seconds", [(4.0, 6.0), (4.0, 4.4), (9.0, 9.3)])
+def test_nothing_is_interpolated_across_a_hole_in_the_joint_states(recording, tmp_path, seconds):
+    begin, end = (GAZEBO_STARTED + second for second in seconds)
+    recording.messages = [
+        m for m in recording.messages if m.topic != "/joint_states" or not begin < m.stamp < end
+    ]
+    file = tmp_path / "hole.scenario.yaml"
+    text = SCENARIO.read_text()
+    file.write_text(text[: text.index("expect:\n  - eventually")] + (
+        "expect:\n  - formula: always z(tcp) > 0\n"
+        "  - formula: always z(green_cylinder) > 0\n  - upright: green_cylinder\n"
+    ))  # fmt: skip
+    grade = grade_bag(file, recording.write(tmp_path / "hole.mcap"), GAZEBO)
+    [_, arm, cylinder, _] = [row.verdict for row in grade.rows]
+    assert arm.status == "not observable"
+    assert cylinder.status == "passed"
+    run = grade.run
+    inside = (run.signals.times > seconds[0] + 0.05) & (run.signals.times < seconds[1] - 0.05)
+    assert inside.sum() > 5
+    assert np.isnan(run.signals.tcp_pose[inside]).all()
+    assert not np.isnan(run.signals.object_poses["green_cylinder"][inside]).any()
+
+
+def test_a_few_lost_messages_are_no_hole(recording, tmp_path):
+    lost = (GAZEBO_STARTED + 4.0, GAZEBO_STARTED + 4.09)
+    recording.messages = [m for m in recording.messages if not lost[0] < m.stamp < lost[1]]
+    grade = grade_bag(SCENARIO, recording.write(tmp_path / "lost.mcap"), GAZEBO)
+    assert grade.notes == ()
+    assert grade.earned == grade.points
+
+
+def test_a_clock_that_jumps_ahead_leaves_an_hour_unknown(recording, tmp_path):
+    for message in recording.messages:
+        if message.stamp > GAZEBO_STARTED + 5:
+            message.stamp += 3600
+    grade = grade_bag(SCENARIO, recording.write(tmp_path / "jump.mcap"), GAZEBO)
+    assert any("has a gap that begins at t=5." in note for note in grade.notes)
+    assert status_of(grade, "within_limits") == "not observable"
+    assert status_of(grade, "named_target") == "passed"
+
+
+def test_two_programs_that_publish_the_same_joints_are_noticed(recording, stored, tmp_path):
+    columns = {joint.name: index for index, joint in enumerate(stored.run.robot.joints)}
+    arm = {name: columns[name] for name in stored.run.robot.arm_joints}
+    content = joint_state(stored.run.signals, 0, arm)
+    for time in np.arange(4.01, 8, 0.02):
+        recording.add("/joint_states", "sensor_msgs/msg/JointState", float(time), content)
+    bag = recording.write(tmp_path / "twice.mcap")
+    grade = grade_bag(SCENARIO, bag, GAZEBO)
+    assert any("two programs publish it" in note for note in grade.notes)
+    assert grade.earned == 0
+    assert grade_bag(SCENARIO, bag, GAZEBO, allowed=["publishers"]).withheld == 0
+
+
+def test_an_object_with_two_senders_costs_what_names_it(recording, tmp_path):
+    still = transform("", "green_cylinder", [0.3, 0.3, 1.2, 1, 0, 0, 0])
+    for time in np.arange(4.01, 8, 0.02):
+        recording.add(POSES, "tf2_msgs/msg/TFMessage", float(time), {"transforms": [still]})
+    grade = grade_bag(SCENARIO, recording.write(tmp_path / "ghost.mcap"), GAZEBO)
+    withheld = [row for row in grade.rows if row.withheld]
+    assert withheld
+    assert all("green_cylinder" in row.verdict.expectation for row in withheld)
+    assert 0 < grade.earned < grade.points
+
+
+@pytest.mark.parametrize(("late", "is_doubted"), [(0.5, True), (0.02, False)])
+def test_frames_that_contradict_the_joint_states_are_noticed(
+    recording, stored, tmp_path, late, is_doubted
+):
+    """A frame of a joint as it was half a second ago is no frame of now; 20 ms ago it may be."""
+    run = stored.run
+    (placement,) = [each for each in run.robot.placements if each.joint == "shoulder_pan_joint"]
+    poses = replayed_link_poses(
+        run.robot, run.signals.joint_positions, {placement.parent, placement.link}
+    )
+    parent, child = (
+        np.broadcast_to(poses[name], (len(run.signals.times), 7))
+        for name in (placement.parent, placement.link)
+    )
+    edges = relative(parent, child)
+    for time in np.arange(1.0, run.signals.times[-1], 0.02):
+        row = int(np.searchsorted(run.signals.times, time - late))
+        content = {"transforms": [transform(placement.parent, placement.link, edges[row])]}
+        recording.add("/tf", "tf2_msgs/msg/TFMessage", float(time), content)
+    grade = grade_bag(SCENARIO, recording.write(tmp_path / "late.mcap"), GAZEBO)
+    assert any("contradict each other" in note for note in grade.notes) == is_doubted
+    assert (grade.earned == grade.points) != is_doubted
+
+
+def test_a_frame_without_a_parent_costs_what_is_in_it(recording, tmp_path):
+    for message in recording.of(POSES):
+        for each in message.content["transforms"]:
+            if each["child_frame_id"] == "green_cylinder":
+                each["header"]["frame_id"] = "my_map"
+    bag = recording.write(tmp_path / "map.mcap")
+    grade = grade_bag(SCENARIO, bag, GAZEBO)
+    assert "frame 'my_map' has no parent; it counts as the world" in grade.notes
+    withheld = {row.verdict.expectation for row in grade.rows if row.withheld}
+    assert withheld
+    assert all("green_cylinder" in each for each in withheld)
+    assert grade_bag(SCENARIO, bag, GAZEBO, allowed=["frames"]).earned == 14
 
 
 @pytest.mark.parametrize("compression", list(CompressionType))

@@ -308,3 +308,11 @@ def test_in_an_action_of_github_a_session_annotates_and_sums_up(pytester, write,
     result.assert_outcomes(passed=1, failed=1)
     result.stdout.fnmatch_lines(["::error file=fails.scenario.yaml,line=8,title=Too short::*"])
     assert summary.read_text().startswith("## ❌ armharness: 1 of 2 passed")
+
+
+def test_a_warning_of_a_verdict_fails_a_strict_session(pytester, write):
+    write(holds=HOLDS + "  - eventually: {static: {}}\n")
+    run(pytester).assert_outcomes(passed=1)
+    result = run(pytester, "--harness-strict")
+    result.assert_outcomes(failed=1)
+    result.stdout.re_match_lines([".*warning: already true at the start.*"])

@@ -60,6 +60,25 @@ def test_a_rate_of_one_cannot_be_shown_and_is_refuted_by_one_failure():
     assert rate_of([True] * 9 + [False], 1.0, 0.95, stop_early=True).verdict == "refuted"
 
 
+@pytest.mark.parametrize("stop_early", [True, False])
+def test_samples_that_are_one_and_the_same_run_show_no_rate(stop_early):
+    same = rate_of([True] * 40, 0.5, 0.95, stop_early=stop_early, digests=["a"] * 40)
+    assert (same.verdict, same.total, same.is_one_run) == ("open", 40, True)
+    assert "one and the same run" in rate_line("x", same)
+    failed = rate_of([False] * 40, 0.5, 0.95, stop_early=stop_early, digests=["a"] * 40)
+    assert failed.verdict == "open"
+
+
+def test_samples_that_repeat_some_runs_show_a_rate():
+    """A choice of two values has two runs, and one sample is no repetition."""
+    two = rate_of([True] * 40, 0.5, 0.95, stop_early=False, digests=["a", "b"] * 20)
+    assert (two.verdict, two.is_one_run) == ("shown", False)
+    one = rate_of([True], 0.5, 0.95, stop_early=False, digests=["a"])
+    assert not one.is_one_run
+    broken = rate_of([False] * 3, 0.5, 0.95, stop_early=False, digests=["", "", ""])
+    assert not broken.is_one_run
+
+
 def test_samples_none_of_which_can_be_run_show_no_rate():
     rate = Tally(None, 0.95, stop_early=True).rate(3, invalid=2)
     assert (rate.verdict, rate.total) == ("open", 0)

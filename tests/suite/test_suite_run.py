@@ -121,6 +121,32 @@ def test_a_rate_that_cannot_be_shown_fails_and_says_what_to_do(varied):
     assert "at least 60.0% is not confirmed: take more samples, or require less" in done.stdout
 
 
+def test_samples_that_vary_nothing_are_reported_and_their_rate_is_refused(varied):
+    same = "samples: 3\nexpect_rate: {at_least: 0.1, stop_early: false}"
+    path = varied(VARIED.replace('wait: "${time}"', "wait: 0.1 s").replace("samples: 12", same))
+    done = harness("run", path, "--no-report", cwd=path.parent)
+    assert done.returncode == 1, done.stdout
+    assert "the 3 samples are one and the same run (equal digests)" in done.stdout
+    assert "success rates not confirmed" in done.stdout
+
+
+@pytest.mark.parametrize("line", ["parametrize: {seed: []}", "parametrize: {time: [], seed: [1]}"])
+def test_a_grid_without_values_is_an_error_of_its_file_in_a_suite(line, varied):
+    path = varied()
+    (path.parent / "none.scenario.yaml").write_text(VARIED.split("randomize")[0] + line + "\n")
+    done = harness("run", path.parent, "--no-report", "--samples", 1, cwd=path.parent)
+    assert done.returncode == 2
+    assert "takes a list of values in turn" in done.stdout
+    assert "2 files found, 2 collected, 2 run" in done.stdout
+
+
+def test_a_suite_reports_the_files_that_a_selection_left_out(varied):
+    path = varied()
+    (path.parent / "grid.scenario.yaml").write_text(GRID)
+    done = harness("run", path.parent, "--no-report", "--case", "0.05*", cwd=path.parent)
+    assert "2 files found, 1 collected, 1 run" in done.stdout
+
+
 def test_samples_of_what_has_none_are_refused_and_leave_files_next_to_sampled_ones_alone(varied):
     path = varied()
     plain = path.with_name("plain.scenario.yaml")

@@ -47,12 +47,12 @@ class Timeline:
         self._stamped = (stamps - self._origin) / 1e9
         self._has_log = bool(self._logged[-1] > 0)
 
-    def rows(self, track: RecordedTrack, name: str) -> tuple[FloatArray, BoolArray]:
+    def rows(self, track: RecordedTrack, name: str = "") -> tuple[FloatArray, BoolArray]:
         """Time of every row [s], and whether the row is in the judged part; shape (N,) each.
 
         Args:
             track: The track of any topic.
-            name: Name of the topic in notes.
+            name: Name of the topic in notes; empty where another call leaves the note.
         """
         logged, stamps = track.times()
         is_judged: BoolArray = np.ones(len(logged), dtype=bool)
@@ -67,7 +67,7 @@ class Timeline:
         apart = np.abs(own - by_log)[is_judged]
         if len(apart) and float(np.median(apart)) > SAME_CLOCK:
             note = f"{name} and the joint states have different clocks; the recorder's aligns them"
-            if note not in self.notes:
+            if name and note not in self.notes:
                 self.notes.append(note)
             return by_log, is_judged
         return own, is_judged

@@ -23,6 +23,7 @@ class Frames:
 
     Attributes:
         notes: The assumptions made about frames.
+        assumed: Frames that count as the world because they have no parent.
     """
 
     def __init__(
@@ -33,6 +34,7 @@ class Frames:
         times: FloatArray,
     ) -> None:
         self.notes: list[str] = []
+        self.assumed: dict[str, None] = {}
         self._links, self._timeline, self._times = links, timeline, times
         self._parents: dict[str, tuple[str, RecordedTrack]] = {}
         # topics that the user named have precedence
@@ -44,6 +46,14 @@ class Frames:
     def knows(self, frame: str) -> bool:
         """Whether the recording has a pose of a frame."""
         return frame in self._parents
+
+    def assumed_below(self, frame: str) -> str:
+        """The frame without a parent that a frame's pose is in; empty where there is none."""
+        passed: set[str] = set()
+        while frame in self._parents and frame not in passed and frame not in self._links:
+            passed.add(frame)
+            frame = self._parents[frame][0]
+        return frame if frame in self.assumed else ""
 
     def pose(self, frame: str) -> FloatArray:
         """T_world_frame, NaN where it is unknown, shape (N, 7)."""
@@ -58,9 +68,7 @@ class Frames:
             chain.append(track)
         root = self._links.get(frame)
         if root is None and frame != WORLD:
-            note = f"frame '{frame}' has no parent; it counts as the world"
-            if note not in self.notes:
-                self.notes.append(note)
+            self.assumed[frame] = None
         pose = np.broadcast_to(IDENTITY if root is None else root, (len(self._times), 7))
         for track in reversed(chain):
             pose = compose(pose, self._sampled(track))

@@ -11,7 +11,7 @@ from harness.core.pose_arrays import relative, rotation_vector
 from harness.core.types import FloatArray
 from harness.grading.bag.clocks import Timeline
 from harness.grading.bag.content import BagContent, RecordedTrack, Tracks
-from harness.grading.bag.sampling import rows_at
+from harness.grading.bag.sampling import gap_limit, rows_at, with_gaps_filled
 from harness.recording.run import LinkPlacement
 from harness.robot.description import RobotDescription
 
@@ -50,10 +50,20 @@ def reference_track(
     return None
 
 
-def sample_times(reference: RecordedTrack, timeline: Timeline) -> FloatArray:
-    """Times of the run's samples [s], rising, from 0."""
-    times, is_judged = timeline.rows(reference, "joint states")
-    return np.unique(times[is_judged])
+def sample_times(reference: RecordedTrack, content: BagContent, timeline: Timeline) -> FloatArray:
+    """Times of the run's samples [s], rising, from 0; in gaps too, where the joints are NaN.
+
+    A gap lasts to the end of the recording where the joints fall silent before other topics do.
+    """
+    times, is_judged = timeline.rows(reference)
+    found = np.unique(times[is_judged])
+    if len(found) < 2:
+        return found
+    others = [*content.joints.values(), *content.edges.values(), *content.objects.values()]
+    last = max(float(timeline.rows(track)[0].max()) for track in others)
+    whole = with_gaps_filled(np.append(found, last) if last > found[-1] else found)
+    is_silent = last - found[-1] > gap_limit(found)
+    return whole if is_silent else whole[whole <= found[-1]]
 
 
 def joint_rows(
@@ -66,7 +76,7 @@ def joint_rows(
     joints = description.movable_joints
     values = np.full((3, len(times), len(joints)), np.nan)
     for column, joint in enumerate(joints):
-        seconds, rows = _rows_of(joint.name, tracks, timeline, name)
+        seconds, rows = rows_of_joint(joint.name, tracks, timeline, name)
         for kind in range(3):
             known = ~np.isnan(rows[:, kind])
             if known.any():
@@ -81,7 +91,7 @@ def joint_rows(
     return JointRows(*values)
 
 
-def _rows_of(
+def rows_of_joint(
     joint: str, tracks: Tracks, timeline: Timeline, name: str
 ) -> tuple[FloatArray, FloatArray]:
     """Times and (position, velocity, effort) of a joint in all messages that name it."""

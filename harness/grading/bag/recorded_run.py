@@ -12,6 +12,7 @@ from harness.core.types import BoolArray, FloatArray
 from harness.core.world import WorldObject
 from harness.grading.bag.clocks import Timeline
 from harness.grading.bag.content import BagContent, BagTopics
+from harness.grading.bag.doubts import Doubt, publisher_doubts, tf_doubts
 from harness.grading.bag.events import (
     StepInterval,
     Timed,
@@ -38,6 +39,7 @@ from harness.recording.run import (
     RobotRecord,
     Run,
     Signals,
+    StepRecord,
 )
 from harness.robot.description import RobotDescription
 
@@ -52,7 +54,7 @@ JOINT_SIGNALS = (
     "joint_commands",
     "joint_command_velocities",
 )
-FINDING = "recording"
+FINDING, DOUBT = "recording", "doubt"
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +93,7 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
     if reference is None:
         raise _no_joints(path, topics, content, known)
     timeline = Timeline(reference)
-    times = sample_times(reference, timeline)
+    times = sample_times(reference, content, timeline)
     if len(times) < 2:
         raise bag_error(path, "has joints at a single time; at least two samples are needed")
     placements = {placement.link: placement for placement in known.robot.placements}
@@ -126,6 +128,13 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
         object_poses=poses,
     )
     steps, attachments = steps_of(events, times, known.steps), attachments_of(events)
+    doubts = [
+        *publisher_doubts(content, known.description, timeline, set(poses)),
+        *_frame_doubts(frames, list(poses)),
+        *_step_doubts(events, steps),
+    ]
+    if content.joints:
+        doubts += tf_doubts(content, placements, known.description, timeline, times, measured)
     notes = [
         *content.notes,
         *timeline.notes,
@@ -147,7 +156,13 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
         signals=signals,
         gravity=known.gravity,
         timestep=float(np.median(np.diff(times))),
-        findings=tuple(Finding(FINDING, note) for note in notes),
+        findings=(
+            *(Finding(FINDING, note) for note in notes),
+            *(
+                Finding(DOUBT, doubt.message, values={"doubt": doubt.kind, "names": doubt.names})
+                for doubt in doubts
+            ),
+        ),
         unrecorded=_unrecorded(signals, events, has_steps=bool(steps)),
     )
 
@@ -160,10 +175,34 @@ def _links_needed(known: Recorded, content: BagContent) -> set[str]:
     return {known.robot.tcp_link, *known.frames, *(carriers & robot)}
 
 
+def _frame_doubts(frames: Frames, objects: Sequence[str]) -> list[Doubt]:
+    names = {name: frames.assumed_below(name) for name in objects}
+    return [
+        Doubt(
+            "frames",
+            f"frame '{frame}' has no parent; it counts as the world",
+            tuple(name for name in objects if names[name] == frame),
+        )
+        for frame in frames.assumed
+    ]
+
+
+def _step_doubts(events: list[Timed], steps: Sequence[StepRecord]) -> list[Doubt]:
+    """Steps that the recorded program itself said had begun and ended."""
+    if not steps or _is_of_this_program(events):
+        return []
+    names = ", ".join(step.id for step in steps[:5])
+    return [Doubt("steps", f"the recorded program chose when these steps began: {names}")]
+
+
+def _is_of_this_program(events: list[Timed]) -> bool:
+    return any(event.get("event") == "run_started" for _, event in events)
+
+
 def _unrecorded(signals: Signals, events: list[Timed], *, has_steps: bool) -> tuple[str, ...]:
     """Signals that are missing; events of other programs than this one may have steps alone."""
     names = [name for name in JOINT_SIGNALS if np.isnan(getattr(signals, name)).all()]
-    if not any(event.get("event") == "run_started" for _, event in events):
+    if not _is_of_this_program(events):
         names += ["attachments"] if has_steps else ["attachments", "steps"]
     return (*names, *NEVER_THERE)
 

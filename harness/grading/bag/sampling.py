@@ -6,11 +6,41 @@ import numpy as np
 
 from harness.core.types import FloatArray
 
-LONGEST_GAP = 1.5
-"""Longest time between two messages, or beyond the first and last, over which a value is known [s].
+SHORTEST_GAP, LONGEST_GAP = 0.1, 1.5
+"""Bounds of the time between two messages, or beyond the first and last, that counts as a gap [s].
 
-A topic at 1 Hz has no gaps.
+A burst of lost messages is shorter than the first; a topic at 1 Hz has no gaps.
 """
+GAP_PERIODS = 10
+"""Between the bounds a gap is longer than so many of the topic's median periods."""
+
+
+def gap_limit(times: FloatArray) -> float:
+    """The longest time between two messages of a topic over which its value is known [s].
+
+    Args:
+        times: Rising times of its messages [s].
+    """
+    period = float(np.median(np.diff(times))) if len(times) > 1 else LONGEST_GAP
+    return float(np.clip(GAP_PERIODS * period, SHORTEST_GAP, LONGEST_GAP))
+
+
+def with_gaps_filled(times: FloatArray) -> FloatArray:
+    """Rising sample times with further ones inside each gap, at which nothing is known [s].
+
+    The first and last are a median period from the edges, and at most `MOST_FILLED` in a gap.
+    """
+    steps = np.diff(times)
+    period, limit = float(np.median(steps)), gap_limit(times)
+    inside: list[FloatArray] = []
+    for index in np.flatnonzero(steps > limit):
+        count = min(int(steps[index] / period), MOST_FILLED)
+        inside.append(np.linspace(times[index] + period, times[index + 1] - period, count))
+    return np.sort(np.concatenate([times, *inside]))
+
+
+MOST_FILLED = 1000
+"""Samples in a gap; more would say no more of an hour in which nothing was recorded."""
 
 
 def rows_at(times: FloatArray, rows: FloatArray, sample_times: FloatArray) -> FloatArray:
@@ -29,7 +59,8 @@ def rows_at(times: FloatArray, rows: FloatArray, sample_times: FloatArray) -> Fl
     share = np.where(span > 0, (sample_times - times[before]) / np.where(span > 0, span, 1.0), 0.0)
     found = rows[before] + share[:, None] * (rows[after] - rows[before])
     beyond = np.maximum(times[0] - sample_times, sample_times - times[-1])
-    return np.where(((span > LONGEST_GAP) | (beyond > LONGEST_GAP))[:, None], np.nan, found)
+    limit = gap_limit(times)
+    return np.where(((span > limit) | (beyond > limit))[:, None], np.nan, found)
 
 
 def interpolated_poses(

@@ -12,6 +12,7 @@ and, not. A number may carry a unit: `5 cm`, `90 deg`, `200 ms`.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -162,15 +163,77 @@ def constants_of(node: Node | Number) -> list[Const]:
             return [found for operand in node.operands for found in constants_of(operand)]
 
 
-def unit_of(node: Number) -> str | None:
-    """SI unit of a number: empty for a bare number, None where it is not known before a run."""
+def implications_of(node: Node) -> list[Logic]:
+    """Every `implies` of a formula, the outermost first."""
+    if isinstance(node, Comparison):
+        return []
+    here = [node] if isinstance(node, Logic) and node.operator == "implies" else []
+    return here + [found for operand in node.operands for found in implications_of(operand)]
+
+
+def text_of(node: Node) -> str:
+    """A formula as text, without its intervals."""
+    match node:
+        case Comparison(text=text):
+            return text
+        case Logic(operator=operator, operands=(inner,)):
+            return f"{operator} {text_of(inner)}"
+        case Temporal(operator=operator, operands=(inner,)):
+            return f"{operator} {text_of(inner)}"
+        case _:
+            first, second = node.operands
+            return f"({text_of(first)} {node.operator} {text_of(second)})"
+
+
+def unit_of(node: Number, joint_units: Mapping[str, str] | None = None) -> str | None:
+    """SI unit of a number: empty for a bare number, None where it is not known before a run.
+
+    Args:
+        node: The number or signal of a formula.
+        joint_units: The unit of each joint's position, where the robot is known.
+    """
     match node:
         case Const(unit=unit):
             return unit
-        case Signal(name=name):
-            return SIGNALS[name][1] or None
+        case Signal(name=name, arguments=arguments):
+            return SIGNALS[name][1] or _unit_of_joint(name, arguments[0], joint_units or {})
         case Arithmetic(operator="*" | "/" as sign, operands=(left, right)):
-            first, second = unit_of(left), unit_of(right)
+            first, second = unit_of(left, joint_units), unit_of(right, joint_units)
             return first if second == "" else second if sign == "*" and first == "" else None
         case Arithmetic(operands=operands):
-            return next((unit for each in operands if (unit := unit_of(each)) != ""), "")
+            units = (unit_of(each, joint_units) for each in operands)
+            return next((unit for unit in units if unit != ""), "")
+
+
+def _unit_of_joint(signal: str, joint: str, joint_units: Mapping[str, str]) -> str | None:
+    unit = joint_units.get(joint)
+    if unit is None:
+        return None
+    match signal:
+        case "velocity":
+            return f"{unit}/s"
+        case "effort":
+            return "N" if unit == "m" else "N m"
+        case _:
+            return unit
+
+
+def mixed_units(
+    node: Node | Number, joint_units: Mapping[str, str]
+) -> Iterator[tuple[int, str, str]]:
+    """Where a formula compares or adds numbers of two dimensions: start, and the two units."""
+    match node:
+        case Const() | Signal():
+            return
+        case Comparison(left=left, right=right):
+            operands: tuple[Node | Number, ...] = (left, right)
+            numbers: tuple[Number, ...] = (left, right)
+        case Arithmetic(operator=operator, operands=operands):
+            numbers = () if operator in "*/" else node.operands
+        case _:
+            operands, numbers = node.operands, ()
+    units = [unit for each in numbers if (unit := unit_of(each, joint_units))]
+    if len(set(units)) > 1:
+        yield node.start, units[0], units[1]
+    for operand in operands:
+        yield from mixed_units(operand, joint_units)

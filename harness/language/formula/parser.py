@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
 from harness.language.files.mistakes import did_you_mean
@@ -161,6 +162,7 @@ class _Parser:
                 self.token, "one comparison at a time", "join two with `and`: `1 < x and x < 2`"
             )
         _same_unit((left, right), operator)
+        _refuse_beyond_range(left, right, operator)
         end = self.tokens[self.place - 1]
         text = self.text[first.start : end.start + len(end.source)]
         return Comparison(left, sign, right, first.start, " ".join(text.split()))
@@ -282,6 +284,23 @@ def _same_unit(numbers: tuple[Number, ...] | list[Number], operator: Token) -> N
             f"`{operator.source}` joins {units[0]} and {units[1]}",
             "both sides must be of one kind",
         )  # fmt: skip
+
+
+def _refuse_beyond_range(left: Number, right: Number, operator: Token) -> None:
+    """Refuse to compare an angle between two directions with one that it never has.
+
+    Raises:
+        FormulaError: The comparison holds always, or never.
+    """
+    for signal, limit in ((left, right), (right, left)):
+        if isinstance(signal, Signal) and signal.name == "tilt" and isinstance(limit, Const):
+            if 0 <= limit.value <= math.pi:
+                continue
+            raise FormulaError(
+                operator.start, len(operator.source),
+                f"{signal} is between 0 and pi rad, never {limit.value:g} rad",
+                f"write `{limit.value:g} deg` for degrees",
+            )  # fmt: skip
 
 
 def _count(kinds: tuple[Kind, ...]) -> str:

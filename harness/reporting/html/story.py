@@ -89,6 +89,7 @@ def verdict_facts(verdict: Verdict) -> dict[str, Any]:
         "line": verdict.line,
         "step": verdict.step,
         "reason": verdict.reason,
+        "warnings": [str(warning) for warning in verdict.warnings],
         "measures": [finite(to_plain(measure)) for measure in verdict.measures],
         "plot": (first.plot or None) if first else None,
         "points": _points(verdict),

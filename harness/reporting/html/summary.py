@@ -105,7 +105,8 @@ def _verdicts(stored: StoredRun) -> str:
     def said(verdict: Verdict) -> str:
         """The line of the file that does not hold."""
         is_known = verdict.status != "passed" and 0 < verdict.line <= len(source)
-        return f"<code>{escape(source[verdict.line - 1].strip())}</code>" if is_known else ""
+        line = f"<code>{escape(source[verdict.line - 1].strip())}</code>" if is_known else ""
+        return line + "".join(f"<p>warning: {escape(str(each))}</p>" for each in verdict.warnings)
 
     rows = [
         _row(

@@ -32,6 +32,7 @@ function verdict(run, each, index, select) {
     element("b", {}, each.text),
     each.status !== "passed" && each.status !== "failed" && element("span.what", {}, each.status),
     each.status === "passed" ? null : element("span.reason", {}, each.reason),
+    ...each.warnings.map((warning) => element("span.reason", {}, `warning: ${warning}`)),
     ...each.measures.slice(0, each.status === "passed" ? 1 : WORST_SHOWN).map((measure) => measured(measure)),
     each.status === "passed" && !each.measures.length ? element("span.what", {}, each.reason) : null,
     marginBar(each),

@@ -1,0 +1,129 @@
+"""What makes a recording doubtful: values that contradict each other, and what was assumed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.grading.bag.clocks import Timeline
+from harness.grading.bag.content import BagContent, RecordedTrack, Tracks
+from harness.grading.bag.joints import JointRows, joints_of_frames, rows_of_joint
+from harness.recording.run import LinkPlacement
+from harness.robot.description import RobotDescription
+
+DoubtKind = Literal["publishers", "tf", "frames", "steps"]
+
+FEWEST_JUMPS = 3
+"""Jumps there and back from which on a topic has two publishers; one is a wrong message."""
+FASTEST = 3.0
+"""A joint that moves faster than this multiple of its velocity limit jumps."""
+FASTEST_OBJECT = 5.0
+"""And an object above this speed [m/s]."""
+SLACK = {"revolute": 0.02, "prismatic": 0.002}
+"""What noise and rounding may add [rad or m]."""
+OBJECT_SLACK = 0.02  # [m]
+APART = {"revolute": 0.1, "prismatic": 0.01}
+"""Difference between a joint and its frame in /tf that no delay of a message explains [rad or m]:
+20 ms at 5 rad/s or 0.5 m/s."""
+FEWEST_APART = 0.02
+"""Share of the samples that differ by more, from which on the two contradict each other."""
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """Why points for what a recording shows are withheld, unless the grader allows it.
+
+    Attributes:
+        kind: The word that `--allow` takes.
+        message: What was found, and where.
+        names: Objects that it concerns; empty where it concerns everything, or steps.
+    """
+
+    kind: DoubtKind
+    message: str
+    names: tuple[str, ...] = ()
+
+
+def publisher_doubts(
+    content: BagContent, description: RobotDescription, timeline: Timeline, objects: set[str]
+) -> Iterator[Doubt]:
+    """Joints and objects whose messages jump there and back, as those of two publishers do."""
+    for joint in description.movable_joints:
+        seconds, rows = rows_of_joint(joint.name, content.joints, timeline, "")
+        slides = joint.kind == "prismatic"
+        limit = joint.velocity if np.isfinite(joint.velocity) else 2 * np.pi
+        slack = SLACK["prismatic" if slides else "revolute"]
+        first = _first_jump(seconds, rows[:, :1], FASTEST * limit, slack)
+        if first is not None:
+            yield Doubt("publishers", f"{joint.name} {_two_values(first)}")
+    for edges in (content.edges, content.objects):
+        for (_, child), track in sorted(edges.items()):
+            first = _first_jump_of_track(track, timeline)
+            if child in objects and first is not None:
+                yield Doubt("publishers", f"{child} {_two_values(first)}", (child,))
+        yield from _doubts_about_parents(edges, objects)
+
+
+def _two_values(time: float) -> str:
+    return f"jumps between two values from t={time:.3f} s on: two programs publish it"
+
+
+def _first_jump_of_track(track: RecordedTrack, timeline: Timeline) -> float | None:
+    seconds, is_judged = timeline.rows(track)
+    places = track.rows()[is_judged, :3]
+    return _first_jump(seconds[is_judged], places, FASTEST_OBJECT, OBJECT_SLACK)
+
+
+def _first_jump(
+    times: FloatArray, values: FloatArray, fastest: float, slack: float
+) -> float | None:
+    """Time of the first of several jumps there and back; None where there are too few [s].
+
+    Args:
+        times: The times of the messages [s], shape (N,), in any order.
+        values: The values of the messages, shape (N, k).
+        fastest: Speed that is no jump.
+        slack: Distance that is no jump at any speed.
+    """
+    order = np.argsort(times, kind="stable")
+    times, steps = times[order], np.diff(values[order], axis=0)
+    jumps = np.linalg.norm(steps, axis=1) > slack + fastest * np.diff(times)
+    back = np.sum(steps[1:] * steps[:-1], axis=1) < 0
+    places = np.flatnonzero(jumps[1:] & jumps[:-1] & back)
+    return float(times[places[0] + 1]) if len(places) >= FEWEST_JUMPS else None
+
+
+def _doubts_about_parents(edges: Tracks, objects: set[str]) -> Iterator[Doubt]:
+    parents: dict[str, list[str]] = {}
+    for parent, child in edges:
+        parents.setdefault(child, []).append(parent)
+    for child, several in sorted(parents.items()):
+        if child in objects and len(several) > 1:
+            said = f"{child} has poses in {' and in '.join(sorted(several))}: two programs say so"
+            yield Doubt("publishers", said, (child,))
+
+
+def tf_doubts(
+    content: BagContent,
+    placements: Mapping[str, LinkPlacement],
+    description: RobotDescription,
+    timeline: Timeline,
+    times: FloatArray,
+    measured: JointRows,
+) -> Iterator[Doubt]:
+    """Joints whose frames in /tf stand elsewhere than the joint states say."""
+    shown = joints_of_frames(content, placements, description, timeline, times).positions
+    for column, joint in enumerate(description.movable_joints):
+        apart = shown[:, column] - measured.positions[:, column]
+        slides = joint.kind == "prismatic"
+        apart = apart if slides else (apart + np.pi) % (2 * np.pi) - np.pi
+        known = np.isfinite(apart)
+        far = known & (np.abs(apart) > APART["prismatic" if slides else "revolute"])
+        if far.any() and far.sum() > FEWEST_APART * known.sum():
+            time = float(times[int(np.argmax(far))])
+            said = f"/tf and the joint states contradict each other about {joint.name}"
+            yield Doubt("tf", f"{said} at {int(far.sum())} samples, first at t={time:.3f} s")

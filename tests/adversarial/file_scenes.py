@@ -1,0 +1,63 @@
+"""Scenario files that say something else than they seem to: refused before anything moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+FILE = """scenario: a file
+robot: {model: open_manipulator_x, base: {xyz: [0, 0, 0.01]}}
+world: empty
+params: {time: 0.1 s}
+objects:
+  - {name: NAME, box: {size: [0.04, 0.04, 0.04]}, pose: {xyz: [0.3, -0.2, 0.02]}}
+steps:
+  - wait: "${time}"
+expect:
+  - EXPECT
+"""
+
+
+@dataclass(frozen=True)
+class FileScene:
+    """A file.
+
+    Attributes:
+        title: What it is.
+        says: Part of our message; empty where the file is as it should be.
+        name: Of its object.
+        expect: Its expectation.
+        varied: Its variation.
+    """
+
+    title: str
+    says: str = ""
+    name: str = "cube"
+    expect: str = "static: {}"
+    varied: str = ""
+
+    def text(self):
+        """The file."""
+        text = FILE.replace("NAME", self.name).replace("EXPECT", self.expect)
+        return text + (f"{self.varied}\n" if self.varied else "")
+
+
+FILES = (
+    FileScene("grid over a parameter that nothing reads", "no parameter is called `tiem`",
+              varied="parametrize: {params.tiem: [0.1 s, 0.2 s]}"),
+    FileScene("random parameter that nothing reads", "no parameter is called `tiem`",
+              varied="randomize: {params.tiem: {uniform: [0.1 s, 0.2 s]}}"),
+    FileScene("grid without values", "takes a list of values in turn",
+              varied="parametrize: {seed: []}"),
+    FileScene("grid over a parameter that a step reads",
+              varied="parametrize: {params.time: [0.1 s, 0.2 s]}"),
+    FileScene("object called `any`", "is a word of expectations", name="any",
+              expect="never: {in_contact: {between: [robot, any]}}"),
+    FileScene("length for a joint that turns", "is a length; an angle is expected",
+              expect="joints: {positions: {joint1: 5 cm}}"),
+    FileScene("degrees without a unit", "is between 0 and pi rad",
+              expect="formula: always tilt(cube) < 90"),
+    FileScene("tolerance of 5 rad", "must be at most 3.14159",
+              expect="upright: {object: cube, tolerance: 5}"),
+    FileScene("angles and lengths where they belong",
+              expect="joints: {positions: {joint1: 5 deg, gripper_left_joint: 5 mm}}"),
+)  # fmt: skip

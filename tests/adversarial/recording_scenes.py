@@ -1,0 +1,244 @@
+"""Recordings that lie: one run as a student's recorder saw it, and what was done to it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from harness.core.pose_arrays import relative
+from harness.grading.bag.content import BagTopics
+from harness.grading.grade import grade_bag
+from harness.recording.link_poses import replayed_link_poses
+from harness.recording.store import read_run
+from tests.grading.recordings import (
+    GAZEBO_STARTED,
+    POSES,
+    Recording,
+    joint_state,
+    students_recording,
+    transform,
+)
+from tests.running import run_case
+
+SCENARIO = """
+scenario: an arm turns next to a box
+robot: {model: open_manipulator_x, base: {xyz: [0, 0, 0.01]}}
+world: empty
+objects:
+  - {name: red_box, box: {size: [0.04, 0.04, 0.04]}, pose: {xyz: [0.3, -0.2, 0.0199]}}
+steps:
+  - {wait: 1 s, id: before}
+  - {move_to: {joints: {joint1: 0.6, joint2: 0, joint3: 0, joint4: 0}}, id: swing}
+  - {wait: 2 s, id: after}
+expect:
+"""
+GAZEBO = BagTopics(objects=(POSES,))
+ARRIVED = "joints: {positions: {joint1: 0.6}}"
+ALWAYS_LOW = "formula: always abs(position(joint1)) < 1"
+BOX_STANDS = "always: {upright: red_box}"
+
+
+def arm_positions(recording, name="joint1"):
+    """Every recorded position of a joint, in the order of the messages."""
+    states = (message.content for message in recording.of("/joint_states"))
+    return [s["position"][s["name"].index(name)] for s in states if name in s["name"]]
+
+
+def box_poses(recording):
+    """Every recorded place of the box."""
+    moved = [m.content["transforms"] for m in recording.of(POSES)]
+    return [each["transform"]["translation"]["z"] for rows in moved for each in rows]
+
+
+def without(topic, first, last, names=()):
+    """Drop the messages of a topic between two times; only those that name something."""
+
+    def change(recording, _run):
+        def is_kept(message):
+            inside = first < message.stamp - GAZEBO_STARTED < last
+            is_named = not names or set(names) & set(message.content.get("name", ()))
+            return message.topic != topic or not (inside and is_named)
+
+        return Recording([message for message in recording.messages if is_kept(message)])
+
+    return change
+
+
+def jumped(recording, _run):
+    """The clock is set an hour ahead after 1.5 s."""
+    for message in recording.messages:
+        if message.stamp - GAZEBO_STARTED > 1.5:
+            message.stamp += 3600
+    return recording
+
+
+def second_publisher(recording, run):
+    """A forgotten node goes on publishing the joints as they were at the start."""
+    columns = {joint.name: index for index, joint in enumerate(run.robot.joints)}
+    arm = {name: columns[name] for name in run.robot.arm_joints}
+    end = float(run.signals.times[-1])
+    still = joint_state(run.signals, 0, arm)
+    for time in np.arange(0.51, end - 0.1, 0.02):
+        recording.add("/joint_states", "sensor_msgs/msg/JointState", float(time), still)
+    return recording
+
+
+def second_box(recording, run):
+    """Two programs publish the box at two places."""
+    end = float(run.signals.times[-1])
+    there = transform("", "red_box", [0.3, 0.2, 0.02, 1, 0, 0, 0])
+    for time in np.arange(1.01, end - 0.1, 0.02):
+        recording.add(POSES, "tf2_msgs/msg/TFMessage", float(time), {"transforms": [there]})
+    return recording
+
+
+def frames_of(late):
+    """/tf shows the first joint as it was some seconds ago."""
+
+    def change(recording, run):
+        [placement] = [each for each in run.robot.placements if each.joint == "joint1"]
+        names = {placement.parent, placement.link}
+        poses = replayed_link_poses(run.robot, run.signals.joint_positions, names)
+        count, end = len(run.signals.times), float(run.signals.times[-1])
+        parent, child = (
+            np.broadcast_to(poses[name], (count, 7)) for name in (placement.parent, placement.link)
+        )
+        edges = relative(parent, child)
+        for time in np.arange(0.6, end, 0.02):
+            row = int(np.searchsorted(run.signals.times, time - late))
+            content = {"transforms": [transform(placement.parent, placement.link, edges[row])]}
+            recording.add("/tf", "tf2_msgs/msg/TFMessage", float(time), content)
+        return recording
+
+    return change
+
+
+def in_map(recording, _run):
+    """The box's poses are in a frame that nothing connects to the world."""
+    for message in recording.of(POSES):
+        for each in message.content["transforms"]:
+            each["header"]["frame_id"] = "my_map"
+    return recording
+
+
+def chosen_steps(recording, run):
+    """The student's node says that the swing began when the arm was there."""
+    end = float(run.signals.times[-1])
+    for time, step in ((0.1, "before"), (end - 1, "swing")):
+        content = {"data": json.dumps({"event": "step_started", "step": step})}
+        recording.add("/armharness/events", "std_msgs/msg/String", time, content)
+    return recording
+
+
+@dataclass(frozen=True)
+class RecordingScene:
+    """A damaged recording.
+
+    Attributes:
+        title: What the recording is.
+        happens: What was done to it.
+        change: Makes it from a whole recording and the run.
+        naive: The check as it is often written, in words.
+        says: The naive check, on the recording.
+        expect: Expectation -> `not observable`, or the doubt that withholds its points.
+        stays: Expectations that earn their points.
+    """
+
+    title: str
+    happens: str
+    change: Callable
+    naive: str
+    says: Callable
+    expect: dict[str, str]
+    stays: tuple[str, ...] = ()
+
+
+IN_RANGE = "every recorded position of the joint is in range"
+
+
+def in_range(recording):
+    return all(abs(position) < 1 for position in arm_positions(recording))
+
+
+RECORDINGS = (
+    RecordingScene(
+        "hole of 0.6 s in the joint states", "the messages of the swing are missing",
+        without("/joint_states", 1.1, 1.7), IN_RANGE, in_range,
+        {ALWAYS_LOW: "not observable"}, (ARRIVED, BOX_STANDS),
+    ),
+    RecordingScene(
+        "hole of 2 s in the poses of the box", "its topic is silent for two seconds",
+        without(POSES, 1.0, 3.0), "every recorded pose is upright",
+        lambda recording: len(box_poses(recording)) > 10,
+        {BOX_STANDS: "not observable"}, (ARRIVED, ALWAYS_LOW, "upright: red_box"),
+    ),
+    RecordingScene(
+        "clock that jumps an hour ahead", "all stamps after 1.5 s are an hour later", jumped,
+        IN_RANGE, in_range,
+        {ALWAYS_LOW: "not observable", BOX_STANDS: "not observable"}, (ARRIVED,),
+    ),
+    RecordingScene(
+        "joint states that fall silent", "the last second has poses of the box alone",
+        without("/joint_states", 2.5, 1e9), "the last message shows the joint at its goal",
+        lambda recording: abs(arm_positions(recording)[-1] - 0.6) < 0.05,
+        {ARRIVED: "not observable", ALWAYS_LOW: "not observable"}, (BOX_STANDS,),
+    ),
+    RecordingScene(
+        "two publishers of the joint states",
+        "a forgotten node publishes the joints as they were at the start", second_publisher,
+        IN_RANGE, in_range, {ALWAYS_LOW: "publishers", BOX_STANDS: "publishers"},
+    ),
+    RecordingScene(
+        "two publishers of the box", "every other pose puts it 40 cm away", second_box,
+        "every recorded pose is upright", lambda recording: len(box_poses(recording)) > 10,
+        {BOX_STANDS: "publishers"}, (ARRIVED, ALWAYS_LOW),
+    ),
+    RecordingScene(
+        "/tf that contradicts the joint states", "/tf shows the arm as it was half a second ago",
+        frames_of(0.5), IN_RANGE, in_range, {ALWAYS_LOW: "tf", ARRIVED: "tf"},
+    ),
+    RecordingScene(
+        "/tf that is 20 ms late", "as a publisher of frames is", frames_of(0.02),
+        IN_RANGE, in_range, {}, (ALWAYS_LOW, ARRIVED, BOX_STANDS),
+    ),
+    RecordingScene(
+        "poses in a frame of nowhere", "the box's poses are in `my_map`, which has no parent",
+        in_map, "every recorded pose is upright",
+        lambda recording: len(box_poses(recording)) > 10,
+        {BOX_STANDS: "frames"}, (ARRIVED, ALWAYS_LOW),
+    ),
+    RecordingScene(
+        "steps that the student chose", "the recorded node says that the swing began at its end",
+        chosen_steps, "during the step that it names the joint stays at its goal",
+        lambda recording: abs(arm_positions(recording)[-1] - 0.6) < 0.05,
+        {f"{{always: {{{ARRIVED}}}, during: swing}}": "steps"}, (ARRIVED, BOX_STANDS),
+    ),
+    RecordingScene(
+        "four lost messages", "80 ms of joint states are missing: less than ten periods",
+        without("/joint_states", 1.2, 1.28), IN_RANGE, in_range,
+        {}, (ALWAYS_LOW, ARRIVED, BOX_STANDS),
+    ),
+)  # fmt: skip
+
+
+@cache
+def recorded_run(folder):
+    """The run that all recordings are made of, and its scenario."""
+    path = folder / "recorded.scenario.yaml"
+    path.write_text(SCENARIO + f"  - {ARRIVED}\n")
+    result = run_case(path, report_dir=folder / "report", stills=False, page=False)
+    assert result.outcome == "passed", (result.problems, result.message)
+    return read_run(folder / "report").run
+
+
+def graded_scene(scene, run, folder):
+    """The recording and its grade: the rows that must not earn, then those that must."""
+    recording = scene.change(students_recording(run), run)
+    lines = "".join(f"  - {each}\n" for each in (*scene.expect, *scene.stays))
+    path = folder / "scene.scenario.yaml"
+    path.write_text(SCENARIO + lines)
+    return recording, grade_bag(path, recording.write(folder / "scene.mcap"), GAZEBO)

@@ -1,0 +1,89 @@
+"""Words of expectations are no names, and a value has the dimension of its joint or signal."""
+
+import pytest
+
+from tests.engine.front_door import problems
+
+ARM = "{model: open_manipulator_x, base: {xyz: [0, 0, 0.01]}}"
+CUBE = "{name: %s, box: {size: [0.04, 0.04, 0.04]}, pose: {xyz: [0.3, 0.2, 0.021]}}"
+
+
+def messages(folder, steps="- wait: 0.1 s", rest=""):
+    return [message for _, message in problems(folder, steps, robot=ARM, rest=rest)]
+
+
+@pytest.mark.parametrize("name", ["robot", "gripper", "any", "tcp"])
+def test_no_object_has_the_name_of_a_word_of_expectations(name, tmp_path):
+    for steps, rest in (
+        ("- wait: 0.1 s", f"objects: [{CUBE % name}]"),
+        (f"- add_object: {CUBE % name}", ""),
+    ):
+        [said] = messages(tmp_path, steps, rest)
+        assert said.startswith(f"'{name}' is a word of expectations: ")
+
+
+@pytest.mark.parametrize("name", ["robot_2", "tcp_marker", "anything", "Gripper"])
+def test_names_that_only_resemble_such_words_are_names(name, tmp_path):
+    assert messages(tmp_path, rest=f"objects: [{CUBE % name}]") == []
+
+
+def test_a_world_file_has_no_such_object_either(tmp_path):
+    (tmp_path / "taken.yaml").write_text(f"world: taken\nobjects: [{CUBE % 'any'}]\n")
+    file = tmp_path / "test.scenario.yaml"
+    [(_, said)] = problems(tmp_path, "- wait: 0.1 s", robot=ARM, world="taken.yaml")
+    assert file.is_file()
+    assert "'any' cannot be an object's name" in said
+
+
+@pytest.mark.parametrize(
+    ("expected", "is_right"),
+    [
+        ("joints: {positions: {joint1: 5 cm}}", False),
+        ("joints: {positions: {joint1: 5 deg, joint2: 1 mm}}", False),
+        ("joints: {positions: {gripper_left_joint: 5 deg}}", False),
+        ("joints: {positions: {joint1: 5 deg, gripper_left_joint: 5 mm}}", True),
+        ("gripper: {position: 5 deg}", False),
+        ("gripper: {position: 5 mm, tolerance: 1 deg}", False),
+        ("gripper: {position: 5 mm, tolerance: 1 mm}", True),
+        ("gripper: {width: 2 cm, tolerance: 1 mm}", True),
+        ("gripper: {width: 2 cm, tolerance: 1 deg}", False),
+        ("formula: always position(joint1) < 5 cm", False),
+        ("formula: always position(joint1) + 5 cm < 1", False),
+        ("formula: always effort(joint1) < 5 N", False),
+        ("formula: always abs(position(joint1)) < 90 deg", True),
+        ("formula: always position(gripper_left_joint) < 1 cm", True),
+        ("formula: always velocity(joint1) < 2", True),
+    ],
+)
+def test_a_value_has_the_dimension_of_its_joint(expected, is_right, tmp_path):
+    said = messages(tmp_path, rest=f"expect: [{{{expected}}}]" if "(" not in expected else
+                    f"expect:\n  - {expected}\n")  # fmt: skip
+    assert (said == []) == is_right, said
+    assert all("is expected" in each or "joins" in each for each in said)
+
+
+@pytest.mark.parametrize(
+    ("goal", "is_right"),
+    [("{joint1: 5 cm}", False), ("{joint1: 5 deg}", True), ("{joint1: 0.1}", True)],
+)
+def test_goals_of_joints_too(goal, is_right, tmp_path):
+    assert (messages(tmp_path, f"- move_to: {{joints: {goal}}}") == []) == is_right
+
+
+@pytest.mark.parametrize(
+    ("expected", "is_possible"),
+    [
+        ("upright: {object: cube, tolerance: 5}", False),
+        ("upright: {object: cube, tolerance: 5 deg}", True),
+        ("in: {object: cube, container: cube, max_lean: 45}", False),
+        ("in: {object: cube, container: cube, max_lean: 180 deg}", True),
+        ("slip: {object: cube, max_rotation: 200 deg}", False),
+        ("formula: always tilt(cube) < 90", False),
+        ("formula: eventually 45 < tilt(cube)", False),
+        ("formula: always tilt(cube) < 90 deg", True),
+        ("formula: always tilt(cube) < 1.57", True),
+    ],
+)
+def test_no_angle_between_two_directions_is_beyond_half_a_turn(expected, is_possible, tmp_path):
+    rest = f"objects: [{CUBE % 'cube'}]\nexpect:\n  - {expected}\n"
+    assert (messages(tmp_path, rest=rest) == []) == is_possible
