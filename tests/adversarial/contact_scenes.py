@@ -259,7 +259,7 @@ CONTACT_SCENES = (
         "its origin is inside what is shown of the tray",
         lambda run: near(run, "ball", "tray", (0.2, 0.2, 0.2)),
         ("in: {object: ball, container: tray}", "on: {object: ball, support: tray}"),
-        ("placed: {object: ball, on: ground_plane}",),
+        ("on: {object: ball, support: ground_plane}",),
         truth=lambda run: bool(place_of(run, "ball")[-1, 0] - 0.02 > 0.3 + 0.05),
     ),
     Scene(
