@@ -3,7 +3,7 @@
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.model.robot_model import GroupSpace
 from harness.planning.search.search import Search, search
-from harness.ports import PlanningOptions
+from harness.ports import PathRequest, PlanningOptions
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, boxes, ur
 
 RESOLUTION = 1 / 16
@@ -20,6 +20,22 @@ class Trial:
 
     def checker(self) -> MotionChecker:
         return MotionChecker(self.cell.scene, self.space, self.start, 0.0)
+
+    def request(self) -> PathRequest:
+        checker = self.checker()
+        return PathRequest(
+            planner_id="RRTConnect",
+            space=checker.space,
+            start=self.start,
+            goals=(self.goal,),
+            is_state_free=checker.state_free,
+            is_edge_free=lambda first, second: checker.edge_free(first, second, RESOLUTION),
+            state_checks=lambda: checker.checks,
+            max_state_checks=3000,
+            resolution=RESOLUTION,
+            seed=0,
+            parameters={},
+        )
 
     def search(self, name, seed=5, budget=3000, goals=None, **parameters) -> Search:
         return search(

@@ -233,7 +233,7 @@ def test_without_numba_everything_works_and_with_it_nothing_is_loaded_early():
     program = """
 import sys
 if {hide}: sys.modules["numba"] = None
-from harness.planning import compiled
+from harness.planning.collision import compiled
 from tests.planning.lesson import Cell, ARM, FIRST_BOXES, boxes, ur
 from harness.ports import JointGoal, PlanningOptions
 from harness.robot.mesh_file import convex_hull

@@ -5,7 +5,7 @@ import pytest
 
 from harness.planning.search.ompl_problem import make_problem
 from harness.planning.search.planner_parameters import parameter_names, set_parameters
-from tests.planning.planner_trial import RESOLUTION, Trial, signature
+from tests.planning.planner_trial import Trial, signature
 
 
 @pytest.fixture(scope="module")
@@ -85,7 +85,7 @@ def test_a_planner_takes_the_parameters_that_moveit_lists(trial, name):
     ],
 )
 def test_a_parameter_arrives(trial, name, parameter, value, getter):
-    problem = make_problem(trial.checker(), trial.start, [trial.goal], RESOLUTION, 0)
+    problem = make_problem(trial.request())
     planner = getattr(ompl.geometric, name)(problem.information)
     assert getattr(planner, getter)() != value
     set_parameters(planner, name, {parameter: value})

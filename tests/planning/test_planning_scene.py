@@ -126,9 +126,9 @@ def test_a_pair_too_near_at_the_start_may_come_no_nearer(cell, gap, margin, drop
     cell.scene.attach_object("cylinder", TCP, cell.description.gripper.links, cell.state)
     cell.add(thing("support", at(x, y, below - 0.05 - gap - 0.01), Shape(Box((0.2, 0.2, 0.02)))))
     checker = checker_of(cell, padding=0.005)
-    lowered = [entry for entry in checker.lowered if entry["pair"] == ["cylinder", "support"]]
-    assert lowered[0]["start_distance"] == pytest.approx(gap, abs=1e-6)
-    assert lowered[0]["margin"] == pytest.approx(margin, abs=1e-6)
+    lowered = [entry for entry in checker.lowered if entry.pair == ("cylinder", "support")]
+    assert lowered[0].start_distance == pytest.approx(gap, abs=1e-6)
+    assert lowered[0].margin == pytest.approx(margin, abs=1e-6)
     assert checker.state_free(checker.space.part(cell.state))
     for drop, is_free in drops.items():
         lower = cell.kinematics.link_pose(cell.state, TCP)
