@@ -29,6 +29,8 @@ def _run(arguments: argparse.Namespace) -> int:
         bag=False,
         package_folders=(),
         plugins=(),
+        strict=False,
+        reporters=(),
         overrides=list(record.overrides.items()),
         seed=record.seed,
         samples=record.samples,
