@@ -16,7 +16,9 @@ from harness.planning.collision.sphere_cover import cover, cover_shapes, signed_
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports import JointGoal, PlanningOptions
 from harness.robot.mesh_file import convex_hull
+from tests.engine.front_door import run
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, at, boxes, open_manipulator, thing, ur
+from tests.second_opinion.runs import SRDF, URDF
 
 pytest.importorskip("numba")
 
@@ -214,6 +216,19 @@ def test_a_bent_motion_is_judged_alike_and_its_first_blocked_state_is_found(stag
         found.append(answers[0])
     assert None in found
     assert any(index is not None for index in found)
+
+
+@pytest.mark.parametrize("when", ["never", "always"])
+def test_a_motion_that_ends_exactly_at_its_margin_is_judged_as_its_last_state(
+    when, stages, tmp_path
+):
+    """The fingers end 2 mm above the ground, which is the padding, but for rounding."""
+    (tmp_path / "gantry.urdf").write_text(URDF)
+    (tmp_path / "gantry.srdf").write_text(SRDF)
+    stages(when)
+    robot = "{urdf: gantry.urdf, srdf: gantry.srdf, start_state: {named_target: ready}}"
+    result, _ = run(tmp_path, "- ptp: {joints: {slide: 0.0, lift: 0.072}}", robot=robot)
+    assert result.outcome == "passed"
 
 
 def test_plans_are_the_same_with_and_without_the_compiled_stage(stages):
