@@ -22,6 +22,9 @@ CONTACTS_PER_ROW = 24
 BLOCK = 2**19
 """Contacts that are sorted at a time."""
 
+MOST_UNRESOLVED = 4096
+"""Contacts whose forces are computed at a time; their copies stay in the processor's cache."""
+
 BYTES = 52
 """Memory that one contact takes in the arrays."""
 
@@ -30,7 +33,11 @@ Array = np.ndarray[Any, Any]
 
 
 class ContactRecord:
-    """The contacts of consecutive samples, and sums of them for each pair of bodies."""
+    """The contacts of consecutive samples, and sums of them for each pair of bodies.
+
+    Keeping a sample only copies what MuJoCo has computed; the forces of many samples follow from
+    the copies at a time.
+    """
 
     def __init__(self, physics: PhysicsModel) -> None:
         size = ROWS * CONTACTS_PER_ROW
@@ -41,31 +48,40 @@ class ContactRecord:
         self._normals = np.empty((size, 3), dtype=np.float32)
         self._points = np.empty((size, 3), dtype=np.float32)
         self._frictions = np.empty((size, 3), dtype=np.float32)
+        self._unresolved = _Unresolved()
+        self._resolved = 0
         self.count = 0
 
     def reserve(self, rows: int) -> None:
         """Make room for so many samples."""
         if rows > len(self._end):
-            more = max(len(self._end), rows - len(self._end))
-            self._end = np.concatenate([self._end, np.zeros(more, dtype=np.int64)])
+            self._end = doubled(self._end, rows)
 
     def keep(self, data: mujoco.MjData, row: int) -> None:
         """Copy the contacts of the current physics state as those of one sample."""
         begin = self.count
         self.count = end = begin + data.ncon
         self._end[row] = end
+        if end == begin:
+            return
         if end > len(self._forces):
-            self._geoms = _doubled(self._geoms)
-            self._forces = _doubled(self._forces)
-            self._normals = _doubled(self._normals)
-            self._points = _doubled(self._points)
-            self._frictions = _doubled(self._frictions)
-        if end > begin:
-            contact = data.contact
-            self._geoms[begin:end] = contact.geom
-            self._normals[begin:end] = contact.frame[:, :3]
-            self._points[begin:end] = contact.pos
-            _contact_forces(data, self._forces[begin:end], self._frictions[begin:end])
+            self._grow()
+        contact = data.contact
+        self._geoms[begin:end] = contact.geom
+        self._points[begin:end] = contact.pos
+        if not self._unresolved.keep(contact, data.efc_force):
+            self._resolve(begin)
+            self._unresolved.keep(contact, data.efc_force)
+
+    def _grow(self) -> None:
+        for name in ("_geoms", "_forces", "_normals", "_points", "_frictions"):
+            setattr(self, name, doubled(getattr(self, name), self.count))
+
+    def _resolve(self, end: int) -> None:
+        """Compute normals, forces and frictions of the contacts that are only copied so far."""
+        new = slice(self._resolved, end)
+        self._unresolved.resolve(self._normals[new], self._forces[new], self._frictions[new])
+        self._resolved = end
 
     def forces(self, first: int, last: int) -> dict[BodyPair, FloatArray]:
         """Normal force [N] of pairs that touch in samples first to last - 1, (samples,) each."""
@@ -156,6 +172,7 @@ class ContactRecord:
             The ids of two bodies, the smaller first; then, for their contacts in some samples, in
             the order of recording, the sample counted from `first` and the contact's index.
         """
+        self._resolve(self.count)
         ends = self._end[first:last]
         row = 0
         while row < len(ends):
@@ -201,29 +218,61 @@ def _add(sums: FloatArray, rows: Array, values: Array) -> None:
     sums[rows[0] : rows[0] + len(part)] += part
 
 
-def _doubled(values: Array) -> Array:
-    """Copy values into an array of twice the length; its second half takes no memory until used."""
-    larger = np.empty((2 * len(values), *values.shape[1:]), values.dtype)
+def doubled(values: Array, needed: int) -> Array:
+    """Copy values into an array at least twice as long; its new part takes no memory until used."""
+    larger = np.empty((max(2 * len(values), needed), *values.shape[1:]), values.dtype)
     larger[: len(values)] = values
     return larger
 
 
-def _contact_forces(data: mujoco.MjData, forces: FloatArray, frictions: Array) -> None:
-    """Write the normal force and the friction force of every contact [N]; none where inactive.
+class _Unresolved:
+    """Frames, constraint addresses and constraint forces of contacts, as MuJoCo has them.
 
     MuJoCo gives an inactive contact no constraint row and the address -1. Without any other
     constraint, as for an arm without a gripper, there are no rows at all. Every contact has
     `CONTACT_DIMENSIONS`: its first row is the normal force, the next two are friction along the
     second and third axis of its frame.
     """
-    if not data.nefc:
-        forces[:] = 0.0
-        frictions[:] = 0.0
-        return
-    contact, force = data.contact, data.efc_force
-    address = contact.efc_address
-    force.take(address, 0, forces, "clip")
-    forces[address < 0] = 0.0
-    along = force.take(address[:, None] + (1, 2), mode="clip")
-    along[address < 0] = 0.0
-    frictions[:] = along[:, :1] * contact.frame[:, 3:6] + along[:, 1:] * contact.frame[:, 6:]
+
+    def __init__(self) -> None:
+        self._frames = np.empty((MOST_UNRESOLVED, 9))
+        self._addresses = np.empty(MOST_UNRESOLVED, dtype=np.int64)
+        self._forces = np.empty(8 * MOST_UNRESOLVED)
+        self._clear()
+
+    def _clear(self) -> None:
+        self._contacts = self._rows = 0
+        self._samples: list[tuple[int, int]] = []  # contacts and first constraint row of each
+
+    def keep(self, contact: Any, forces: FloatArray) -> bool:
+        """Copy the contacts of one sample; False where earlier ones leave no room."""
+        frames = contact.frame
+        begin, row = self._contacts, self._rows
+        end, last = begin + len(frames), row + len(forces)
+        if end > len(self._frames) or last > len(self._forces):
+            if begin:
+                return False
+            self._frames = np.empty((end, 9))
+            self._addresses = np.empty(end, dtype=np.int64)
+            self._forces = np.empty(last)
+        self._frames[begin:end] = frames
+        self._addresses[begin:end] = contact.efc_address
+        self._forces[row:last] = forces
+        self._samples.append((end - begin, row))
+        self._contacts, self._rows = end, last
+        return True
+
+    def resolve(self, normals: Array, forces: FloatArray, frictions: Array) -> None:
+        """Write the normal, normal force and friction force [N] of every contact; none inactive."""
+        counts, rows = np.array(self._samples, dtype=np.int64).reshape(-1, 2).T
+        frames = self._frames[: self._contacts]
+        addresses = self._addresses[: self._contacts]
+        is_inactive = addresses < 0
+        addresses = addresses + np.repeat(rows, counts)
+        normals[:] = frames[:, :3]
+        forces[:] = self._forces.take(addresses, mode="clip")
+        forces[is_inactive] = 0.0
+        along = self._forces.take(addresses[:, None] + (1, 2), mode="clip")
+        along[is_inactive] = 0.0
+        frictions[:] = along[:, :1] * frames[:, 3:6] + along[:, 1:] * frames[:, 6:]
+        self._clear()

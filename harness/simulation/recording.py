@@ -14,7 +14,7 @@ from harness.core.types import FloatArray
 from harness.ports import LONGEST_RUN
 from harness.recording.execution_failures import LengthFailure
 from harness.recording.run import Signals
-from harness.simulation.contact_record import BYTES, ROWS, BodyPair, ContactRecord
+from harness.simulation.contact_record import BYTES, ROWS, BodyPair, ContactRecord, doubled
 from harness.simulation.model import PhysicsModel
 
 MOST_BYTES = 2**30
@@ -143,10 +143,8 @@ class Recording:
         self._contacts.reserve(rows)
         if rows <= len(self._qpos):
             return
-        more = max(len(self._qpos), rows - len(self._qpos))  # doubled, so that few copies are made
         for name in ("_qpos", "_qvel", "_sensors", "_commands", "_command_velocities"):
-            old = getattr(self, name)
-            setattr(self, name, np.concatenate([old, np.zeros((more, *old.shape[1:]), old.dtype)]))
+            setattr(self, name, doubled(getattr(self, name), rows))
 
     @property
     def timestep(self) -> float:

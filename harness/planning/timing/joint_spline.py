@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from harness.core.types import FloatArray
+from harness.planning.timing.cubic_spline import CubicSpline
 
 _NEAREST = 1e-7  # [rad] samples nearer than this to the previous one are left out
 
@@ -28,14 +28,16 @@ class JointSpline:
         steps = np.linalg.norm(np.diff(self.samples, axis=0), axis=1)
         self.knots: FloatArray = np.concatenate([[0.0], np.cumsum(steps)])
         self.length = float(self.knots[-1])
-        self._spline = CubicSpline(self.knots, self.samples) if len(self.knots) > 1 else None
+        self._spline = (
+            CubicSpline.through(self.knots, self.samples) if len(self.knots) > 1 else None
+        )
 
     def evaluate(self, parameter: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Positions and their first two derivatives, (M, dof) each, at parameters (M,)."""
         if self._spline is None:
             raise ValueError("the curve has no length")
         s = np.clip(np.atleast_1d(np.asarray(parameter, dtype=float)), 0.0, self.length)
-        return self._spline(s), self._spline(s, 1), self._spline(s, 2)
+        return self._spline.evaluate(s)
 
     def grid(self, pieces: int = 2) -> FloatArray:
         """The knots, and evenly spaced points between them."""

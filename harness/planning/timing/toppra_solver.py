@@ -4,8 +4,6 @@
 
 from __future__ import annotations
 
-import logging
-import warnings
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -154,12 +152,6 @@ def _solve(
 
 
 def _toppra() -> Any:
-    """The library, with the warnings of its first import silenced."""
-    with warnings.catch_warnings():  # invalid escapes of its own
-        warnings.simplefilter("ignore")
-        import toppra
-        import toppra.algorithm
-        import toppra.constraint
-        import toppra.interpolator
-    logging.getLogger("toppra").setLevel(logging.CRITICAL)
+    from harness.planning.timing.toppra_library import toppra  # here: not every motion needs it
+
     return toppra
