@@ -61,8 +61,18 @@ def unknown_distances(run: Run, key: Key) -> BoolArray:
     if first != "robot":
         exists &= present(run, first) & attached(run, first)
     if second != "robot":
-        exists &= present(run, second) & ~attached(run, second) & ~in_hand(run, second)
+        exists &= present(run, second)
+    if second != "robot" and "attachments" not in run.unrecorded:
+        exists &= ~_attached_or_just_released(run, second)
     return exists
+
+
+def _attached_or_just_released(run: Run, name: str) -> BoolArray:
+    """Samples at which an object has no distance to the robot, shape (N,)."""
+    released = [
+        record.end_time for record in run.attachments if name in (record.object, record.represents)
+    ]
+    return attached(run, name) | np.isin(run.signals.times, released)
 
 
 def _names_of(run: Run, word: str) -> list[str]:

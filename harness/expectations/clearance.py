@@ -71,10 +71,10 @@ class Clearance(Predicate):
         """What is left of the distance, and of its loss against the plan [m], where both are there.
 
         `any` is every object but what the robot holds at that sample. Where one of the distances
-        is not known, the margin is unknown unless another one is too small. Distances are recorded up to
-        a cutoff; one at the cutoff is at least as much. The loss is how much less a distance is
-        than it would be with the arm at its commands and what is attached where the planner carries
-        it.
+        is not known, the margin is unknown unless another one is too small. Distances are recorded
+        up to a cutoff; one at the cutoff is at least as much. The loss is how much less a distance
+        is than it would be with the arm at its commands and what is attached where the planner
+        carries it.
 
         Raises:
             NotReached: The two were never there together.

@@ -38,7 +38,8 @@ class TrackingError(Predicate):
 
         The gripper's joints are left out: one that stalls on an object stays short of its command.
         A position that is missing while the joint has a command is unknown, and so is a command
-        that is missing between others. For joints that slide the default is a tenth of the given number, in metres.
+        that is missing between others. For joints that slide the default is a tenth of the given
+        number, in metres.
         """
         run = window.run
         hand = gripper_joints(run)
