@@ -6,8 +6,9 @@ import numpy as np
 
 from harness.assertions.contacts import attached
 from harness.assertions.hold import in_hand
+from harness.assertions.poses import present
 from harness.assertions.window import NotObservable, NotReached, object_record
-from harness.core.types import FloatArray
+from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import Run
 
 Key = tuple[str, str]
@@ -47,6 +48,31 @@ def recorded_distances(run: Run, first: str, second: str) -> dict[Key, FloatArra
     ):
         raise NotReached(f"the robot held neither {first} nor {second}")
     raise NotObservable(f"the distance between {first} and {second} was not recorded")
+
+
+def unknown_distances(run: Run, key: Key) -> BoolArray:
+    """Samples at which two bodies have a distance and it is not known, shape (N,).
+
+    The distance exists where both are in the scene, and the planning scene holds the first one
+    (unless it is the robot) and not the second.
+    """
+    first, second = key
+    exists: BoolArray = np.isnan(run.signals.clearances[key])
+    if first != "robot":
+        exists &= present(run, first) & attached(run, first)
+    if second != "robot":
+        exists &= present(run, second)
+    if second != "robot" and "attachments" not in run.unrecorded:
+        exists &= ~_attached_or_just_released(run, second)
+    return exists
+
+
+def _attached_or_just_released(run: Run, name: str) -> BoolArray:
+    """Samples at which an object has no distance to the robot, shape (N,)."""
+    released = [
+        record.end_time for record in run.attachments if name in (record.object, record.represents)
+    ]
+    return attached(run, name) | np.isin(run.signals.times, released)
 
 
 def _names_of(run: Run, word: str) -> list[str]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from pydantic import Field, model_validator
 
-from harness.assertions.distances import Key, recorded_distances
+from harness.assertions.distances import Key, recorded_distances, unknown_distances
 from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import Evidence, MarginSignal, measured
 from harness.assertions.observations import CLEARANCE_ROOM, Observations
@@ -70,17 +70,20 @@ class Clearance(Predicate):
     def signal(self, window: Window) -> MarginSignal:
         """What is left of the distance, and of its loss against the plan [m], where both are there.
 
-        `any` is every object but what the robot holds at that sample. Distances are recorded up to
-        a cutoff; one at the cutoff is at least as much. The loss is how much less a distance is
-        than it would be with the arm at its commands and what is attached where the planner carries
-        it.
+        `any` is every object but what the robot holds at that sample. Where one of the distances
+        is not known, the margin is unknown unless another one is too small. Distances are recorded
+        up to a cutoff; one at the cutoff is at least as much. The loss is how much less a distance
+        is than it would be with the arm at its commands and what is attached where the planner
+        carries it.
 
         Raises:
             NotReached: The two were never there together.
             NotObservable: The distance was not recorded, or its cutoff is below what is required.
         """
-        distance = _smallest(window, recorded_distances(window.run, *self.between))
-        there = np.isfinite(distance.values)
+        rows = recorded_distances(window.run, *self.between)
+        distance = _smallest(window, rows)
+        unknown = np.any([window.cut(unknown_distances(window.run, key)) for key in rows], axis=0)
+        there = np.isfinite(distance.values) | unknown
         if not there.any():
             raise NotReached(f"{self.between[0]} and {self.between[1]} were never there together")
         judged: list[_Judged] = []
@@ -92,12 +95,13 @@ class Clearance(Predicate):
             loss = self._largest_loss(window)
             below = _below(self.max_below_plan, window, loss)
             judged.append(_Judged(self.max_below_plan - loss.values, below))
-        rows = np.stack([each.margins for each in judged])
+        margins = np.stack([each.margins for each in judged])
 
         def evidence(index: int) -> Evidence:
-            return judged[int(rows[:, index].argmin())].evidence(index)
+            return judged[int(margins[:, index].argmin())].evidence(index)
 
-        values = np.where(there, rows.min(axis=0), np.nan)
+        smallest = margins.min(axis=0)
+        values = np.where(there & ~(unknown & (smallest >= 0)), smallest, np.nan)
         return MarginSignal(values, "m", evidence, applies=there)
 
     def _largest_loss(self, window: Window) -> _Worst:

@@ -12,6 +12,7 @@ from harness.assertions.joints import gripper_joints, joint_unit
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, Window
+from harness.core.types import BoolArray, FloatArray
 from harness.language.base import JointValue
 from harness.language.expectation import Quantity
 from harness.recording.run import Measure
@@ -36,7 +37,9 @@ class TrackingError(Predicate):
         """Largest distance of a joint from its command [rad or m].
 
         The gripper's joints are left out: one that stalls on an object stays short of its command.
-        For joints that slide the default is a tenth of the given number, in metres.
+        A position that is missing while the joint has a command is unknown, and so is a command
+        that is missing between others. For joints that slide the default is a tenth of the given
+        number, in metres.
         """
         run = window.run
         hand = gripper_joints(run)
@@ -46,8 +49,8 @@ class TrackingError(Predicate):
                 run.signals.joint_positions[:, column] - run.signals.joint_commands[:, column]
             )
             error = window.cut(error)
-            known = ~np.isnan(error)
-            if joint.name in hand or not known.any():
+            commanded = _between_known(window.cut(run.signals.joint_commands[:, column]))
+            if joint.name in hand or np.isnan(error).all():
                 continue
             slides = joint.kind == "prismatic" and "max" not in self.model_fields_set
             limit = 0.1 * self.max if slides else self.max
@@ -58,7 +61,7 @@ class TrackingError(Predicate):
                     error,
                     limit,
                     "<=",
-                    relevant=known,
+                    relevant=commanded,
                     detail=joint.name,
                     measured_unit=unit,
                 )
@@ -71,3 +74,12 @@ class TrackingError(Predicate):
             return f"{measure.detail} is {amount(measure.value, measure.unit)} from its command"
 
         return all_of(window, parts, text, applies=some, shown=3)
+
+
+def _between_known(commands: FloatArray) -> BoolArray:
+    """Samples from the first known command to the last one, shape (n,)."""
+    known = np.flatnonzero(~np.isnan(commands))
+    inside: BoolArray = np.zeros(len(commands), dtype=bool)
+    if len(known):
+        inside[known[0] : known[-1] + 1] = True
+    return inside

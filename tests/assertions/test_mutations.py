@@ -13,7 +13,11 @@ those signals is then shifted, frozen, dropped and made NaN:
 - freeze: it keeps its value from some moment on; at least one moment must be noticed, which is one
   at which the predicate did not hold;
 - drop: it was not recorded, and neither was its kind, where a missing key means "never touched";
-- NaN: none of its samples is known.
+- NaN: none of its samples is known;
+- hole: it is not known for 0.3 s; at least one such hole must be noticed;
+- two sources: every other sample is the signal's first one, as if a publisher that hangs wrote to
+  the same topic; noticed when either the odd or the even samples are;
+- swap: two signals of its kind are exchanged, as two objects with each other's names are.
 
 A mutant that equals the original is none, and `SAME_THING` lists those that are what the predicate
 covers: a stuck signal looks like a thing that stands still. `SHOWN_ONLY` lists what
@@ -43,6 +47,8 @@ from tests.assertions.synthetic_run import lift_run
 
 pytestmark = pytest.mark.mutation
 MOMENTS = range(0, N, 10)
+HOLE = 30
+"""Samples of a hole: 0.3 s, longer than any gap that a verdict bridges."""
 FORCES_AND_DISTANCES = (
     *("contact_forces", "presses", "frictions", "support_forces"),
     *("clearances", "planned_clearances", "link_overlaps"),
@@ -51,6 +57,8 @@ MAPPINGS = ("frames", "object_poses", *FORCES_AND_DISTANCES)
 SHOWN_ONLY = {
     ("collision", "clearances"): "contacts decide; how near it came is the margin of what did not"
 }
+IN_DOUBT = ("hole", "two sources")
+"""Mutations that leave most of what is only shown as it was."""
 SAME_THING = {
     ("within_limits", "joint_commands", "drop"): "measured joints are judged in a recording without"
     " commands, too",
@@ -61,6 +69,40 @@ SAME_THING = {
     ): "a pose that does not change is a thing that stands still",
     ("within_limits", "joint_command_velocities", "freeze"): "a velocity that does not change is no"
     " acceleration",
+    **{
+        (word, "object_poses", "swap"): "the other object stands still, upright and low, too"
+        for word in ("upright", "static", "formula")
+    },
+    **{
+        (word, "presses", "swap"): "where the fingers press, and not which finger presses where"
+        for word in ("lifted", "grasped", "slip", "until")
+    },
+    ("lifted", "contact_forces", "hole"): "the hand carries the box, whatever else touches it",
+    ("in_contact", "contact_forces", "hole"): "one moment of contact is enough",
+    ("in_contact", "contact_forces", "swap"): "the other pair touches at some moment, too",
+    ("formula", "object_poses", "hole"): "one moment of speed is enough",
+    **{
+        ("slip", signal, kind): "another sample at which both fingers hold is the reference"
+        for signal in ("contact_forces", "presses")
+        for kind in ("hole", "swap")
+    },
+    **{
+        (word, signal, "two sources"): "a gap of one sample in a contact is bridged, as physics"
+        " has them; two publishers are found when a recording is imported"
+        for word in ("lifted", "grasped", "slip", "until", "placed", "on", "in_contact")
+        for signal in ("contact_forces", "presses", "frictions", "support_forces")
+    },
+    **{
+        (word, signal, "two sources"): "what one moment decides, or gaps of one sample do not; two"
+        " publishers are found when a recording is imported"
+        for word, signal in (
+            ("lifted", "object_poses"),
+            ("lifted", "tcp_pose"),
+            ("formula", "object_poses"),
+            ("formula", "tcp_pose"),
+            ("tcp_path", "tcp_pose"),
+        )
+    },
 }
 COMES_BACK = {
     ("displaced", "+x"): "first to where it was, then past it",
@@ -184,7 +226,42 @@ def unknown(run, place, _):
     yield with_array(run, place, np.full_like(array_of(run.signals, place), np.nan))
 
 
-MUTATIONS = {"freeze": frozen, "drop": dropped, "NaN": unknown}
+def with_holes(run, place, _):
+    array = array_of(run.signals, place)
+    for moment in MOMENTS:
+        holed = array.copy()
+        holed[moment : moment + HOLE] = np.nan
+        yield with_array(run, place, holed)
+
+
+def from_two_sources(run, place, start):
+    array = array_of(run.signals, place)
+    for first in (start, start + 1):
+        mixed = array.copy()
+        mixed[first::2] = array[0]
+        if not np.array_equal(mixed, array, equal_nan=True):
+            yield with_array(run, place, mixed)
+
+
+def swapped(run, place, _):
+    field, key = place
+    if key is None:
+        return
+    mapping = getattr(run.signals, field)
+    for other, values in mapping.items():
+        if not np.array_equal(values, mapping[key], equal_nan=True):
+            changed = {**mapping, key: values, other: mapping[key]}
+            yield replace(run, signals=replace(run.signals, **{field: changed}))
+
+
+MUTATIONS = {
+    "freeze": frozen,
+    "drop": dropped,
+    "NaN": unknown,
+    "hole": with_holes,
+    "two sources": from_two_sources,
+    "swap": swapped,
+}
 
 
 def reported(run, spec):
@@ -249,7 +326,7 @@ def survivors(case):
         shown_only = (name_of(spec), place[0]) in SHOWN_ONLY
         found += unnoticed_shifts(case, place)
         for kind, mutate in MUTATIONS.items():
-            if (name_of(spec), place[0], kind) in SAME_THING:
+            if (name_of(spec), place[0], kind) in SAME_THING or (shown_only and kind in IN_DOUBT):
                 continue
             answers = [answer(mutant, spec, step_id) for mutant in mutate(run, place, start)]
             tried += bool(answers)

@@ -1,5 +1,7 @@
 """clearance: the distance between two bodies, against a limit or against the plan."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -45,7 +47,9 @@ def test_a_distance_may_be_little_less_than_with_the_arm_at_its_commands():
     )
     both = Clearance(between=("robot", "box"), at_least=0.018, max_below_plan=0.003)
     assert verdict(run, both).reason.startswith("17.5 mm between arm_link and box, 18.0 mm req")
-    gone = changed(run, clearances={("robot", "box"): np.full(200, np.nan)})
+    lost = changed(run, clearances={("robot", "box"): np.full(200, np.nan)})
+    assert verdict(lost, spec).status == "not observable"
+    gone = replace(lost, objects=(TABLE, replace(BOX, present=())))
     assert verdict(gone, spec).status == "not reached"
     unknown = changed(run, planned_clearances={("robot", "box"): np.full(200, np.nan)})
     assert verdict(unknown, spec).status == "failed"
@@ -54,10 +58,27 @@ def test_a_distance_may_be_little_less_than_with_the_arm_at_its_commands():
 def test_clearance_is_judged_while_the_object_is_there():
     distance = np.full(200, np.nan)
     spec = Clearance(between=("robot", "box"), at_least=0.01)
-    assert verdict(clearance_run(distance), spec).status == "not reached"
+    never_there = (TABLE, replace(BOX, present=()))
+    assert verdict(clearance_run(distance, objects=never_there), spec).status == "not reached"
     distance[50:60] = 0.02
-    assert verdict(clearance_run(distance), spec).status == "passed"
-    assert verdict(clearance_run(distance), Never(predicate=spec)).status == "failed"
+    there = clearance_run(distance, objects=(TABLE, replace(BOX, present=((0.5, 0.59),))))
+    assert verdict(there, spec).status == "passed"
+    assert verdict(there, Never(predicate=spec)).status == "failed"
+
+
+def test_a_distance_that_is_lost_for_a_while_leaves_clearance_unknown():
+    distance = np.full(200, 0.02)
+    distance[50:80] = np.nan
+    spec = Clearance(between=("robot", "box"), at_least=0.01)
+    assert verdict(clearance_run(distance), spec).status == "not observable"
+    distance[120] = 0.005
+    assert verdict(clearance_run(distance), spec).status == "failed"
+    nearest = Clearance(between=("robot", "any"), at_least=0.01)
+    assert verdict(clearance_run(distance), nearest).status == "failed"
+    held = clearance_run(
+        distance[:120].tolist() + [0.02] * 80, attachments=[attachment("box", 49, 81)]
+    )
+    assert verdict(held, spec).status == "passed", "a held box has no distance to the robot"
 
 
 def test_clearance_beyond_the_cutoff_cannot_be_seen():

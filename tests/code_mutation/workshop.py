@@ -1,0 +1,120 @@
+"""A copy of the project in which mutants are tried with the tests that execute their line."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+from tests.code_mutation.mutants import Mutant
+
+ROOT = Path(__file__).resolve().parents[2]
+COPIED = (
+    "harness",
+    "tests",
+    "docs",
+    "robots",
+    "worlds",
+    "scenarios",
+    "pyproject.toml",
+    "README.md",
+)
+# The tests of the scope; the rest of the suite reaches it only through whole runs.
+TESTS = (
+    "tests/assertions",
+    "tests/expectations",
+    "tests/observation",
+    "tests/engine",
+    "tests/recording",
+    "tests/adversarial",
+    "tests/planning/test_verification.py",
+    "tests/planning/test_path_constraints.py",
+    "tests/planning/test_linear_motion.py",
+)
+# Tests that execute a line are run, shortest first, until they add up to this [s].
+LONGEST = 150.0
+
+
+class Workshop:
+    """A copy of the project with the record of which test executes which line."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        for name in COPIED:
+            source = ROOT / name
+            if source.is_dir():
+                shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+            else:
+                shutil.copy(source, folder / name)
+        (folder / "reports").mkdir()
+        self.durations: dict[str, float] = {}
+        self.executed: dict[str, dict[int, list[str]]] = {}
+
+    def record(self) -> None:
+        """Run the tests once, unmutated, and record which test executes which line."""
+        from coverage import CoverageData
+
+        done = self._pytest(
+            "--cov=harness", "--cov-context=test", "--cov-report=", "--junitxml=took.xml", *TESTS
+        )
+        if done.returncode:
+            raise RuntimeError(f"the unmutated tests fail:\n{done.stdout[-4000:]}")
+        for case in ElementTree.parse(self.folder / "took.xml").iter("testcase"):
+            name = f"{case.get('classname', '').replace('.', '/')}.py::{case.get('name')}"
+            self.durations[name] = float(case.get("time", 0))
+        data = CoverageData(str(self.folder / ".coverage"))
+        data.read()
+        for path in data.measured_files():
+            module = str(Path(path).relative_to(self.folder))
+            self.executed[module] = data.contexts_by_lineno(path)
+
+    def tests_of(self, module: str, line: int) -> list[str]:
+        """The tests that execute a line, or its module where only imports do; shortest first."""
+        lines = self.executed.get(module, {})
+        found = contexts(lines.get(line, []))
+        if not found:
+            found = {name for names in lines.values() for name in contexts(names)}
+        chosen, total = [], 0.0
+        for name in sorted(found, key=lambda name: (self.durations.get(name, 1.0), name)):
+            total += self.durations.get(name, 1.0)
+            if chosen and total > LONGEST:
+                break
+            chosen.append(name)
+        return chosen
+
+    def survives(self, mutant: Mutant) -> bool:
+        """Whether every test that executes the mutated line passes with the mutant."""
+        tests = self.tests_of(mutant.module, mutant.line)
+        if not tests:
+            return True
+        path = self.folder / mutant.module
+        original = path.read_text(encoding="utf-8")
+        (self.folder / "chosen.txt").write_text("\n".join(tests), encoding="utf-8")
+        path.write_text(mutant.source, encoding="utf-8")
+        try:
+            return self._pytest("-x", "@chosen.txt", limit=3 * LONGEST).returncode == 0
+        except subprocess.TimeoutExpired:
+            return False
+        finally:
+            path.write_text(original, encoding="utf-8")
+
+    def _pytest(self, *options: str, limit: float | None = None) -> subprocess.CompletedProcess:
+        command = [sys.executable, "-B", "-m", "pytest", "-q", "-p", "no:cacheprovider", *options]
+        return subprocess.run(
+            command,
+            cwd=self.folder,
+            env={**os.environ, "PYTHONPATH": str(self.folder)},
+            capture_output=True,
+            text=True,
+            timeout=limit,
+            check=False,
+        )
+
+
+def contexts(names: list[str]) -> set[str]:
+    """The tests among coverage's contexts, which carry the phase of the test."""
+    return {re.sub(r"\|(setup|run|teardown)$", "", name) for name in names if "|" in name}
