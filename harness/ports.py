@@ -566,108 +566,126 @@ class IkSolver(Plugin, ABC):
         """Find joint positions; a new object of the class is made for every goal."""
 
 
+@dataclass(frozen=True, eq=False)
+class FreeMotion:
+    """A collision-free motion on any path; with constraints, every sample of it holds them."""
+
+    goal: Goal | AnyGoal
+    constraints: PathConstraints | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class JointMotion:
+    """Pilz's PTP: all joints together, straight in joint space.
+
+    Attributes:
+        positions: The joint positions at the end, shape (dof,).
+        duration: The exact duration [s]; the shortest possible one without it.
+    """
+
+    positions: FloatArray
+    duration: float | None = None
+
+    @property
+    def goal(self) -> JointGoal:
+        """The end of the motion."""
+        return JointGoal(np.asarray(self.positions, dtype=float))
+
+
+@dataclass(frozen=True, eq=False)
+class LinearMotion:
+    """Pilz's LIN: the link on a straight line, turning at an even rate.
+
+    The line of a joint goal ends where it puts the TCP; with a position goal the link keeps its
+    orientation.
+    """
+
+    goal: Goal
+
+
+@dataclass(frozen=True, eq=False)
+class CircularMotion:
+    """Pilz's CIRC: the link on an arc through a point or about a centre."""
+
+    goal: Goal
+    point: ArcPoint
+
+
+@dataclass(frozen=True, eq=False)
+class RelativeMotion:
+    """A link moves along a direction as far as possible between two distances.
+
+    Attributes:
+        link: A link that is rigidly attached after the group's last joint.
+        twist: Unit translation or rotation in world axes, shape (6,): linear, then angular.
+        distances: Least and most [m or rad]; equal for a fixed distance.
+    """
+
+    link: str
+    twist: FloatArray
+    distances: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class MotionSequence:
+    """Pilz's sequence: motions blended into each other, all of them or none."""
+
+    items: Sequence[SequenceItem]
+
+
+@dataclass(frozen=True, eq=False)
+class WaypointMotion:
+    """Straight lines through waypoints, as far as they can be followed.
+
+    The plan's result has `fraction`, `largest_joint_step` [rad or m] and `deviation` [m].
+    """
+
+    goals: Sequence[PoseGoal | PositionGoal]
+    path_options: CartesianPathOptions
+
+
+PlannedMotion = (
+    FreeMotion
+    | JointMotion
+    | LinearMotion
+    | CircularMotion
+    | RelativeMotion
+    | MotionSequence
+    | WaypointMotion
+)
+
+
+@dataclass(frozen=True, eq=False)
+class MotionRequest:
+    """What a motion planner must plan.
+
+    Attributes:
+        group: The name of a planning group.
+        start: The start positions of all movable joints, in description order.
+        motion: The kind of motion, and where it goes.
+        options: The options of the planning call.
+    """
+
+    group: str
+    start: FloatArray
+    motion: PlannedMotion
+    options: PlanningOptions
+
+    @property
+    def goal(self) -> Goal | AnyGoal | None:
+        """Where the motion ends; None for one that has no goal of its own."""
+        return getattr(self.motion, "goal", None)
+
+
 class MotionPlanner(Protocol):
     """Finds motions of a group that can be trusted, or raises PlanningFailed and says why."""
 
-    def plan(
-        self,
-        group: str,
-        start: FloatArray,
-        goal: Goal | AnyGoal,
-        options: PlanningOptions,
-        constraints: PathConstraints | None = None,
-    ) -> MotionPlan:
-        """Plan a collision-free motion to a goal; `start` in description order.
-
-        With constraints, every sample of the motion holds them.
-        """
+    def plan(self, request: MotionRequest) -> MotionPlan:
+        """Plan a motion without collision, timed and verified."""
         ...
 
-    def plan_joint_motion(
-        self,
-        group: str,
-        start: FloatArray,
-        positions: FloatArray,
-        options: PlanningOptions,
-        duration: float | None = None,
-    ) -> MotionPlan:
-        """Plan Pilz's PTP: all joints together, straight in joint space, in `duration` [s]."""
-        ...
-
-    def plan_linear(
-        self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
-    ) -> MotionPlan:
-        """Plan Pilz's LIN: the link on a straight line, turning at an even rate.
-
-        A joint goal is where it puts the TCP; a position goal keeps the link turned as it is.
-        """
-        ...
-
-    def plan_circular(
-        self,
-        group: str,
-        start: FloatArray,
-        goal: Goal,
-        point: ArcPoint,
-        options: PlanningOptions,
-    ) -> MotionPlan:
-        """Plan Pilz's CIRC: the link on an arc through a point or about a centre."""
-        ...
-
-    def plan_relative(
-        self,
-        group: str,
-        start: FloatArray,
-        link: str,
-        twist: FloatArray,
-        distances: tuple[float, float],
-        options: PlanningOptions,
-    ) -> MotionPlan:
-        """Move a link along a direction as far as goes between two distances.
-
-        Args:
-            group: The name of a chain group.
-            start: The start positions in description order.
-            link: A link that is rigidly attached after the group's last joint.
-            twist: Unit translation or rotation in world axes, shape (6,): linear, then angular.
-            distances: Least and most [m or rad]; equal for a fixed distance.
-            options: The options of the planning call.
-        """
-        ...
-
-    def plan_sequence(
-        self,
-        group: str,
-        start: FloatArray,
-        items: Sequence[SequenceItem],
-        options: PlanningOptions,
-    ) -> MotionPlan:
-        """Plan Pilz's sequence: motions blended into each other, all of them or none."""
-        ...
-
-    def plan_cartesian_path(
-        self,
-        group: str,
-        start: FloatArray,
-        goals: Sequence[PoseGoal | PositionGoal],
-        path_options: CartesianPathOptions,
-        options: PlanningOptions,
-    ) -> MotionPlan:
-        """Plan straight lines through waypoints, as far as they go.
-
-        The plan's result has `fraction`, `largest_joint_step` [rad or m] and `deviation` [m].
-        """
-        ...
-
-    def check_goal(
-        self,
-        group: str,
-        start: FloatArray,
-        goal: Goal | AnyGoal,
-        options: PlanningOptions,
-        constraints: PathConstraints | None = None,
-    ) -> CheckedGoal:
-        """What can be said of a goal without planning to it: IK solutions and what became of each.
+    def check_goal(self, request: MotionRequest) -> CheckedGoal:
+        """Explain the goal of a free motion without planning to it: each IK solution.
 
         Raises:
             PlanningFailed: NO_IK_SOLUTION, GOAL_IN_COLLISION ...

@@ -11,12 +11,11 @@ from typing import Literal
 from harness.bench.trial import Trial, try_plan
 from harness.cell.program import ProgramStep, step_seed
 from harness.core.errors import HarnessError
-from harness.core.types import FloatArray
 from harness.engine.dry_run import DryPlanner, DrySimulator
 from harness.engine.execute import execute_program
 from harness.planning.collision.scene import CoalScene
 from harness.planning.search.find_pipeline import with_planner
-from harness.ports import AnyGoal, Goal, MotionPlan, PathConstraints, PlanningOptions
+from harness.ports import FreeMotion, MotionPlan, MotionRequest
 from harness.recording.run import StepRecord
 from harness.session.prepare import Prepared, prepare
 
@@ -121,23 +120,19 @@ class _BenchPlanner(DryPlanner):
         if kind == "step_started":
             self._step = step
 
-    def plan(
-        self,
-        group: str,
-        start: FloatArray,
-        goal: Goal | AnyGoal,
-        options: PlanningOptions,
-        constraints: PathConstraints | None = None,
-    ) -> MotionPlan:
+    def plan(self, request: MotionRequest) -> MotionPlan:
         # the goal comes first, so that an unreachable one counts against no planner
-        jump = super().plan(group, start, goal, options, constraints)
-        step = self._step
-        if step is None or step.spec.verb != "move_to" or constraints is not None:
+        jump, motion, step = super().plan(request), request.motion, self._step
+        if step is None or step.spec.verb != "move_to" or not isinstance(motion, FreeMotion):
+            return jump
+        if motion.constraints is not None:
             return jump
         trials: list[Trial] = []
         for planner, seed in product(self._planners, self._seeds):
-            chosen = replace(with_planner(options, planner), seed=step_seed(seed, step.path))
-            trial = try_plan(self._real, self._scene, group, start, goal, chosen, planner, seed)
+            chosen = with_planner(request.options, planner)
+            chosen = replace(chosen, seed=step_seed(seed, step.path))
+            one = replace(request, options=chosen)
+            trial = try_plan(self._real, self._scene, one, planner, seed)
             trials.append(trial)
             if trial.is_straight:
                 break  # a free straight line needs no search, with any planner

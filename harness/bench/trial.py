@@ -12,7 +12,7 @@ import numpy as np
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.planning.collision.scene import CoalScene
-from harness.ports import AnyGoal, Goal, MotionPlanner, PlanningOptions
+from harness.ports import MotionPlanner, MotionRequest
 from harness.recording.motion_failures import SearchFailure
 
 SPACING = 0.05
@@ -64,10 +64,7 @@ class Trial:
 def try_plan(
     planner: MotionPlanner,
     scene: CoalScene,
-    group: str,
-    start: FloatArray,
-    goal: Goal | AnyGoal,
-    options: PlanningOptions,
+    request: MotionRequest,
     name: str,
     seed: int,
 ) -> Trial:
@@ -76,23 +73,20 @@ def try_plan(
     Args:
         planner: The planner, which plans in `scene`.
         scene: The planning scene at the start of the motion.
-        group: The name of the planning group.
-        start: Joint positions in description order.
-        goal: Goal of the motion.
-        options: Options with the planner and the step's seed.
+        request: The motion; its options name the planner and hold the step's seed.
         name: Name of the planner, for the record.
         seed: Seed of the scenario, for the record.
     """
     begin = time.process_time()
     try:
-        plan = planner.plan(group, start, goal, options)
+        plan = planner.plan(request)
     except PlanningFailed as failure:
         search = failure.details.find(SearchFailure)
         checks = 0 if search is None else search.state_checks
         return Trial(name, seed, failure.code, checks)
     spent = time.process_time() - begin
     path = even(plan.trajectory.positions)
-    nearest = _clearances(scene, group, start, path)
+    nearest = _clearances(scene, request.group, request.start, path)
     statistics: Mapping[str, Any] = plan.statistics
     return Trial(
         name,

@@ -17,7 +17,16 @@ from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.language.poses import Direction, Pose
 from harness.language.step import Step
-from harness.ports import Kinematics, MotionPlan, MotionPlanner, PlanningScene, Simulator
+from harness.ports import (
+    Kinematics,
+    MotionPlan,
+    MotionPlanner,
+    MotionRequest,
+    PlannedMotion,
+    PlanningOptions,
+    PlanningScene,
+    Simulator,
+)
 from harness.recording.execution_failures import TimeoutFailure
 from harness.recording.run import AttachmentRecord
 from harness.robot.description import Gripper, RobotDescription
@@ -287,6 +296,23 @@ class Cell:
             self.step, self.notes = current, notes
 
     # -- motion -------------------------------------------------------------------------------
+
+    def motion(
+        self, group: str, motion: PlannedMotion, options: PlanningOptions | None = None
+    ) -> MotionRequest:
+        """The request of a motion from where the arm is now; the step's options by default."""
+        return MotionRequest(group, self.planning_start(), motion, options or self.current.options)
+
+    def move(
+        self, group: str, motion: PlannedMotion, options: PlanningOptions | None = None
+    ) -> None:
+        """Plan a motion from where the arm is now and follow it; the step's options by default.
+
+        Raises:
+            PlanningFailed: There is no such motion.
+            StepFailed: The motion takes longer than the step may, or the arm cannot follow it.
+        """
+        self.carry_out(self.planner.plan(self.motion(group, motion, options)))
 
     def carry_out(self, plan: MotionPlan) -> None:
         """Note a plan, check it against the step's timeout, then follow it."""

@@ -13,7 +13,7 @@ from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.language.goals import GoalFields
-from harness.ports import JointGoal, PlanningOptions
+from harness.ports import FreeMotion, JointGoal, LinearMotion, MotionRequest, PlanningOptions
 from harness.recording.explanation import ApproachFailure
 
 MOST_BRANCHES = 2
@@ -83,7 +83,9 @@ def _most_promising(approaches: Sequence[Approach], search: GraspSearch, cell: C
     for goal, options in ((best.at, search.options), (best.before, cell.current.options)):
         joint_goal = resolve_goal(GoalFields(**goal.keys), search.group, cell)
         try:
-            cell.planner.check_goal(search.group, search.start, joint_goal, options)
+            cell.planner.check_goal(
+                MotionRequest(search.group, search.start, FreeMotion(joint_goal), options)
+            )
         except PlanningFailed as failure:
             failure.details += Details.of(ApproachFailure(goal is best.before))
             raise
@@ -122,8 +124,10 @@ def _ends(approach: Approach, search: GraspSearch, cell: Cell) -> Iterator[Float
     free = [state for state in states if not cell.scene.touches(state, padding)]
     for state in free[:MOST_BRANCHES]:
         try:
-            plan = cell.planner.plan_linear(
-                search.group, state, goal, replace(search.options, path_only=True)
+            plan = cell.planner.plan(
+                MotionRequest(
+                    search.group, state, LinearMotion(goal), replace(search.options, path_only=True)
+                )
             )
         except PlanningFailed:
             continue

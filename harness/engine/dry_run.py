@@ -6,7 +6,7 @@ missing objects come out as they would, contacts are taken to happen as the file
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -16,20 +16,14 @@ from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.ports import (
-    AnyGoal,
-    ArcPoint,
-    CartesianPathOptions,
     CheckedGoal,
-    Goal,
+    FreeMotion,
     GripperResult,
     JointGoal,
+    JointMotion,
     MotionPlan,
     MotionPlanner,
-    PathConstraints,
-    PlanningOptions,
-    PoseGoal,
-    PositionGoal,
-    SequenceItem,
+    MotionRequest,
 )
 from harness.recording.run import Signals, StepRecord
 from harness.robot.description import RobotDescription
@@ -165,84 +159,25 @@ class DryPlanner:
         self._planner = planner
         self._description = description
 
-    def plan(
-        self,
-        group: str,
-        start: FloatArray,
-        goal: Goal | AnyGoal,
-        options: PlanningOptions,
-        constraints: PathConstraints | None = None,
-    ) -> MotionPlan:
-        checked = self.check_goal(group, start, goal, options, constraints)
+    def plan(self, request: MotionRequest) -> MotionPlan:
+        motion = request.motion
+        if isinstance(motion, JointMotion):
+            request = replace(request, motion=FreeMotion(motion.goal))
+        if isinstance(request.motion, FreeMotion):
+            return self._jump(request)
+        options = replace(request.options, path_only=True)
+        return self._planner.plan(replace(request, options=options))
+
+    def check_goal(self, request: MotionRequest) -> CheckedGoal:
+        return self._planner.check_goal(request)
+
+    def _jump(self, request: MotionRequest) -> MotionPlan:
+        """From the start to the goal in a millisecond."""
+        checked, goal = self.check_goal(request), request.goal
         positions = goal.positions if isinstance(goal, JointGoal) else checked.positions
-        names = self._description.groups[group].joint_names
-        indices = list(self._description.group_indices(group))
-        ends = np.vstack([start[indices], positions])
+        names = self._description.groups[request.group].joint_names
+        indices = list(self._description.group_indices(request.group))
+        ends = np.vstack([request.start[indices], positions])
         still = np.zeros_like(ends)
         trajectory = JointTrajectory(names, np.array([0.0, 1e-3]), ends, still, still)
         return MotionPlan(trajectory, {}, checked.explanation)
-
-    def plan_joint_motion(
-        self,
-        group: str,
-        start: FloatArray,
-        positions: FloatArray,
-        options: PlanningOptions,
-        duration: float | None = None,
-    ) -> MotionPlan:
-        del duration
-        return self.plan(group, start, JointGoal(positions), options)
-
-    def plan_linear(
-        self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
-    ) -> MotionPlan:
-        return self._planner.plan_linear(group, start, goal, replace(options, path_only=True))
-
-    def plan_circular(
-        self, group: str, start: FloatArray, goal: Goal, point: ArcPoint, options: PlanningOptions
-    ) -> MotionPlan:
-        options = replace(options, path_only=True)
-        return self._planner.plan_circular(group, start, goal, point, options)
-
-    def plan_sequence(
-        self,
-        group: str,
-        start: FloatArray,
-        items: Sequence[SequenceItem],
-        options: PlanningOptions,
-    ) -> MotionPlan:
-        options = replace(options, path_only=True)
-        return self._planner.plan_sequence(group, start, items, options)
-
-    def plan_cartesian_path(
-        self,
-        group: str,
-        start: FloatArray,
-        goals: Sequence[PoseGoal | PositionGoal],
-        path_options: CartesianPathOptions,
-        options: PlanningOptions,
-    ) -> MotionPlan:
-        options = replace(options, path_only=True)
-        return self._planner.plan_cartesian_path(group, start, goals, path_options, options)
-
-    def plan_relative(
-        self,
-        group: str,
-        start: FloatArray,
-        link: str,
-        twist: FloatArray,
-        distances: tuple[float, float],
-        options: PlanningOptions,
-    ) -> MotionPlan:
-        options = replace(options, path_only=True)
-        return self._planner.plan_relative(group, start, link, twist, distances, options)
-
-    def check_goal(
-        self,
-        group: str,
-        start: FloatArray,
-        goal: Goal | AnyGoal,
-        options: PlanningOptions,
-        constraints: PathConstraints | None = None,
-    ) -> CheckedGoal:
-        return self._planner.check_goal(group, start, goal, options, constraints)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -18,25 +17,24 @@ from harness.planning.constrained_motion import find_constrained_motion
 from harness.planning.diagnosis.explanation import explained
 from harness.planning.free_motion import find_motion
 from harness.planning.goals.goal_choice import choose_goals
-from harness.planning.goals.goals import find_goals
+from harness.planning.goals.goals import GoalCandidates, find_goals
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.task import PlanningTask, make_task
 from harness.planning.timing.limits import Limits, TimingError
 from harness.planning.timing.profiles import cubic_curve, on_grid, quintic_curve, sample
 from harness.planning.timing.timing import time_straight
 from harness.ports import (
-    AnyGoal,
-    ArcPoint,
-    CartesianPathOptions,
     CheckedGoal,
-    Goal,
-    JointGoal,
+    CircularMotion,
+    FreeMotion,
+    JointMotion,
+    LinearMotion,
     MotionPlan,
+    MotionRequest,
+    MotionSequence,
     PathConstraints,
-    PlanningOptions,
-    PoseGoal,
-    PositionGoal,
-    SequenceItem,
+    RelativeMotion,
+    WaypointMotion,
 )
 from harness.recording.motion_failures import DurationFailure
 from harness.robot.description import RobotDescription
@@ -62,17 +60,36 @@ class VerifiedPlanner:
         return self.scene.description
 
     @explained
-    def plan(
-        self,
-        group: str,
-        start: FloatArray,
-        goal: Goal | AnyGoal,
-        options: PlanningOptions,
-        constraints: PathConstraints | None = None,
-    ) -> MotionPlan:
-        """Plan a collision-free motion to a goal; `start` in description order."""
-        task = self._task(group, start, options, constraints)
-        found = choose_goals(self.kinematics, task, np.asarray(start), goal, task.held)
+    def plan(self, request: MotionRequest) -> MotionPlan:
+        """Plan a motion without collision, timed and verified."""
+        match request.motion:
+            case FreeMotion() as motion:
+                return self._free(request, motion)
+            case JointMotion() as motion:
+                return self._joint(request, motion)
+            case LinearMotion(goal):
+                return self._links(request).linear(goal)
+            case CircularMotion(goal, point):
+                return self._links(request).circular(goal, point)
+            case RelativeMotion(link, twist, distances):
+                return self._links(request).relative(link, twist, distances)
+            case MotionSequence(items):
+                return plan_items(self._links(request), items)
+            case WaypointMotion(goals, path_options):
+                return plan_waypoints(self._links(request), goals, path_options)
+
+    @explained
+    def check_goal(self, request: MotionRequest) -> CheckedGoal:
+        """Explain the goal of a free motion without planning to it: each IK solution."""
+        if not isinstance(request.motion, FreeMotion):
+            raise TypeError("only the goal of a free motion can be checked alone")
+        motion = request.motion
+        found = self._goals(self._task(request, motion.constraints), request, motion)
+        return CheckedGoal(found.positions[0], found.explanation)
+
+    def _free(self, request: MotionRequest, motion: FreeMotion) -> MotionPlan:
+        task = self._task(request, motion.constraints)
+        found = self._goals(task, request, motion)
         explanation = found.explanation + task.lowered_margins
         try:
             if task.held is not None:
@@ -81,112 +98,47 @@ class VerifiedPlanner:
         except TimingError as problem:
             raise _untimed(problem) from problem
 
-    @explained
-    def plan_joint_motion(
-        self,
-        group: str,
-        start: FloatArray,
-        positions: FloatArray,
-        options: PlanningOptions,
-        duration: float | None = None,
-    ) -> MotionPlan:
-        """Plan Pilz's PTP: all joints together, straight in joint space.
+    def _joint(self, request: MotionRequest, motion: JointMotion) -> MotionPlan:
+        """Plan PTP.
 
         A given duration is exact to the physics' time grid, as a cubic from rest to rest, under
         the joints' whole limits; without one it is the fastest under the scaled limits.
         """
-        task = self._task(group, start, options)
-        goal = JointGoal(np.asarray(positions, dtype=float))
-        found = find_goals(self.kinematics, task.checker, np.asarray(start), goal, options.seed)
-        end = found.positions[0]
-        if duration is None:
+        task = self._task(request)
+        start, seed = np.asarray(request.start), request.options.seed
+        end = find_goals(self.kinematics, task.checker, start, motion.goal, seed).positions[0]
+        if motion.duration is None:
             try:
                 trajectory = time_straight(task.space.joint_names, task.start, end, task.limits)
             except TimingError as problem:
                 raise _untimed(problem) from problem
         else:
             task = replace(task, limits=_unscaled_limits(task))
-            trajectory = _timed_to_duration(task, end, duration)
+            trajectory = _timed_to_duration(task, end, motion.duration)
         task.accept(trajectory, end, "the straight joint motion")
         statistics = task.statistics("PTP", trajectory, [task.start, end])
         return MotionPlan(trajectory, statistics, task.lowered_margins)
 
-    @explained
-    def plan_linear(
-        self, group: str, start: FloatArray, goal: Goal, options: PlanningOptions
-    ) -> MotionPlan:
-        """Plan Pilz's LIN: the link on a straight line, turning at an even rate."""
-        return self._links(group, start, options).linear(goal)
-
-    @explained
-    def plan_circular(
-        self, group: str, start: FloatArray, goal: Goal, point: ArcPoint, options: PlanningOptions
-    ) -> MotionPlan:
-        """Plan Pilz's CIRC: the link on an arc through a point or about a centre."""
-        return self._links(group, start, options).circular(goal, point)
-
-    @explained
-    def plan_relative(
-        self,
-        group: str,
-        start: FloatArray,
-        link: str,
-        twist: FloatArray,
-        distances: tuple[float, float],
-        options: PlanningOptions,
-    ) -> MotionPlan:
-        """Move a link along a direction as far as possible between two distances."""
-        return self._links(group, start, options).relative(link, twist, distances)
-
-    @explained
-    def plan_sequence(
-        self,
-        group: str,
-        start: FloatArray,
-        items: Sequence[SequenceItem],
-        options: PlanningOptions,
-    ) -> MotionPlan:
-        """Plan Pilz's sequence: motions blended into each other, all of them or none."""
-        return plan_items(self._links(group, start, options), items)
-
-    @explained
-    def plan_cartesian_path(
-        self,
-        group: str,
-        start: FloatArray,
-        goals: Sequence[PoseGoal | PositionGoal],
-        path_options: CartesianPathOptions,
-        options: PlanningOptions,
-    ) -> MotionPlan:
-        """Plan straight lines through waypoints, as far as they go."""
-        return plan_waypoints(self._links(group, start, options), goals, path_options)
-
-    @explained
-    def check_goal(
-        self,
-        group: str,
-        start: FloatArray,
-        goal: Goal | AnyGoal,
-        options: PlanningOptions,
-        constraints: PathConstraints | None = None,
-    ) -> CheckedGoal:
-        """Explain a goal without planning to it: each solution of inverse kinematics."""
-        task = self._task(group, start, options, constraints)
-        found = choose_goals(self.kinematics, task, np.asarray(start), goal, task.held)
-        return CheckedGoal(found.positions[0], found.explanation)
+    def _goals(
+        self, task: PlanningTask, request: MotionRequest, motion: FreeMotion
+    ) -> GoalCandidates:
+        start = np.asarray(request.start)
+        return choose_goals(self.kinematics, task, start, motion.goal, task.held)
 
     def _task(
-        self,
-        group: str,
-        start: FloatArray,
-        options: PlanningOptions,
-        constraints: PathConstraints | None = None,
+        self, request: MotionRequest, constraints: PathConstraints | None = None
     ) -> PlanningTask:
-        robot = self.kinematics.robot
-        return make_task(self.scene, robot, group, start, options, constraints)
+        return make_task(
+            self.scene,
+            self.kinematics.robot,
+            request.group,
+            request.start,
+            request.options,
+            constraints,
+        )
 
-    def _links(self, group: str, start: FloatArray, options: PlanningOptions) -> LinkMotions:
-        return LinkMotions(self.kinematics, self._task(group, start, options))
+    def _links(self, request: MotionRequest) -> LinkMotions:
+        return LinkMotions(self.kinematics, self._task(request))
 
 
 def _unscaled_limits(task: PlanningTask) -> Limits:

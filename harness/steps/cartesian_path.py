@@ -15,7 +15,13 @@ from harness.language.base import Angle, Fraction, Length, Name, PositiveLength,
 from harness.language.goals import CartesianLimitsSpec, GoalFields
 from harness.language.poses import Pose, Position
 from harness.language.step import Step
-from harness.ports import CartesianPathOptions, JointGoal, PoseGoal, PositionGoal
+from harness.ports import (
+    CartesianPathOptions,
+    JointGoal,
+    PoseGoal,
+    PositionGoal,
+    WaypointMotion,
+)
 from harness.ports import JumpThreshold as PlannedJumpThreshold
 from harness.recording.explanation import CartesianPathResult
 
@@ -92,15 +98,12 @@ class CartesianPath(Step):
         path = CartesianPathOptions(self.max_step, self.precision, self.min_fraction, jump)
         options = replace(cell.current.options, cartesian_limits=link_limits(self.cartesian_limits))
         try:
-            plan = cell.planner.plan_cartesian_path(
-                group, cell.planning_start(), goals, path, options
-            )
+            cell.move(group, WaypointMotion(goals, path), options)
         except PlanningFailed as failure:
             followed = failure.details.find(CartesianPathResult)
             if followed is not None:
                 cell.notes.result.update(replace(followed, min_fraction=None).plain())
             raise
-        cell.carry_out(plan)
 
 
 def _goal(waypoint: Waypoint, link: str | None, group: str, cell: Cell) -> PoseGoal | PositionGoal:

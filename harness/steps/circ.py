@@ -11,6 +11,7 @@ from harness.cell.goals import arc_point, group_of, link_limits, resolve_goal
 from harness.cell.scope import At
 from harness.language.goals import ArcFields
 from harness.language.step import Step
+from harness.ports import CircularMotion
 
 
 class Circ(ArcFields, Step):
@@ -29,5 +30,4 @@ class Circ(ArcFields, Step):
         group = group_of(cell, self.group)
         goal, point = resolve_goal(self, group, cell), arc_point(self, cell)
         options = replace(cell.current.options, cartesian_limits=link_limits(self.cartesian_limits))
-        start = cell.planning_start()
-        cell.carry_out(cell.planner.plan_circular(group, start, goal, point, options))
+        cell.move(group, CircularMotion(goal, point), options)

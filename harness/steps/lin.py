@@ -11,6 +11,7 @@ from harness.cell.goals import group_of, link_limits, resolve_goal
 from harness.cell.scope import At
 from harness.language.goals import LineFields
 from harness.language.step import Step
+from harness.ports import LinearMotion
 
 
 class Lin(LineFields, Step):
@@ -28,4 +29,4 @@ class Lin(LineFields, Step):
         group = group_of(cell, self.group)
         goal = resolve_goal(self, group, cell)
         options = replace(cell.current.options, cartesian_limits=link_limits(self.cartesian_limits))
-        cell.carry_out(cell.planner.plan_linear(group, cell.planning_start(), goal, options))
+        cell.move(group, LinearMotion(goal), options)

@@ -14,7 +14,7 @@ from harness.core.types import FloatArray
 from harness.language.base import Angle, Length, Name, PositiveLength
 from harness.language.poses import Direction
 from harness.language.step import Step
-from harness.ports import MotionPlan, PlanningOptions
+from harness.ports import MotionPlan, MotionRequest, PlanningOptions, RelativeMotion
 
 
 class MoveRelative(Step):
@@ -98,11 +98,11 @@ class MoveRelative(Step):
             least = most = self.angle
         else:
             raise ValueError("the model has a direction or a rotation")
-        return cell.planner.plan_relative(
-            group_of(cell, self.group),
-            start,
-            self.link or cell.description.tcp_link,
-            twist,
-            (least, most),
-            options,
+        return cell.planner.plan(
+            MotionRequest(
+                group_of(cell, self.group),
+                start,
+                RelativeMotion(self.link or cell.description.tcp_link, twist, (least, most)),
+                options,
+            )
         )

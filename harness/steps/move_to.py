@@ -13,7 +13,7 @@ from harness.cell.scope import At
 from harness.language.goals import GOAL_KEYS, GoalFields
 from harness.language.planning import PathConstraintsSpec
 from harness.language.step import Step
-from harness.ports import AnyGoal
+from harness.ports import AnyGoal, FreeMotion
 
 
 class MoveTo(GoalFields, Step):
@@ -56,8 +56,7 @@ class MoveTo(GoalFields, Step):
         constraints = None
         if self.path_constraints is not None:
             constraints = path_constraints(self.path_constraints, cell)
-        start = cell.planning_start()
-        cell.carry_out(cell.planner.plan(group, start, goal, cell.current.options, constraints))
+        cell.move(group, FreeMotion(goal, constraints))
 
 
 def _check_constraints(constraints: PathConstraintsSpec, group_name: str | None, at: At) -> None:

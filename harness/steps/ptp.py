@@ -14,7 +14,7 @@ from harness.core.errors import PlanningFailed
 from harness.language.base import PositiveDuration
 from harness.language.goals import GoalFields
 from harness.language.step import Step
-from harness.ports import JointGoal
+from harness.ports import FreeMotion, JointGoal, JointMotion
 
 
 class Ptp(GoalFields, Step):
@@ -42,17 +42,14 @@ class Ptp(GoalFields, Step):
         """Move all joints together; a pose goal takes the nearest inverse kinematics solution."""
         cell.sync_scene()
         group = group_of(cell, self.group)
-        start = cell.planning_start()
         goal = resolve_goal(self, group, cell)
         if isinstance(goal, JointGoal):
             positions = goal.positions
         else:
-            cell.planner.check_goal(group, start, goal, cell.current.options)
-            solutions = cell.kinematics.solve(group, goal, start, cell.current.options.seed)
+            cell.planner.check_goal(cell.motion(group, FreeMotion(goal)))
+            start, seed = cell.planning_start(), cell.current.options.seed
+            solutions = cell.kinematics.solve(group, goal, start, seed)
             if not solutions:
                 raise PlanningFailed("NO_IK_SOLUTION", "no joint positions reach the goal")
             positions = solutions[0]
-        plan = cell.planner.plan_joint_motion(
-            group, start, positions, cell.current.options, self.duration
-        )
-        cell.carry_out(plan)
+        cell.move(group, JointMotion(positions, self.duration))

@@ -16,6 +16,7 @@ from harness.core.types import FloatArray
 from harness.language.base import NonNegativeLength, SpecModel
 from harness.language.goals import ArcFields, GoalFields, LineFields
 from harness.language.step import Step
+from harness.ports import MotionSequence
 from harness.ports import SequenceItem as PlannedItem
 
 LinkPosition = tuple[str, str, FloatArray]
@@ -94,9 +95,7 @@ class Sequence(Step):
         cell.sync_scene()
         group = group_of(cell, self.group)
         items = [_planned(item, group, cell) for item in self.items]
-        cell.carry_out(
-            cell.planner.plan_sequence(group, cell.planning_start(), items, cell.current.options)
-        )
+        cell.move(group, MotionSequence(items))
 
 
 def _planned(item: SequenceItemSpec, group: str, cell: Cell) -> PlannedItem:

@@ -11,7 +11,7 @@ from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3
 from harness.planning.collision.checker import MARGIN_SLACK, TOUCHING
 from harness.planning.verification.verify import EFFORT_TOLERANCE, FINAL_RESOLUTION, LIMIT_TOLERANCE
-from harness.ports import MotionPlan, PlanningOptions, PoseGoal
+from harness.ports import MotionPlan, MotionRequest, PlanningOptions, PoseGoal
 from tests.planning.lesson import Cell, at, open_manipulator, thing, ur
 
 SCALING = 0.4
@@ -82,11 +82,11 @@ class Problem:
         middle = self.pose(0.5 * (self.start + goal)).translation
         self.cell.add(thing("block", at(*middle), Shape(Box((size, size, size)))))
 
-    def plan(self, what, *arguments, **more) -> MotionPlan | None:
+    def plan(self, motion, options=OPTIONS) -> MotionPlan | None:
         """A plan that keeps what every plan must; None when it failed as planning may."""
-        more = {"options": OPTIONS, **more}
         try:
-            plan = getattr(self.cell.planner, what)(self.group, self.cell.state, *arguments, **more)
+            request = MotionRequest(self.group, self.cell.state, motion, options)
+            plan = self.cell.planner.plan(request)
         except PlanningFailed as failure:
             if failure.code not in LAWFUL or not failure.message:
                 raise

@@ -5,7 +5,16 @@ import pytest
 
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
-from harness.ports import ArcPoint, CartesianLimits, PlanningOptions, PoseGoal, PositionGoal
+from harness.ports import (
+    ArcPoint,
+    CartesianLimits,
+    CircularMotion,
+    LinearMotion,
+    MotionRequest,
+    PlanningOptions,
+    PoseGoal,
+    PositionGoal,
+)
 from tests.planning.lesson import ARM, TCP, Cell, grasp_goal, open_manipulator, ur
 
 ABOVE = [-0.858, -1.187, 0.474, -0.858, -1.5708, -1.643]
@@ -61,7 +70,7 @@ def test_every_sample_is_on_the_circle_and_turned_in_proportion(cell, seed):
     end = on_circle(start.translation, center, axis, sweep)
     goal = PoseGoal(TCP, SE3((start @ turn).rotation, end))
     interim = ArcPoint("interim", on_circle(start.translation, center, axis, sweep / 3))
-    plan = cell.planner.plan_circular(ARM, cell.state, goal, interim, FAST)
+    plan = cell.planner.plan(MotionRequest(ARM, cell.state, CircularMotion(goal, interim), FAST))
     track = poses(cell, plan)
     whole = start.distance_to(goal.pose)[1]
     assert track[-1].distance_to(goal.pose)[0] < 1e-6
@@ -85,7 +94,9 @@ def test_about_a_centre_the_shorter_arc_is_taken(cell):
     center = moved(start, 0.05, 0, 0)
     end = moved(center, 0.05 * np.cos(2.0), 0.05 * np.sin(2.0), 0)  # 1.14 rad from the start
     goal = PositionGoal(TCP, end)
-    plan = cell.planner.plan_circular(ARM, cell.state, goal, ArcPoint("center", center), FAST)
+    plan = cell.planner.plan(
+        MotionRequest(ARM, cell.state, CircularMotion(goal, ArcPoint("center", center)), FAST)
+    )
     assert plan.explanation.plain()["sweep"] == pytest.approx(np.pi - 2.0)
     assert plan.explanation.plain()["radius"] == pytest.approx(0.05)
     turned = [here(cell).distance_to(pose)[1] for pose in poses(cell, plan)]
@@ -101,9 +112,11 @@ def test_cartesian_limits_hold_on_the_final_samples_and_are_used(cell, kind):
     goal = PositionGoal(TCP, moved(start, 0.04, 0.04, 0.0))
     if kind == "arc":
         point = ArcPoint("center", moved(start, 0.04, 0, 0))
-        plan = cell.planner.plan_circular(ARM, cell.state, goal, point, options)
+        plan = cell.planner.plan(
+            MotionRequest(ARM, cell.state, CircularMotion(goal, point), options)
+        )
     else:
-        plan = cell.planner.plan_linear(ARM, cell.state, goal, options)
+        plan = cell.planner.plan(MotionRequest(ARM, cell.state, LinearMotion(goal), options))
     places = np.array([pose.translation for pose in poses(cell, plan)])
     steps = np.diff(plan.trajectory.times)[:, None]
     velocities = np.diff(places, axis=0) / steps
@@ -122,7 +135,9 @@ def test_a_small_arc_is_no_line(cell, kind, radius, sweep):
     center, axis = moved(start, radius, 0, 0), np.array([0, 0, 1.0])
     end, middle = (on_circle(start, center, axis, share * sweep) for share in (1.0, 0.5))
     point = ArcPoint(kind, middle if kind == "interim" else center)
-    plan = cell.planner.plan_circular(ARM, cell.state, PositionGoal(TCP, end), point, FAST)
+    plan = cell.planner.plan(
+        MotionRequest(ARM, cell.state, CircularMotion(PositionGoal(TCP, end), point), FAST)
+    )
     assert plan.explanation.plain()["sweep"] == pytest.approx(sweep)
     assert plan.explanation.plain()["radius"] == pytest.approx(radius)
     track = np.array([pose.translation for pose in poses(cell, plan)])
@@ -131,7 +146,9 @@ def test_a_small_arc_is_no_line(cell, kind, radius, sweep):
 
 def no_circle(cell, goal, point):
     with pytest.raises(PlanningFailed) as caught:
-        cell.planner.plan_circular(ARM, cell.state, PositionGoal(TCP, goal), point, FAST)
+        cell.planner.plan(
+            MotionRequest(ARM, cell.state, CircularMotion(PositionGoal(TCP, goal), point), FAST)
+        )
     assert caught.value.code == "INVALID_MOTION_PLAN"
     return caught.value.message
 
@@ -153,8 +170,13 @@ def test_an_arc_out_of_reach_says_how_far_it_goes(cell):
     start = here(cell).translation
     point = ArcPoint("interim", moved(start, 0.0, 0.6, 0.4))
     with pytest.raises(PlanningFailed) as caught:
-        cell.planner.plan_circular(
-            ARM, cell.state, PositionGoal(TCP, moved(start, 0, 0.1, 0)), point, FAST
+        cell.planner.plan(
+            MotionRequest(
+                ARM,
+                cell.state,
+                CircularMotion(PositionGoal(TCP, moved(start, 0, 0.1, 0)), point),
+                FAST,
+            )
         )
     assert caught.value.code in ("NO_IK_SOLUTION", "PLANNING_FAILED", "INVALID_MOTION_PLAN")
     assert "can follow the arc for" in caught.value.message
@@ -167,7 +189,7 @@ def test_four_joints_go_round_with_position_and_pitch():
     start = cell.kinematics.link_pose(cell.state, TCP)
     goal = PositionGoal(TCP, moved(start.translation, 0.0, 0.06, 0.0))
     interim = ArcPoint("interim", moved(start.translation, 0.0, 0.03, 0.03))
-    plan = cell.planner.plan_circular("arm", cell.state, goal, interim, FAST)
+    plan = cell.planner.plan(MotionRequest("arm", cell.state, CircularMotion(goal, interim), FAST))
     center = moved(start.translation, 0, 0.03, 0)
     for positions in plan.trajectory.positions:
         pose = cell.kinematics.link_pose(cell.with_arm(positions), TCP)

@@ -14,7 +14,7 @@ from harness.planning.collision.checker import MotionChecker
 from harness.planning.collision.compiled import use_compiled
 from harness.planning.collision.sphere_cover import cover, cover_shapes, signed_distance
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import JointGoal, PlanningOptions
+from harness.ports import FreeMotion, JointGoal, MotionRequest, PlanningOptions
 from harness.robot.mesh_file import convex_hull
 from tests.engine.front_door import run
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, at, boxes, open_manipulator, thing, ur
@@ -239,7 +239,11 @@ def test_plans_are_the_same_with_and_without_the_compiled_stage(stages):
         cell.state = cell.with_arm(cell.named("mogi_down"))
         cell.add(boxes(*FIRST_BOXES))
         goal = JointGoal(cell.named("up"))
-        plans.append(cell.planner.plan(ARM, cell.state, goal, PlanningOptions(seed=3)))
+        plans.append(
+            cell.planner.plan(
+                MotionRequest(ARM, cell.state, FreeMotion(goal), PlanningOptions(seed=3))
+            )
+        )
     assert plans[0].statistics == plans[1].statistics
     assert np.array_equal(plans[0].trajectory.positions, plans[1].trajectory.positions)
 
@@ -250,11 +254,12 @@ import sys
 if {hide}: sys.modules["numba"] = None
 from harness.planning.collision import compiled
 from tests.planning.lesson import Cell, ARM, FIRST_BOXES, boxes, ur
-from harness.ports import JointGoal, PlanningOptions
+from harness.ports import FreeMotion, JointGoal, MotionRequest, PlanningOptions
 from harness.robot.mesh_file import convex_hull
 cell = Cell(ur("ur3e"))
 if {hide}: compiled.use_compiled("always")
-plan = cell.planner.plan(ARM, cell.state, JointGoal(cell.named("up")), PlanningOptions())
+goal = FreeMotion(JointGoal(cell.named("up")))
+plan = cell.planner.plan(MotionRequest(ARM, cell.state, goal, PlanningOptions()))
 assert {hide} or "numba" not in sys.modules
 assert not {hide} or compiled.compiled_stage() is None
 print(plan.trajectory.duration)

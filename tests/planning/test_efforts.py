@@ -12,7 +12,7 @@ from harness.core.world import WorldObject
 from harness.planning.efforts import InverseDynamics
 from harness.planning.model.robot_model import GroupSpace
 from harness.planning.timing.timing import Limits, time_blended, time_straight
-from harness.ports import JointGoal, PlanningOptions
+from harness.ports import FreeMotion, JointGoal, MotionRequest, PlanningOptions
 from harness.recording.motion_failures import OverloadFailure
 from tests.planning.lesson import ARM, TCP, Cell, ur
 
@@ -89,13 +89,15 @@ def test_a_load_that_the_arm_cannot_hold_never_moves():
     cell = cell_with(20.0)
     goal = JointGoal(np.array([0.0, 0.0, 0.0, -1.4, -1.57, 0.0]))
     with pytest.raises(PlanningFailed) as caught:
-        cell.planner.plan(ARM, cell.state, goal, PlanningOptions())
+        cell.planner.plan(MotionRequest(ARM, cell.state, FreeMotion(goal), PlanningOptions()))
     assert caught.value.code == "INVALID_MOTION_PLAN"
     facts = caught.value.facts
     assert "the arm cannot hold load (20 kg) still" in caught.value.message
     assert f"needs {facts['effort']:.1f} N m and has at most 54.0 N m" in caught.value.message
     assert "no slower motion helps: give load a `mass` of at most" in facts["advice"]
-    light = cell_with(1.0).planner.plan(ARM, cell.state, goal, PlanningOptions())
+    light = cell_with(1.0).planner.plan(
+        MotionRequest(ARM, cell.state, FreeMotion(goal), PlanningOptions())
+    )
     assert light.trajectory.duration > 0
 
 

@@ -17,7 +17,17 @@ from harness.planning.ik.nearest_pose import (
     nearest_pose,
 )
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import JointGoal, PlanningOptions, PoseGoal, PositionGoal
+from harness.ports import (
+    FreeMotion,
+    JointGoal,
+    JointMotion,
+    LinearMotion,
+    MotionRequest,
+    PlanningOptions,
+    PoseGoal,
+    PositionGoal,
+    RelativeMotion,
+)
 from harness.recording.explanation import stages_of
 from tests.planning.lesson import (
     ARM,
@@ -101,7 +111,9 @@ def test_a_turn_that_is_kept_is_kept():
 @pytest.mark.parametrize("xyz", [(0.9, 0, 0.3), (0.5, -0.1, 0.3), (0.2, 0.6, 0.6), (0, 0.05, 0.2)])
 def test_a_goal_that_is_advised_is_reached_as_it_is_written(xyz):
     cell = Cell(ur("ur3e"))
-    error = explained(cell.planner.plan, ARM, cell.state, grasp_goal(*xyz), OPTIONS)
+    error = explained(
+        cell.planner.plan, MotionRequest(ARM, cell.state, FreeMotion(grasp_goal(*xyz)), OPTIONS)
+    )
     assert error.code == "NO_IK_SOLUTION"
     numbers = r"\[([^\]]*)\]"
     found = re.search(rf"frame: world, xyz: {numbers}, quat_xyzw: {numbers}", error.facts["advice"])
@@ -113,15 +125,17 @@ def test_a_goal_that_is_advised_is_reached_as_it_is_written(xyz):
 def test_a_goal_in_collision_is_free_where_the_explanation_moves_it():
     cell = Cell(ur("ur3e"))
     goal = grasp_goal(0.32, -0.17, -0.02)
-    error = explained(cell.planner.plan, ARM, cell.state, goal, OPTIONS)
+    error = explained(cell.planner.plan, MotionRequest(ARM, cell.state, FreeMotion(goal), OPTIONS))
     shift = np.array(error.facts["nearest"]["nearest_free"]["shift"])
 
     def moved(share):
         pose = SE3(goal.pose.rotation, goal.pose.translation + share * shift)
         return replace(goal, pose=pose)
 
-    cell.planner.check_goal(ARM, cell.state, moved(1.0), OPTIONS)
-    explained(cell.planner.check_goal, ARM, cell.state, moved(0.8), OPTIONS)
+    cell.planner.check_goal(MotionRequest(ARM, cell.state, FreeMotion(moved(1.0)), OPTIONS))
+    explained(
+        cell.planner.check_goal, MotionRequest(ARM, cell.state, FreeMotion(moved(0.8)), OPTIONS)
+    )
     assert f"{np.ceil(1000 * shift[2]):.1f} mm along +z" in error.facts["advice"]
 
 
@@ -141,7 +155,10 @@ def test_a_start_in_collision_is_reported_next_to_what_is_known_of_the_goal():
     cell = Cell(ur("ur3e"))
     tip = cell.kinematics.link_pose(cell.state, "wrist_1_link").translation
     cell.scene.add_object(thing("crate", at(*tip), Shape(Box((0.2, 0.2, 0.2)))), at(*tip))
-    error = explained(cell.planner.plan, ARM, cell.state, grasp_goal(0.9, 0, 0.3), OPTIONS)
+    error = explained(
+        cell.planner.plan,
+        MotionRequest(ARM, cell.state, FreeMotion(grasp_goal(0.9, 0, 0.3)), OPTIONS),
+    )
     assert error.code == "START_STATE_IN_COLLISION"
     assert stage(error, "reach").code == "NO_IK_SOLUTION"
     assert stage(error, "start state").code == "START_STATE_IN_COLLISION"
@@ -156,7 +173,10 @@ def test_limits_that_forbid_every_branch_are_reported_with_joint_and_excess():
         for joint in narrow.joints
     )
     cell = Cell(replace(narrow, joints=joints))
-    error = explained(cell.planner.plan, ARM, cell.state, grasp_goal(0.32, -0.17, 0.3), OPTIONS)
+    error = explained(
+        cell.planner.plan,
+        MotionRequest(ARM, cell.state, FreeMotion(grasp_goal(0.32, -0.17, 0.3)), OPTIONS),
+    )
     assert error.code == "NO_IK_SOLUTION"
     branches = stage(error, "inverse kinematics")
     assert branches.code == "NO_IK_SOLUTION"
@@ -169,11 +189,16 @@ def test_limits_that_forbid_every_branch_are_reported_with_joint_and_excess():
 def test_four_joints_report_what_of_a_pose_they_miss_and_take_it_where_that_is_allowed():
     cell = Cell(open_manipulator())
     pose = at(0.25, 0.0, 1.095, rpy=(0, 0, 0.02))
-    error = explained(cell.planner.plan, "arm", cell.state, PoseGoal(TCP, pose), OPTIONS)
+    error = explained(
+        cell.planner.plan,
+        MotionRequest("arm", cell.state, FreeMotion(PoseGoal(TCP, pose)), OPTIONS),
+    )
     assert error.code == "GOAL_CONSTRAINTS_VIOLATED"
     assert error.facts["orientation_error"] == pytest.approx(0.02)
     allowed = PoseGoal(TCP, pose, orientation_tolerance=0.03)
-    found = cell.planner.plan("arm", cell.state, allowed, OPTIONS).explanation.plain()
+    found = cell.planner.plan(
+        MotionRequest("arm", cell.state, FreeMotion(allowed), OPTIONS)
+    ).explanation.plain()
     assert found["ik_task"] == "position and pitch"
     for solution in found["ik_solutions"]:
         assert solution["residual"]["orientation"] == pytest.approx(0.02)
@@ -186,9 +211,16 @@ def test_tolerances_about_axes_are_kept_one_by_one():
     pose = at(0.25, 0.0, 1.095, rpy=(0, 0, 0.5))
     for about_z in (0.6, 3.15):
         goal = PoseGoal(TCP, pose, 1e-3, about_z, (0.01, 0.01, about_z))
-        assert cell.planner.plan("arm", cell.state, goal, OPTIONS).trajectory.duration > 0
+        assert (
+            cell.planner.plan(
+                MotionRequest("arm", cell.state, FreeMotion(goal), OPTIONS)
+            ).trajectory.duration
+            > 0
+        )
     wrong = PoseGoal(TCP, pose, 1e-3, 0.6, (0.6, 0.6, 0.4))
-    error = explained(cell.planner.plan, "arm", cell.state, wrong, OPTIONS)
+    error = explained(
+        cell.planner.plan, MotionRequest("arm", cell.state, FreeMotion(wrong), OPTIONS)
+    )
     assert error.code == "GOAL_CONSTRAINTS_VIOLATED"
     assert "34.4°, 34.4°, 22.9° about x, y, z are allowed" in error.message
 
@@ -196,7 +228,9 @@ def test_tolerances_about_axes_are_kept_one_by_one():
 def test_joints_are_reported_in_their_own_units():
     cell = Cell(ur("ur3e"))
     beyond = JointGoal(np.array([-3.5, -1.57, 0, 0, 0, 0]))
-    error = explained(cell.planner.plan, ARM, cell.state, beyond, OPTIONS)
+    error = explained(
+        cell.planner.plan, MotionRequest(ARM, cell.state, FreeMotion(beyond), OPTIONS)
+    )
     [line] = stage(error, "reach").details
     assert "at -3.500 rad (-200.5°), 0.159 rad (9.1°) beyond its limit -3.341 rad" in line
     nearest = error.facts["nearest"]["joint_positions"]
@@ -204,37 +238,22 @@ def test_joints_are_reported_in_their_own_units():
 
 
 FAR = grasp_goal(1.1, 0.2, 0.4)
-CALLS = {
-    "by position": lambda planner, start: planner.plan(ARM, start, FAR, OPTIONS),
-    "keywords in order": lambda planner, start: planner.plan(
-        group=ARM, start=start, goal=FAR, options=OPTIONS
-    ),
-    "goal first": lambda planner, start: planner.plan(
-        goal=FAR, options=OPTIONS, group=ARM, start=start
-    ),
-    "options first": lambda planner, start: planner.plan(
-        options=OPTIONS, start=start, group=ARM, goal=FAR
-    ),
-    "half by position": lambda planner, start: planner.plan(
-        ARM, start, options=OPTIONS, goal=FAR, constraints=None
-    ),
-    "another method": lambda planner, start: planner.check_goal(
-        constraints=None, options=OPTIONS, goal=FAR, start=start, group=ARM
-    ),
-    "a line": lambda planner, start: planner.plan_linear(
-        options=OPTIONS, goal=FAR, start=start, group=ARM
-    ),
+MOTIONS = {
+    "a free motion": FreeMotion(FAR),
+    "a free motion without constraints": FreeMotion(FAR, None),
+    "a line": LinearMotion(FAR),
 }
 
 
-@pytest.mark.parametrize("call", CALLS.values(), ids=CALLS)
-def test_every_legal_order_of_arguments_gives_the_same_explanation(call):
+@pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
+def test_every_motion_to_a_goal_explains_it_alike(motion):
     cell = Cell(ur("ur3e"))
-    error = explained(call, cell.planner, cell.state)
+    error = explained(cell.planner.plan, MotionRequest(ARM, cell.state, motion, OPTIONS))
     assert error.code == "NO_IK_SOLUTION"
     reach = stage(error, "reach")
     assert reach.status == "failed"
-    assert reach == stage(explained(CALLS["by position"], cell.planner, cell.state), "reach")
+    free = MotionRequest(ARM, cell.state, FreeMotion(FAR), OPTIONS)
+    assert reach == stage(explained(cell.planner.check_goal, free), "reach")
 
 
 @pytest.mark.parametrize("kind", [np.array, list, tuple])
@@ -242,9 +261,7 @@ def test_joint_positions_are_explained_in_whatever_form_they_are_given(kind):
     cell = Cell(ur("ur3e"))
     positions = kind([0.0, -1.5, 4.0, -1.7, -1.57, 0.0])
     error = explained(
-        lambda: cell.planner.plan_joint_motion(
-            positions=positions, options=OPTIONS, start=cell.state, group=ARM
-        )
+        lambda: cell.planner.plan(MotionRequest(ARM, cell.state, JointMotion(positions), OPTIONS))
     )
     assert error.code == "GOAL_STATE_INVALID"
     assert "elbow_joint would be at 4.000 rad" in stage(error, "reach").details[0]
@@ -254,13 +271,13 @@ def test_joint_positions_are_explained_in_whatever_form_they_are_given(kind):
 def test_a_motion_without_a_goal_of_its_own_is_explained_by_keywords():
     cell = Cell(ur("ur3e"))
     error = explained(
-        lambda: cell.planner.plan_relative(
-            options=OPTIONS,
-            distances=(3.0, 3.0),
-            twist=np.array([1.0, 0, 0, 0, 0, 0]),
-            link=TCP,
-            start=cell.state,
-            group=ARM,
+        lambda: cell.planner.plan(
+            MotionRequest(
+                ARM,
+                cell.state,
+                RelativeMotion(TCP, np.array([1.0, 0, 0, 0, 0, 0]), (3.0, 3.0)),
+                OPTIONS,
+            )
         )
     )
     assert stages_of(error.facts)[0].stage == "start state"

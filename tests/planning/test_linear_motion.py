@@ -10,7 +10,14 @@ from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3
 from harness.planning.cartesian.line_goals import pitched
 from harness.planning.cartesian.splines import uniform_spline
-from harness.ports import PlanningOptions, PoseGoal, PositionGoal
+from harness.ports import (
+    LinearMotion,
+    MotionRequest,
+    PlanningOptions,
+    PoseGoal,
+    PositionGoal,
+    RelativeMotion,
+)
 from tests.planning.lesson import ARM, TCP, Cell, at, grasp_goal, open_manipulator, thing, ur
 
 SLOW = PlanningOptions(velocity_scaling=0.1, acceleration_scaling=0.1)
@@ -37,7 +44,9 @@ def test_lin_keeps_the_tool_on_its_line_and_turns_it_evenly(cell):
     here = cell.kinematics.link_pose(cell.state, TCP)
     there = here @ SE3.from_xyz_rpy((0.03, -0.02, 0.12), (0, 0, 0.5))
     options = PlanningOptions(velocity_scaling=0.1)
-    plan = cell.planner.plan_linear(ARM, cell.state, PoseGoal(TCP, there), options)
+    plan = cell.planner.plan(
+        MotionRequest(ARM, cell.state, LinearMotion(PoseGoal(TCP, there)), options)
+    )
     track = poses(cell, plan)
     axis = there.translation - here.translation
     total = float(np.linalg.norm(axis))
@@ -57,13 +66,15 @@ def test_lin_through_an_object_names_what_is_in_the_way(cell):
     cell.add(thing("plate", at(0.32, -0.17, 1.02 + 0.18), Shape(Box((0.02, 0.2, 0.01)))))
     goal = grasp_goal(0.32, -0.17, 0.06)
     with pytest.raises(PlanningFailed) as caught:
-        cell.planner.plan_linear(ARM, cell.state, goal, SLOW)
+        cell.planner.plan(MotionRequest(ARM, cell.state, LinearMotion(goal), SLOW))
     assert "plate" in caught.value.message
 
 
 def test_a_fixed_relative_motion_covers_its_distance(cell):
     up = np.array([0, 0, -1.0, 0, 0, 0])
-    plan = cell.planner.plan_relative(ARM, cell.state, TCP, up, (0.1, 0.1), SLOW)
+    plan = cell.planner.plan(
+        MotionRequest(ARM, cell.state, RelativeMotion(TCP, up, (0.1, 0.1)), SLOW)
+    )
     first, last = poses(cell, plan)[0], poses(cell, plan)[-1]
     assert np.allclose(last.translation - first.translation, [0, 0, -0.1], atol=1e-6)
     assert first.distance_to(last)[1] < 1e-6
@@ -71,7 +82,9 @@ def test_a_fixed_relative_motion_covers_its_distance(cell):
 
 def test_a_rotation_turns_the_link_in_place(cell):
     turn = np.array([0, 0, 0, 0, 0, 1.0])
-    plan = cell.planner.plan_relative(ARM, cell.state, TCP, turn, (0.4, 0.4), SLOW)
+    plan = cell.planner.plan(
+        MotionRequest(ARM, cell.state, RelativeMotion(TCP, turn, (0.4, 0.4)), SLOW)
+    )
     track = poses(cell, plan)
     assert track[0].distance_to(track[-1])[1] == pytest.approx(0.4, abs=1e-6)
     assert max(pose.distance_to(track[0])[0] for pose in track) < 1e-4
@@ -79,12 +92,16 @@ def test_a_rotation_turns_the_link_in_place(cell):
 
 def test_a_relative_motion_goes_as_far_as_it_can_between_its_distances(cell):
     down = np.array([0, 0, -1.0, 0, 0, 0])
-    plan = cell.planner.plan_relative(ARM, cell.state, TCP, down, (0.05, 0.6), SLOW)
+    plan = cell.planner.plan(
+        MotionRequest(ARM, cell.state, RelativeMotion(TCP, down, (0.05, 0.6)), SLOW)
+    )
     reached = plan.explanation.plain()["distance"]
     assert 0.2 < reached < 0.3  # the fingers stop above the table
     assert "Table_0" in plan.explanation.plain()["stopped_by"]
     with pytest.raises(PlanningFailed) as caught:
-        cell.planner.plan_relative(ARM, cell.state, TCP, down, (0.5, 0.6), SLOW)
+        cell.planner.plan(
+            MotionRequest(ARM, cell.state, RelativeMotion(TCP, down, (0.5, 0.6)), SLOW)
+        )
     assert caught.value.code == "PLANNING_FAILED"
     assert caught.value.facts["reached"] == pytest.approx(reached, abs=0.01)
     assert "of 500.0 mm" in caught.value.message
@@ -94,7 +111,9 @@ def test_four_joints_keep_position_and_pitch_on_a_line():
     cell = Cell(open_manipulator())
     cell.state[:4] = [0.0, 0.1, 0.6, -0.7]
     forward = np.array([0, 1.0, 0, 0, 0, 0])
-    plan = cell.planner.plan_relative("arm", cell.state, TCP, forward, (0.08, 0.08), SLOW)
+    plan = cell.planner.plan(
+        MotionRequest("arm", cell.state, RelativeMotion(TCP, forward, (0.08, 0.08)), SLOW)
+    )
     first = cell.kinematics.link_pose(cell.state, TCP)
     for positions in plan.trajectory.positions:
         pose = cell.kinematics.link_pose(cell.with_arm(positions), TCP)
@@ -121,8 +140,10 @@ def test_a_line_is_slowed_until_every_sample_keeps_the_velocity_limit():
     for height in (0.055, 0.06, 0.065):
         goal = PositionGoal(TCP, np.array([0.25, 0.0, 1.02 + height]), 0.0)
         cell.state[:4] = cell.kinematics.solve("arm", goal, cell.state, 0)[0]
-        plan = cell.planner.plan_relative(
-            "arm", cell.state, TCP, up, (0.06, 0.06), PlanningOptions()
+        plan = cell.planner.plan(
+            MotionRequest(
+                "arm", cell.state, RelativeMotion(TCP, up, (0.06, 0.06)), PlanningOptions()
+            )
         )
         assert np.abs(plan.trajectory.velocities).max() <= limit * (1 + 1e-9)
 

@@ -10,7 +10,15 @@ from harness.core.errors import PlanningFailed
 from harness.core.geometry import Box, Cylinder, Shape, Sphere
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import JointGoal, PlanningOptions, PoseGoal, PositionGoal
+from harness.ports import (
+    FreeMotion,
+    JointGoal,
+    JointMotion,
+    MotionRequest,
+    PlanningOptions,
+    PoseGoal,
+    PositionGoal,
+)
 from tests.planning.lesson import (
     ARM,
     FIRST_BOXES,
@@ -70,7 +78,11 @@ def sixteen_steps(model):
 def test_the_motions_of_the_lesson_are_planned_and_hold(model):
     planners = {}
     for cell, name, goal, padding in sixteen_steps(model):
-        plan = cell.planner.plan(ARM, cell.state, goal, PlanningOptions(padding=padding, **OPTIONS))
+        plan = cell.planner.plan(
+            MotionRequest(
+                ARM, cell.state, FreeMotion(goal), PlanningOptions(padding=padding, **OPTIONS)
+            )
+        )
         end = check_motion(cell, plan, padding)
         planners[name] = plan.statistics["planner_id"]
         if isinstance(goal, PoseGoal):
@@ -85,9 +97,9 @@ def test_without_the_boxes_the_way_is_another():
     cell = Cell(ur("ur3e"))
     cell.state = cell.with_arm(cell.named("mogi_down"))
     goal, options = JointGoal(cell.named("up")), PlanningOptions(padding=0.01, **OPTIONS)
-    free = cell.planner.plan(ARM, cell.state, goal, options)
+    free = cell.planner.plan(MotionRequest(ARM, cell.state, FreeMotion(goal), options))
     cell.add(boxes(*FIRST_BOXES))
-    around = cell.planner.plan(ARM, cell.state, goal, options)
+    around = cell.planner.plan(MotionRequest(ARM, cell.state, FreeMotion(goal), options))
     assert free.statistics["planner_id"] == "straight line"
     assert around.statistics["path_length"] > free.statistics["path_length"]
 
@@ -99,9 +111,13 @@ def test_the_same_plan_comes_out_whatever_was_planned_before():
         cell.state = cell.with_arm(cell.named("mogi_down"))
         for seed in before:
             options = PlanningOptions(seed=seed)
-            cell.planner.plan(ARM, cell.state, JointGoal(cell.named("up")), options)
+            cell.planner.plan(
+                MotionRequest(ARM, cell.state, FreeMotion(JointGoal(cell.named("up"))), options)
+            )
         options = PlanningOptions(padding=0.01, **OPTIONS)
-        plan = cell.planner.plan(ARM, cell.state, JointGoal(cell.named("up")), options)
+        plan = cell.planner.plan(
+            MotionRequest(ARM, cell.state, FreeMotion(JointGoal(cell.named("up"))), options)
+        )
         return plan.trajectory.positions.tobytes(), plan.trajectory.times.tobytes()
 
     alone = plan_up([])
@@ -116,7 +132,9 @@ def test_another_seed_gives_another_path():
         cell.add(boxes(*FIRST_BOXES))
         cell.state = cell.with_arm(cell.named("mogi_down"))
         plan = cell.planner.plan(
-            ARM, cell.state, JointGoal(cell.named("up")), PlanningOptions(seed=seed)
+            MotionRequest(
+                ARM, cell.state, FreeMotion(JointGoal(cell.named("up"))), PlanningOptions(seed=seed)
+            )
         )
         lengths.add(plan.statistics["raw_path_length"])
         raw = np.array(plan.statistics["raw_path"])
@@ -134,7 +152,10 @@ def failure(call, *args):
 
 def test_a_point_out_of_reach_is_explained_with_its_distance():
     cell = Cell(ur("ur3e"))
-    error = failure(cell.planner.plan, ARM, cell.state, grasp_goal(1.32, 0, 0.3), PlanningOptions())
+    error = failure(
+        cell.planner.plan,
+        MotionRequest(ARM, cell.state, FreeMotion(grasp_goal(1.32, 0, 0.3)), PlanningOptions()),
+    )
     assert error.code == "NO_IK_SOLUTION"
     nearest = np.array(error.facts["nearest_position"])
     away = np.linalg.norm(nearest - [1.32, 0, 1.32])
@@ -146,7 +167,9 @@ def test_a_point_out_of_reach_is_explained_with_its_distance():
 def test_an_orientation_out_of_reach_is_distinguished_from_a_point_out_of_reach():
     cell = Cell(ur("ur3e"))
     goal = grasp_goal(0.5, -0.1, 0.3)
-    error = failure(cell.planner.plan, ARM, cell.state, goal, PlanningOptions())
+    error = failure(
+        cell.planner.plan, MotionRequest(ARM, cell.state, FreeMotion(goal), PlanningOptions())
+    )
     assert error.code == "NO_IK_SOLUTION"
     assert error.facts["point_out_of_reach_by"] == 0.0
     assert error.facts["orientation_error"] > 0.01 or error.facts["position_error"] > 0.001
@@ -155,7 +178,7 @@ def test_an_orientation_out_of_reach_is_distinguished_from_a_point_out_of_reach(
 def test_solutions_that_limits_reject_name_the_joint_and_how_far():
     cell = Cell(ur("ur3e"))
     found = cell.planner.check_goal(
-        ARM, cell.state, grasp_goal(0.32, -0.17, 0.08), PlanningOptions()
+        MotionRequest(ARM, cell.state, FreeMotion(grasp_goal(0.32, -0.17, 0.08)), PlanningOptions())
     )
     outside = found.explanation.plain()["outside_limits"]
     assert len(outside) + len(found.explanation.plain()["ik_solutions"]) == 8
@@ -168,7 +191,9 @@ def test_solutions_that_limits_reject_name_the_joint_and_how_far():
 def test_a_goal_in_collision_names_every_solution_and_its_pair():
     cell = Cell(ur("ur3e"))
     goal = grasp_goal(0.32, -0.17, -0.02)
-    error = failure(cell.planner.plan, ARM, cell.state, goal, PlanningOptions())
+    error = failure(
+        cell.planner.plan, MotionRequest(ARM, cell.state, FreeMotion(goal), PlanningOptions())
+    )
     assert error.code == "GOAL_IN_COLLISION"
     assert len(error.facts["ik_solutions"]) > 1
     for solution in error.facts["ik_solutions"]:
@@ -180,12 +205,16 @@ def test_a_goal_in_collision_names_every_solution_and_its_pair():
 def test_joint_goals_outside_their_limits_or_in_collision_are_refused():
     cell = Cell(ur("ur3e"))
     beyond = JointGoal(np.array([-3.5, -1.57, 0, 0, 0, 0]))
-    error = failure(cell.planner.plan, ARM, cell.state, beyond, PlanningOptions())
+    error = failure(
+        cell.planner.plan, MotionRequest(ARM, cell.state, FreeMotion(beyond), PlanningOptions())
+    )
     assert error.code == "GOAL_STATE_INVALID"
     assert error.facts["outside_limits"][0]["joint"] == "shoulder_pan_joint"
     assert error.facts["outside_limits"][0]["excess"] == pytest.approx(3.5 - 3.3406585, abs=1e-6)
     down = JointGoal(np.array([0, 0.6, 0, 0, 0, 0]))
-    error = failure(cell.planner.plan, ARM, cell.state, down, PlanningOptions())
+    error = failure(
+        cell.planner.plan, MotionRequest(ARM, cell.state, FreeMotion(down), PlanningOptions())
+    )
     assert error.code == "GOAL_IN_COLLISION"
     assert any("Table" in touch["pair"] for touch in error.facts["touches"])
 
@@ -195,7 +224,10 @@ def test_an_exhausted_budget_reports_what_blocks_the_straight_way():
     cell.state = cell.with_arm(cell.named("mogi_down"))
     cell.add(boxes(*FIRST_BOXES))
     options = PlanningOptions(max_state_checks=30, attempts=2, seed=1)
-    error = failure(cell.planner.plan, ARM, cell.state, JointGoal(cell.named("up")), options)
+    error = failure(
+        cell.planner.plan,
+        MotionRequest(ARM, cell.state, FreeMotion(JointGoal(cell.named("up"))), options),
+    )
     assert error.code == "PLANNING_FAILED"
     assert 30 <= error.facts["state_checks"] < 400
     assert 0 < error.facts["straight_way"]["free_share"] < 1
@@ -206,27 +238,32 @@ def test_an_exhausted_budget_reports_what_blocks_the_straight_way():
 def test_a_timed_joint_motion_takes_exactly_its_time_or_says_what_it_needs():
     cell = Cell(open_manipulator())
     goal = np.array([0.0, 0.87, -0.195, -0.67])
-    plan = cell.planner.plan_joint_motion("arm", cell.state, goal, PlanningOptions(), 2.0)
+    plan = cell.planner.plan(
+        MotionRequest("arm", cell.state, JointMotion(goal, duration=2.0), PlanningOptions())
+    )
     assert plan.trajectory.duration == pytest.approx(2.0, abs=1e-12)
     assert np.all(plan.trajectory.velocities[[0, -1]] == 0)
     middle = plan.trajectory.positions[len(plan.trajectory.times) // 2]
     assert np.allclose(middle, 0.5 * (plan.trajectory.positions[0] + goal), atol=0.02)
-    call = cell.planner.plan_joint_motion
-    error = failure(call, "arm", cell.state, goal, PlanningOptions(), 0.1)
+
+    def request(duration, **options):
+        motion = JointMotion(goal, duration)
+        return MotionRequest("arm", cell.state, motion, PlanningOptions(**options))
+
+    error = failure(cell.planner.plan, request(0.1))
     assert error.code == "INVALID_MOTION_PLAN"
     assert error.facts["joint"] == "joint2"
     needed = error.facts["shortest_duration"]
-    again = call("arm", cell.state, goal, PlanningOptions(), needed + 0.002)
+    again = cell.planner.plan(request(needed + 0.002))
     assert again.trajectory.duration == pytest.approx(needed, abs=0.0041)
-    gentle = PlanningOptions(max_jerk=20.0)
-    smooth = call("arm", cell.state, goal, gentle, 2.0).trajectory
+    smooth = cell.planner.plan(request(2.0, max_jerk=20.0)).trajectory
     assert smooth.duration == pytest.approx(2.0, abs=1e-12)
     jerks = np.diff(smooth.accelerations, axis=0) / np.diff(smooth.times)[:, None]
     assert np.abs(smooth.accelerations[[0, -1]]).max() < 1e-9
     assert np.abs(jerks).max() <= 20.0
-    refused = failure(call, "arm", cell.state, goal, gentle, 1.0)
+    refused = failure(cell.planner.plan, request(1.0, max_jerk=20.0))
     assert "a jerk of" in refused.message
-    slower = call("arm", cell.state, goal, gentle, refused.facts["shortest_duration"] + 0.002)
+    slower = cell.planner.plan(request(refused.facts["shortest_duration"] + 0.002, max_jerk=20.0))
     assert slower.trajectory.duration > 1.0
 
 
@@ -235,7 +272,8 @@ def test_a_joint_motion_through_an_object_is_refused_with_the_pair():
     cell.state = cell.with_arm(cell.named("mogi_down"))
     cell.add(boxes(*FIRST_BOXES))
     error = failure(
-        cell.planner.plan_joint_motion, ARM, cell.state, cell.named("up"), PlanningOptions()
+        cell.planner.plan,
+        MotionRequest(ARM, cell.state, JointMotion(cell.named("up")), PlanningOptions()),
     )
     assert error.code == "INVALID_MOTION_PLAN"
     assert any("boxes" in touch["pair"] for touch in error.facts["touches"])
@@ -244,7 +282,7 @@ def test_a_joint_motion_through_an_object_is_refused_with_the_pair():
 def test_a_motion_to_where_the_arm_stands_is_a_rest():
     cell = Cell(ur("ur3e"))
     goal = JointGoal(cell.state[:6])
-    plan = cell.planner.plan(ARM, cell.state, goal, PlanningOptions())
+    plan = cell.planner.plan(MotionRequest(ARM, cell.state, FreeMotion(goal), PlanningOptions()))
     assert plan.trajectory.duration < 0.02
     assert np.all(plan.trajectory.velocities == 0)
 
@@ -254,7 +292,9 @@ def test_the_open_manipulator_goes_to_a_position_with_and_without_a_pitch():
     point = np.array([0.25, 0.0, 1.02 + 0.075])
     for pitch in (0.0, None):
         goal = PositionGoal(TCP, point, pitch)
-        plan = cell.planner.plan("arm", cell.state, goal, PlanningOptions())
+        plan = cell.planner.plan(
+            MotionRequest("arm", cell.state, FreeMotion(goal), PlanningOptions())
+        )
         state = cell.state.copy()
         state[:4] = plan.trajectory.positions[-1]
         pose = cell.kinematics.link_pose(state, TCP)
@@ -266,7 +306,10 @@ def test_the_open_manipulator_goes_to_a_position_with_and_without_a_pitch():
 def test_a_pose_for_four_joints_is_answered_with_what_to_write_instead():
     cell = Cell(open_manipulator())
     pose = at(0.25, 0.0, 1.095, rpy=(0, 0, 0.5))
-    error = failure(cell.planner.plan, "arm", cell.state, PoseGoal(TCP, pose), PlanningOptions())
+    error = failure(
+        cell.planner.plan,
+        MotionRequest("arm", cell.state, FreeMotion(PoseGoal(TCP, pose)), PlanningOptions()),
+    )
     assert error.code == "GOAL_CONSTRAINTS_VIOLATED"
     assert "`position` and `pitch`" in error.message
     assert error.facts["orientation_error"] == pytest.approx(0.5)
@@ -278,8 +321,11 @@ def test_padding_widens_what_must_be_gone_around():
     tip = cell.kinematics.link_pose(cell.with_arm(cell.named("mogi_home")), TCP).translation
     cell.scene.add_object(wall, at(tip[0] + 0.06, tip[1], tip[2]))
     goal = JointGoal(cell.named("mogi_home"))
-    cell.planner.check_goal(ARM, cell.state, goal, PlanningOptions())
-    error = failure(cell.planner.plan, ARM, cell.state, goal, PlanningOptions(padding=0.08))
+    cell.planner.check_goal(MotionRequest(ARM, cell.state, FreeMotion(goal), PlanningOptions()))
+    error = failure(
+        cell.planner.plan,
+        MotionRequest(ARM, cell.state, FreeMotion(goal), PlanningOptions(padding=0.08)),
+    )
     assert error.code == "GOAL_IN_COLLISION"
     assert error.facts["touches"][0]["distance"] > 0
 
@@ -301,7 +347,7 @@ def test_a_pose_goal_ends_in_the_cheapest_branch_when_the_straight_way_is_free()
     space = GroupSpace(cell.kinematics.robot, ARM, cell.state)
     costs = [space.effort(space.part(cell.state), positions) for positions in branches]
     assert costs == sorted(costs)
-    plan = cell.planner.plan(ARM, cell.state, goal, PlanningOptions())
+    plan = cell.planner.plan(MotionRequest(ARM, cell.state, FreeMotion(goal), PlanningOptions()))
     assert np.allclose(plan.trajectory.positions[-1], branches[0], atol=1e-9)
 
 
@@ -319,7 +365,9 @@ def test_a_pose_goal_ends_in_the_cheapest_branch_around_a_ball_too(turn, center,
     space = GroupSpace(cell.kinematics.robot, ARM, cell.state)
 
     def plan_to(goal):
-        plan = cell.planner.plan(ARM, cell.state, goal, PlanningOptions())
+        plan = cell.planner.plan(
+            MotionRequest(ARM, cell.state, FreeMotion(goal), PlanningOptions())
+        )
         positions = plan.trajectory.positions
         return positions[-1], sum(space.effort(*edge) for edge in pairwise(positions))
 
@@ -338,7 +386,11 @@ def test_cheaper_branches_are_searched_within_the_budget_that_is_given():
     cell, goal, branches = bent_away_from_goal(0.85)
     cell.add(thing("ball", at(0.58, -0.05, 1.36), Shape(Sphere(0.08))))
     ample, scarce = (
-        cell.planner.plan(ARM, cell.state, goal, PlanningOptions(max_state_checks=checks))
+        cell.planner.plan(
+            MotionRequest(
+                ARM, cell.state, FreeMotion(goal), PlanningOptions(max_state_checks=checks)
+            )
+        )
         for checks in (200_000, 1)
     )
     assert np.allclose(ample.trajectory.positions[-1], branches[0], atol=1e-9)
@@ -349,6 +401,9 @@ def test_cheaper_branches_are_searched_within_the_budget_that_is_given():
 def test_a_planner_that_is_not_there_is_reported_where_a_straight_way_is_free_too():
     cell, goal, _ = bent_away_from_goal(0.85)
     cell.add(thing("ball", at(0.58, -0.05, 1.36), Shape(Sphere(0.08))))
-    error = failure(cell.planner.plan, ARM, cell.state, goal, PlanningOptions(planner_id="RTT"))
+    error = failure(
+        cell.planner.plan,
+        MotionRequest(ARM, cell.state, FreeMotion(goal), PlanningOptions(planner_id="RTT")),
+    )
     assert error.code == "PLANNING_FAILED"
     assert "unknown planner 'RTT'" in error.message

@@ -18,15 +18,22 @@ from harness.ports import (
     AnyGoal,
     ArcPoint,
     CartesianPathOptions,
+    CircularMotion,
+    FreeMotion,
     JointBand,
     JointGoal,
+    JointMotion,
     JumpThreshold,
+    LinearMotion,
+    MotionSequence,
     OrientationBand,
     PathConstraints,
     PoseGoal,
     PositionBox,
     PositionGoal,
+    RelativeMotion,
     SequenceItem,
+    WaypointMotion,
 )
 from tests.planning.problem import OPTIONS, Problem
 
@@ -105,7 +112,7 @@ def a_motion_round_a_block_ends_at_its_goal_and_comes_out_the_same_again(
         problem = Problem(model, off, boxes)
         goal = problem.from_home(target + swing * TURN_OF_BASE)
         problem.block(goal, block)
-        plans.append(problem.plan("plan", JointGoal(goal), options=options))
+        plans.append(problem.plan(FreeMotion(JointGoal(goal)), options))
     first, second = plans
     if first is None or second is None:
         assert first is second
@@ -120,7 +127,7 @@ def a_motion_round_a_block_ends_at_its_goal_and_comes_out_the_same_again(
 def a_motion_to_a_pose_ends_there(model, off, boxes, target):
     problem = Problem(model, off, boxes)
     pose = problem.pose(problem.from_home(target))
-    plan = problem.plan("plan", PoseGoal(problem.link, pose))
+    plan = problem.plan(FreeMotion(PoseGoal(problem.link, pose)))
     if plan is None:
         return False
     assert max(pose.distance_to(problem.poses(plan)[-1])) < REACHED
@@ -133,7 +140,7 @@ def a_motion_to_a_region_ends_inside_it(off, target, room, turns):
     pose = problem.pose(problem.from_home(target))
     allowed = tuple(0.06 + np.abs(turns))
     goal = PoseGoal(problem.link, pose, room, max(allowed), allowed)
-    plan = problem.plan("plan", goal)
+    plan = problem.plan(FreeMotion(goal))
     if plan is None:
         return False
     end = problem.poses(plan)[-1]
@@ -146,7 +153,7 @@ def a_motion_to_a_region_ends_inside_it(off, target, room, turns):
 def of_several_goals_one_is_reached(model, off, targets):
     problem = Problem(model, off)
     goals = [problem.from_home(target) for target in targets]
-    plan = problem.plan("plan", AnyGoal(tuple(map(JointGoal, goals))))
+    plan = problem.plan(FreeMotion(AnyGoal(tuple(map(JointGoal, goals)))))
     if plan is None:
         return False
     end = plan.trajectory.positions[-1]
@@ -158,7 +165,7 @@ def of_several_goals_one_is_reached(model, off, targets):
 def a_ptp_is_straight_in_joint_space(model, off, target):
     problem = Problem(model, off)
     goal = problem.from_home(target)
-    plan = problem.plan("plan_joint_motion", goal)
+    plan = problem.plan(JointMotion(goal))
     if plan is None:
         return False
     track, way = plan.trajectory.positions, goal - problem.start
@@ -172,7 +179,7 @@ def a_ptp_is_straight_in_joint_space(model, off, target):
 def a_lin_is_on_its_line_and_turned_in_proportion(model, off, shift, turn):
     problem = Problem(model, off)
     goal = problem.moved(shift + np.array([0, 0, 0.1]), turn)
-    plan = problem.plan("plan_linear", goal)
+    plan = problem.plan(LinearMotion(goal))
     if plan is None:
         return False
     start, *rest = problem.poses(plan)
@@ -219,7 +226,7 @@ def a_circ_is_on_its_circle_and_turned_in_proportion(
 
     goal = problem.moved(place(1.0) - start.translation, turn)
     point = place(0.5) if kind == "interim" else center
-    plan = problem.plan("plan_circular", goal, ArcPoint(kind, point))
+    plan = problem.plan(CircularMotion(goal, ArcPoint(kind, point)))
     if plan is None:
         return False
     before = 0.0
@@ -242,7 +249,7 @@ def a_relative_motion_goes_its_distance_along_its_line(model, off, direction, mo
     unit = direction + np.array([0, 0, 1.5])
     unit = unit / np.linalg.norm(unit)
     twist = np.concatenate([unit, np.zeros(3)])
-    plan = problem.plan("plan_relative", problem.link, twist, (0.01, most + 0.01))
+    plan = problem.plan(RelativeMotion(problem.link, twist, (0.01, most + 0.01)))
     if plan is None:
         return False
     track = np.array([pose.translation for pose in problem.poses(plan)])
@@ -265,7 +272,7 @@ def a_sequence_leaves_its_lines_inside_its_blends_alone(model, off, corners, rad
     items = [
         SequenceItem("lin", goal, None, blend) for goal, blend in zip(goals, radii, strict=True)
     ]
-    plan = problem.plan("plan_sequence", items)
+    plan = problem.plan(MotionSequence(items))
     if plan is None:
         return False
     track = [pose.translation for pose in problem.poses(plan)]
@@ -282,7 +289,7 @@ def a_cartesian_path_keeps_its_precision(model, off, corners, precision):
     points = through(problem, corners)
     goals = [PositionGoal(problem.link, point) for point in points[1:]]
     path_options = CartesianPathOptions(0.005, precision, 0.2, JumpThreshold(0.5, 0.1))
-    plan = problem.plan("plan_cartesian_path", goals, path_options)
+    plan = problem.plan(WaypointMotion(goals, path_options))
     if plan is None:
         return False
     track = [pose.translation for pose in problem.poses(plan)]
@@ -331,7 +338,7 @@ def a_cone_a_box_and_a_band_hold_on_every_sample_and_between(model, off, shift, 
         PositionBox(problem.link, SE3(np.eye(3), middle), tuple(size)),
         (JointBand(names[0], problem.start[0] - 1.0, problem.start[0] + 1.0),),
     )
-    plan = problem.plan("plan", goal, constraints=held)
+    plan = problem.plan(FreeMotion(goal, held))
     if plan is None:
         return False
     track = plan.trajectory.positions

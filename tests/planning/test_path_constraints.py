@@ -8,8 +8,10 @@ from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3
 from harness.ports import (
     AnyGoal,
+    FreeMotion,
     JointBand,
     JointGoal,
+    MotionRequest,
     OrientationBand,
     PathConstraints,
     PlanningOptions,
@@ -62,8 +64,10 @@ def test_a_tool_held_level_stays_in_its_cone_on_every_sample(cell, tolerance):
     bands[up] = 4.0
     held = PathConstraints(orientation=OrientationBand(TCP, start.rotation, tuple(bands)))
     options = PlanningOptions(seed=0)  # one whose free motion tilts the tool
-    free = cell.planner.plan(ARM, cell.state, beyond(cell), options)
-    plan = cell.planner.plan(ARM, cell.state, beyond(cell), options, held)
+    free = cell.planner.plan(MotionRequest(ARM, cell.state, FreeMotion(beyond(cell)), options))
+    plan = cell.planner.plan(
+        MotionRequest(ARM, cell.state, FreeMotion(beyond(cell), held), options)
+    )
     tilts = [tilt(start, cell.kinematics.link_pose(cell.with_arm(q), TCP), up) for q in dense(plan)]
     unheld = [
         tilt(start, cell.kinematics.link_pose(cell.with_arm(q), TCP), up) for q in dense(free)
@@ -80,7 +84,7 @@ def test_a_link_stays_in_its_box_and_a_joint_in_its_band(cell):
     high = np.maximum(start, goal.pose.translation) + np.array([0.06, 0.06, 0.25])
     box = PositionBox(TCP, at(*(0.5 * (low + high))), tuple(high - low))
     held = PathConstraints(position=box, joints=(JointBand("wrist_2_joint", -1.8, -1.3),))
-    plan = cell.planner.plan(ARM, cell.state, goal, OPTIONS, held)
+    plan = cell.planner.plan(MotionRequest(ARM, cell.state, FreeMotion(goal, held), OPTIONS))
     for positions in dense(plan):
         place = cell.kinematics.link_pose(cell.with_arm(positions), TCP).translation
         assert np.all(place >= low - 1e-9)
@@ -91,7 +95,8 @@ def test_a_link_stays_in_its_box_and_a_joint_in_its_band(cell):
 def test_the_same_seed_gives_the_same_constrained_plan(cell):
     held = PathConstraints(orientation=OrientationBand(TCP, here(cell).rotation, (0.2, 0.2, 0.2)))
     first, second = (
-        cell.planner.plan(ARM, cell.state, beyond(cell), OPTIONS, held) for _ in range(2)
+        cell.planner.plan(MotionRequest(ARM, cell.state, FreeMotion(beyond(cell), held), OPTIONS))
+        for _ in range(2)
     )
     assert first.statistics["planner_id"] == "RRTConnect, projected"
     assert first.trajectory.positions.tobytes() == second.trajectory.positions.tobytes()
@@ -107,12 +112,16 @@ def test_a_start_and_a_goal_outside_the_constraints_are_distinguished(cell):
     pose = here(cell)
     turned = (pose @ SE3.from_xyz_rpy((0, 0, 0), (0.3, 0, 0))).rotation
     off = PathConstraints(orientation=OrientationBand(TCP, turned, (0.1, 0.1, 0.1)))
-    start = failure(cell.planner.plan, ARM, cell.state, beyond(cell), OPTIONS, off)
+    start = failure(
+        cell.planner.plan, MotionRequest(ARM, cell.state, FreeMotion(beyond(cell), off), OPTIONS)
+    )
     assert start.code == "START_STATE_VIOLATES_PATH_CONSTRAINTS"
     assert "turned -0.300 rad about x" in start.message
     held = PathConstraints(orientation=OrientationBand(TCP, pose.rotation, (0.1, 0.1, 0.1)))
     away = PoseGoal(TCP, SE3(turned, pose.translation))
-    goal = failure(cell.planner.check_goal, ARM, cell.state, away, OPTIONS, held)
+    goal = failure(
+        cell.planner.check_goal, MotionRequest(ARM, cell.state, FreeMotion(away, held), OPTIONS)
+    )
     assert goal.code == "GOAL_VIOLATES_PATH_CONSTRAINTS"
     assert goal.facts["constraint_value"] == pytest.approx(0.3)
 
@@ -124,7 +133,10 @@ def test_what_cannot_be_held_fails_within_its_budget(cell):
     goal = PoseGoal(TCP, SE3(pose.rotation, pose.translation + np.array([0, 0.34, 0])))
     cell.add(thing("across", at(0.25, 0.0, 1.14), Shape(Box((0.2, 0.02, 0.3)))))
     few = PlanningOptions(max_state_checks=3000, seed=1)
-    error = failure(cell.planner.plan, ARM, cell.state, goal, few, PathConstraints(position=lane))
+    error = failure(
+        cell.planner.plan,
+        MotionRequest(ARM, cell.state, FreeMotion(goal, PathConstraints(position=lane)), few),
+    )
     assert error.code == "PLANNING_FAILED"
     assert "no free path that satisfies the constraints" in error.message
     assert error.facts["state_checks"] < 4000
@@ -134,11 +146,13 @@ def test_of_several_goals_the_nearest_that_can_be_taken_is(cell):
     far, near = cell.named("mogi_home"), cell.state[:6] + 0.1
     out = grasp_goal(1.5, 0, 0.3)
     goals = AnyGoal((out, JointGoal(far), JointGoal(near)))
-    plan = cell.planner.plan(ARM, cell.state, goals, OPTIONS)
+    plan = cell.planner.plan(MotionRequest(ARM, cell.state, FreeMotion(goals), OPTIONS))
     assert np.allclose(plan.trajectory.positions[-1], near, atol=1e-6)
     reported = plan.explanation.plain()["alternatives"]
     assert [each["error_code"] for each in reported] == ["NO_IK_SOLUTION", "", ""]
-    error = failure(cell.planner.plan, ARM, cell.state, AnyGoal((out, out)), OPTIONS)
+    error = failure(
+        cell.planner.plan, MotionRequest(ARM, cell.state, FreeMotion(AnyGoal((out, out))), OPTIONS)
+    )
     assert error.code == "NO_IK_SOLUTION"
     assert error.message.startswith("none of 2 goals is feasible: 1: ")
 
@@ -147,10 +161,12 @@ def test_a_goal_region_is_reached_where_its_middle_cannot_be(cell):
     """A block stands in the middle of the goal; the region has room next to it."""
     middle = grasp_goal(0.25, -0.17, 0.16)
     cell.add(thing("lump", at(*middle.pose.translation, (0, 0, 0)), Shape(Box((0.09, 0.09, 0.05)))))
-    blocked = failure(cell.planner.plan, ARM, cell.state, middle, OPTIONS)
+    blocked = failure(
+        cell.planner.plan, MotionRequest(ARM, cell.state, FreeMotion(middle), OPTIONS)
+    )
     assert blocked.code == "GOAL_IN_COLLISION"
     wide = grasp_goal(0.25, -0.17, 0.16, position_tolerance=0.15, orientation_tolerance=0.1)
-    plan = cell.planner.plan(ARM, cell.state, wide, OPTIONS)
+    plan = cell.planner.plan(MotionRequest(ARM, cell.state, FreeMotion(wide), OPTIONS))
     end = cell.kinematics.link_pose(cell.with_arm(plan.trajectory.positions[-1]), TCP)
     shift, turn = wide.pose.distance_to(end)
     assert 0 < shift <= 0.15
@@ -166,9 +182,11 @@ def test_free_about_an_axis_the_arm_turns_less(cell):
     goal = pose @ SE3.from_xyz_rpy((0, 0, 0), tuple(turn))
     tolerances = [0.001] * 3
     tolerances[axis] = 4.0
-    tight = cell.planner.plan(ARM, cell.state, PoseGoal(TCP, goal), OPTIONS)
+    tight = cell.planner.plan(
+        MotionRequest(ARM, cell.state, FreeMotion(PoseGoal(TCP, goal)), OPTIONS)
+    )
     free = PoseGoal(TCP, goal, 1e-3, 4.0, tuple(tolerances))
-    loose = cell.planner.plan(ARM, cell.state, free, OPTIONS)
+    loose = cell.planner.plan(MotionRequest(ARM, cell.state, FreeMotion(free), OPTIONS))
     assert loose.statistics["path_length"] < 0.5 * tight.statistics["path_length"]
     end = cell.kinematics.link_pose(cell.with_arm(loose.trajectory.positions[-1]), TCP)
     assert tilt(pose, end, axis) < 0.01

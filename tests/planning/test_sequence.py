@@ -11,12 +11,17 @@ from harness.ports import (
     ArcPoint,
     CartesianLimits,
     CartesianPathOptions,
+    CircularMotion,
     JointGoal,
     JumpThreshold,
+    LinearMotion,
+    MotionRequest,
+    MotionSequence,
     PlanningOptions,
     PoseGoal,
     PositionGoal,
     SequenceItem,
+    WaypointMotion,
 )
 from tests.planning.lesson import ARM, TCP, Cell, grasp_goal, open_manipulator, ur
 
@@ -63,8 +68,12 @@ def speeds(plan):
 
 
 def test_blended_motions_do_not_stop_between_and_unblended_ones_do(cell):
-    blended = cell.planner.plan_sequence(ARM, cell.state, mixed(cell, 0.015), HALF)
-    stopping = cell.planner.plan_sequence(ARM, cell.state, mixed(cell, 0.0), HALF)
+    blended = cell.planner.plan(
+        MotionRequest(ARM, cell.state, MotionSequence(mixed(cell, 0.015)), HALF)
+    )
+    stopping = cell.planner.plan(
+        MotionRequest(ARM, cell.state, MotionSequence(mixed(cell, 0.0)), HALF)
+    )
     assert blended.result.plain() == {"items": 4, "stops": 0, "blends": 3}
     assert stopping.result.plain() == {"items": 4, "stops": 3, "blends": 0}
     assert speeds(blended)[1:-1].min() > 0.01
@@ -75,7 +84,7 @@ def test_blended_motions_do_not_stop_between_and_unblended_ones_do(cell):
 def test_outside_its_spheres_a_sequence_is_on_its_lines_and_arcs(cell):
     radius = 0.015
     items = mixed(cell, radius)
-    plan = cell.planner.plan_sequence(ARM, cell.state, items, HALF)
+    plan = cell.planner.plan(MotionRequest(ARM, cell.state, MotionSequence(items), HALF))
     track = places(cell, plan)
     start, first, second = track[0], items[0].goal.position, items[1].goal.position
     corners = np.array([item.goal.position for item in items[:-1]])
@@ -86,8 +95,8 @@ def test_outside_its_spheres_a_sequence_is_on_its_lines_and_arcs(cell):
         along = (first - start) / np.linalg.norm(first - start)
         off = (place - start) - along * float((place - start) @ along)
         assert np.linalg.norm(off) < 1e-4
-    arc = cell.planner.plan_circular(  # the arc alone, for its circle
-        ARM, _at(cell, first), items[1].goal, items[1].point, HALF
+    arc = cell.planner.plan(
+        MotionRequest(ARM, _at(cell, first), CircularMotion(items[1].goal, items[1].point), HALF)
     ).explanation.plain()
     until = int(np.argmin(away[:, 1]))
     between = slice(corner_passed, until)
@@ -110,7 +119,7 @@ def test_a_sequence_keeps_joint_and_cartesian_limits_on_every_sample(cell):
         SequenceItem("lin", near(cell, 0.06, 0, 0), None, 0.02, slow),
         SequenceItem("lin", near(cell, 0.06, 0.06, 0), None, 0.0, slow),
     ]
-    plan = cell.planner.plan_sequence(ARM, cell.state, items, HALF)
+    plan = cell.planner.plan(MotionRequest(ARM, cell.state, MotionSequence(items), HALF))
     track, steps = places(cell, plan), np.diff(plan.trajectory.times)[:, None]
     velocities = np.diff(track, axis=0) / steps
     accelerations = np.diff(velocities, axis=0) / (0.5 * (steps[1:] + steps[:-1]))
@@ -133,14 +142,16 @@ def test_what_cannot_be_blended_is_refused_and_nothing_moves(cell):
     turn = near(cell, 0.03, 0.03, 0).position
     arc = SequenceItem("circ", near(cell, 0.0, 0.001, 0), ArcPoint("interim", turn), 0.05)
     items = [arc, SequenceItem("lin", near(cell, 0, 0.02, 0))]
-    too_large = failure(cell.planner.plan_sequence, ARM, cell.state, items, HALF)
+    too_large = failure(
+        cell.planner.plan, MotionRequest(ARM, cell.state, MotionSequence(items), HALF)
+    )
     assert too_large.code == "INVALID_MOTION_PLAN"
     assert "blend radius of 50.0 mm is larger than item" in too_large.message
     far = [
         SequenceItem("ptp", JointGoal(cell.named("up"))),
         SequenceItem("lin", near(cell, 9, 0, 0)),
     ]
-    second = failure(cell.planner.plan_sequence, ARM, cell.state, far, HALF)
+    second = failure(cell.planner.plan, MotionRequest(ARM, cell.state, MotionSequence(far), HALF))
     assert second.code == "NO_IK_SOLUTION"
     assert second.message.startswith("item 2 (lin): ")
     assert second.facts["item"] == 1
@@ -149,7 +160,7 @@ def test_what_cannot_be_blended_is_refused_and_nothing_moves(cell):
 def test_a_cartesian_path_rounds_its_corners_within_the_precision(cell):
     corners = [(0.05, 0, 0), (0.05, 0.05, 0), (0, 0.05, 0)]
     goals = [near(cell, *corner) for corner in corners]
-    plan = cell.planner.plan_cartesian_path(ARM, cell.state, goals, PATH, HALF)
+    plan = cell.planner.plan(MotionRequest(ARM, cell.state, WaypointMotion(goals, PATH), HALF))
     track = places(cell, plan)
     points = [track[0], *(goal.position for goal in goals)]
     worst = 0.0
@@ -172,26 +183,32 @@ def test_a_cartesian_path_rounds_its_corners_within_the_precision(cell):
 
 def test_a_cartesian_path_goes_as_far_as_it_can_and_says_how_far(cell):
     goals = [near(cell, 0.05, 0, 0), near(cell, 0.55, 0, 0)]
-    refused = failure(cell.planner.plan_cartesian_path, ARM, cell.state, goals, PATH, HALF)
+    refused = failure(
+        cell.planner.plan, MotionRequest(ARM, cell.state, WaypointMotion(goals, PATH), HALF)
+    )
     assert refused.code == "PLANNING_FAILED"
     assert "at least 100 % is required" in refused.message
     part = CartesianPathOptions(0.005, 0.001, 0.2, PATH.jump)
-    plan = cell.planner.plan_cartesian_path(ARM, cell.state, goals, part, HALF)
+    plan = cell.planner.plan(MotionRequest(ARM, cell.state, WaypointMotion(goals, part), HALF))
     assert plan.result.plain()["fraction"] == pytest.approx(refused.facts["fraction"])
     track = places(cell, plan)
     assert np.linalg.norm(track[-1] - track[0]) == pytest.approx(
         0.55 * plan.result.plain()["fraction"]
     )
     more = CartesianPathOptions(0.005, 0.001, 0.9, PATH.jump)
-    assert failure(cell.planner.plan_cartesian_path, ARM, cell.state, goals, more, HALF)
+    assert failure(
+        cell.planner.plan, MotionRequest(ARM, cell.state, WaypointMotion(goals, more), HALF)
+    )
 
 
 def test_a_jump_threshold_ends_a_path_where_a_joint_steps_farther(cell):
     goals = [near(cell, 0.1, 0, 0)]
-    free = cell.planner.plan_cartesian_path(ARM, cell.state, goals, PATH, HALF)
+    free = cell.planner.plan(MotionRequest(ARM, cell.state, WaypointMotion(goals, PATH), HALF))
     tight = JumpThreshold(0.9 * free.result.plain()["largest_joint_step"], 0.1)
     path_options = CartesianPathOptions(0.005, 0.001, 1.0, tight)
-    refused = failure(cell.planner.plan_cartesian_path, ARM, cell.state, goals, path_options, HALF)
+    refused = failure(
+        cell.planner.plan, MotionRequest(ARM, cell.state, WaypointMotion(goals, path_options), HALF)
+    )
     assert "would jump" in refused.message
     assert refused.facts["reason"] == "jump"
 
@@ -202,10 +219,10 @@ def test_four_joints_follow_a_sequence_and_a_path():
     goals = [near(cell, 0, 0.03, 0.02), near(cell, 0, 0.03, -0.02), near(cell, 0, 0, 0)]
     items = [SequenceItem("lin", goal, None, 0.008) for goal in goals]
     items[-1] = SequenceItem("lin", goals[-1])
-    plan = cell.planner.plan_sequence("arm", cell.state, items, HALF)
+    plan = cell.planner.plan(MotionRequest("arm", cell.state, MotionSequence(items), HALF))
     assert plan.result.plain()["blends"] == 2
     assert np.allclose(plan.trajectory.positions[-1], cell.state[:4], atol=1e-6)
-    path = cell.planner.plan_cartesian_path("arm", cell.state, goals, PATH, HALF)
+    path = cell.planner.plan(MotionRequest("arm", cell.state, WaypointMotion(goals, PATH), HALF))
     assert path.result.plain()["fraction"] == 1.0
 
 
@@ -250,6 +267,8 @@ def test_a_line_by_a_singularity_is_slowed_or_refused_without_a_spike(kind, seed
 
 def attempt(cell, goal):
     try:
-        return cell.planner.plan_linear(ARM, cell.state, goal, PlanningOptions())
+        return cell.planner.plan(
+            MotionRequest(ARM, cell.state, LinearMotion(goal), PlanningOptions())
+        )
     except PlanningFailed as failed:
         return failed

@@ -9,6 +9,7 @@ from harness.cell.goals import group_of
 from harness.cell.scope import At
 from harness.language.base import Angle, Name, PositiveDuration
 from harness.language.step import Step
+from harness.ports import JointMotion
 
 
 class Remark(Step):
@@ -54,5 +55,4 @@ class Jog(Step):
         indices = list(cell.description.group_indices(group))
         goal = start.copy()
         goal[cell.description.joint_index[self.joint]] += self.by
-        options = cell.current.options
-        cell.carry_out(cell.planner.plan_joint_motion(group, start, goal[indices], options))
+        cell.move(group, JointMotion(goal[indices]))

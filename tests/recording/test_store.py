@@ -64,7 +64,7 @@ def full_run():
     signals = replace(
         run.signals,
         frames={"arm_link": run.signals.tcp_pose},
-        clearances={("robot", "ödd|na%me"): np.where(run.signals.times < 1, np.nan, 0.02)},
+        clearances={("robot", "ödd|na%me"): np.where(run.signals.times < 1, 0.03, 0.02)},
         clearance_links={("robot", "ödd|na%me"): np.arange(200) % 4 - 1},
         clearance_cutoff=0.2,
     )

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import wraps
-from inspect import signature
-from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -19,12 +18,11 @@ from harness.planning.diagnosis.motion_stages import path_finding, start_finding
 from harness.planning.diagnosis.stage_request import StageFinding, StageRequest
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import Goal, JointGoal, PlanningOptions, PoseGoal, PositionGoal
+from harness.ports import AnyGoal, MotionRequest, PlanningOptions
 from harness.recording.explanation import Explanation
 
 _NO_STAGE = ("INVALID_GROUP_NAME", "INVALID_LINK_NAME", "UNRECOGNIZED_GOAL_TYPE", "CRASH")
 
-_P = ParamSpec("_P")
 _R = TypeVar("_R")
 
 
@@ -37,24 +35,17 @@ _S = TypeVar("_S", bound=_Planner)
 
 
 def explained(
-    method: Callable[Concatenate[_S, _P], _R],
-) -> Callable[Concatenate[_S, _P], _R]:
-    """Add an Explanation to the details of a planner method's failures.
-
-    The method has parameters named `group`, `start` and `options`. A `goal` or the joint
-    `positions` of a goal are explained; other methods have no goal of their own.
-    """
-    parameters = signature(method)
+    method: Callable[[_S, MotionRequest], _R],
+) -> Callable[[_S, MotionRequest], _R]:
+    """Add an Explanation to the details of a planner method's failures."""
 
     @wraps(method)
-    def explaining(self: _S, *args: _P.args, **kwargs: _P.kwargs) -> _R:
+    def explaining(self: _S, request: MotionRequest) -> _R:
         try:
-            return method(self, *args, **kwargs)
+            return method(self, request)
         except PlanningFailed as failure:
             if failure.code not in _NO_STAGE and failure.details.find(Explanation) is None:
-                call = parameters.bind(self, *args, **kwargs).arguments
-                request = _request(failure, self, call)
-                failure.details += Details.of(explanation_of(request))
+                failure.details += Details.of(explanation_of(_request(failure, self, request)))
             raise
 
     return explaining
@@ -79,29 +70,20 @@ def explanation_of(request: StageRequest) -> Explanation:
     return Explanation(stages, nearest, advice)
 
 
-def _request(failure: PlanningFailed, planner: _Planner, call: Mapping[str, Any]) -> StageRequest:
-    """The stages' input, from the call's arguments by parameter name."""
-    start = np.asarray(call["start"], dtype=float)
-    options: PlanningOptions = call["options"]
-    space = GroupSpace(planner.kinematics.robot, call["group"], start)
+def _request(failure: PlanningFailed, planner: _Planner, request: MotionRequest) -> StageRequest:
+    """The stages' input. A choice of several goals is explained by what it raised."""
+    start = np.asarray(request.start, dtype=float)
+    space = GroupSpace(planner.kinematics.robot, request.group, start)
     return StageRequest(
         failure=failure,
         kinematics=planner.kinematics,
         scene=planner.scene,
         space=space,
         start=start,
-        goal=_goal(call),
-        options=options,
-        checker=_checker(planner.scene, space, start, options),
+        goal=None if isinstance(request.goal, AnyGoal) else request.goal,
+        options=request.options,
+        checker=_checker(planner.scene, space, start, request.options),
     )
-
-
-def _goal(call: Mapping[str, Any]) -> Goal | None:
-    """The single goal of a call; None where it has none, or a choice of several."""
-    if "positions" in call:
-        return JointGoal(np.asarray(call["positions"], dtype=float))
-    goal = call.get("goal")
-    return goal if isinstance(goal, JointGoal | PoseGoal | PositionGoal) else None
 
 
 def _checker(

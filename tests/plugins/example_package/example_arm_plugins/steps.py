@@ -8,6 +8,7 @@ from harness.cell.cell import Cell
 from harness.cell.goals import group_of
 from harness.language.base import Angle
 from harness.language.step import Step
+from harness.ports import JointMotion
 
 
 class Wave(Step):
@@ -30,6 +31,4 @@ class Wave(Step):
         away = home.copy()
         away[-1] += self.by
         for goal in (away, home):
-            start = cell.planning_start()
-            plan = cell.planner.plan_joint_motion(group, start, goal, cell.current.options)
-            cell.carry_out(plan)
+            cell.move(group, JointMotion(goal))
