@@ -144,6 +144,30 @@ def for_run(run: argparse.ArgumentParser) -> None:
                      help="no process for each scenario: for debuggers")  # fmt: skip
 
 
+def for_search(search: argparse.ArgumentParser) -> None:
+    """Of `harness search`."""
+    add = search.add_argument
+    add("file", metavar="FILE", help="a scenario file with `randomize`, or a bundled name")
+    _value_options(search)
+    add("--seed", metavar="N", type=int, default=None,
+        help="seed of every run and of the search, in place of the file's")  # fmt: skip
+    add("--case", metavar="NAME", default="", help="the parametrised case, where there are several")
+    add("--runs", metavar="N", type=whole_number, default=100,
+        help="runs of the search, without those that shrink a failure (default: 100)")  # fmt: skip
+    add("--start", metavar="N", type=whole_number, default=32,
+        help="how many of them are low-discrepancy samples, which show the rate"
+             " (default: 32)")  # fmt: skip
+    add("-j", metavar="N", dest="workers", type=whole_number, default=1,
+        help="make N runs side by side")  # fmt: skip
+    add("--resume", action="store_true",
+        help="go on where the same command was interrupted, without computing again")  # fmt: skip
+    add("--hard-cap", metavar="SECONDS", type=seconds, default=None,
+        help="wall time after which a run ends as an error (default: 600)")  # fmt: skip
+    add("--report-dir", metavar="DIR", default="reports",
+        help="files go to DIR/search (default: reports)")  # fmt: skip
+    add("--json", action="store_true", help="one JSON document on stdout")
+
+
 def for_merge(merge: argparse.ArgumentParser) -> None:
     """Of `harness merge`."""
     merge.add_argument(
@@ -371,6 +395,11 @@ def _paths(command: argparse.ArgumentParser) -> None:
         nargs="+",
         help="a scenario file, a folder of *.scenario.yaml, or a bundled name",
     )
+    _value_options(command)
+
+
+def _value_options(command: argparse.ArgumentParser) -> None:
+    """Of every command that prepares scenarios: values, packages and plug-ins."""
     command.add_argument(
         "--set",
         metavar="PATH=VALUE",
