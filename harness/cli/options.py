@@ -168,6 +168,30 @@ def for_search(search: argparse.ArgumentParser) -> None:
     add("--json", action="store_true", help="one JSON document on stdout")
 
 
+def for_results(results: argparse.ArgumentParser) -> None:
+    """Of `harness results`."""
+    add = results.add_argument
+    add("folder", metavar="DIR", help="report folder of many runs")
+    add("--outcome", choices=("passed", "failed", "invalid", "error"), default="",
+        help="only runs with this outcome")  # fmt: skip
+    add("--tag", metavar="TAG", dest="tags", action="append", default=[],
+        help="only runs whose file has this tag; repeatable")  # fmt: skip
+    add("--cause", metavar="TEXT", default="",
+        help="only failures whose cause has this text in it")  # fmt: skip
+    add("--where", metavar="NAME<VALUE", dest="conditions", action="append", default=[],
+        help="only runs in which this holds for a parameter, or for `margin`, `share`, `seed` or"
+             " `sim_time`; repeatable: --where 'friction<0.4' --where 'margin<1 mm'")  # fmt: skip
+    add("--limit", metavar="N", type=whole_number, default=None,
+        help="print at most N runs (default: 20)")  # fmt: skip
+    add("--against", metavar="DIR", default="",
+        help="compare with another campaign on the same conditions: exit code 1 when that one has"
+             " a lower success rate")  # fmt: skip
+    add("--csv", metavar="FILE", default="", help="write the selected runs as CSV")
+    add("--parquet", metavar="FILE", default="",
+        help="write them as Parquet; needs the extra `parquet`")  # fmt: skip
+    add("--json", action="store_true", help="one JSON document on stdout")
+
+
 def for_merge(merge: argparse.ArgumentParser) -> None:
     """Of `harness merge`."""
     merge.add_argument(

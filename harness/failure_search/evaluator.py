@@ -62,9 +62,8 @@ class Evaluator:
         """Run every point that has not been run, and return the samples in the points' order."""
         keys = [json.dumps(point) for point in points]
         new = {key: p for key, p in zip(keys, points, strict=True) if key not in self.samples}
-        jobs = [
-            self._job(point, len(self.samples) + index) for index, point in enumerate(new.values())
-        ]
+        points_run = list(new.values())
+        jobs = [self._job(point, len(self.samples) + i) for i, point in enumerate(points_run)]
         results: dict[int, CaseResult] = {}
         for index, job in enumerate(jobs):
             known = self.stream.known(job) if self.stream is not None else None
@@ -79,7 +78,7 @@ class Evaluator:
         ):
             results[index] = result
             if self.stream is not None:
-                self.stream.write(jobs[index], result)
+                self.stream.write(jobs[index], result, self.space.values(points_run[index]))
             self.on_run(len(self.samples) + len(results), result)
         for index, (key, point) in enumerate(new.items()):
             self.samples[key] = Sample(point, results[index])
