@@ -63,7 +63,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parsed = _parser().parse_args(arguments)
     from harness.cli.output import OutputError, complain
 
-    if parsed.module == "run":
+    if parsed.module in ("run", "search"):
         gc.enable()
     try:
         if not _load_plugins(getattr(parsed, "plugins", ())):
@@ -187,6 +187,8 @@ def _parser() -> argparse.ArgumentParser:
 
     options.for_run(command("run", "run scenarios and judge them"))
     options.for_merge(command("merge", "merge the parts of a suite that ran with --shard"))
+    options.for_results(command("results", "query, compare and export the results of many runs"))
+    options.for_search(command("search", "search for conditions under which a scenario fails"))
     options.for_check(command("check", "validate scenarios and the reach of their goals"))
     options.for_explain(command("explain", "print the program that a scenario becomes"))
     options.for_list(command("list", "list what a scenario may name", module="listing"))

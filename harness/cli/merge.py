@@ -21,7 +21,9 @@ def _run(arguments: argparse.Namespace) -> int:
     from harness.suite.merge import merge_parts
 
     start = time.monotonic()
-    suite, record = merge_parts([Path(each) for each in arguments.folders])
+    suite, record = merge_parts(
+        [Path(each) for each in arguments.folders], Path(arguments.report_dir)
+    )
     options = argparse.Namespace(
         **vars(arguments),
         repeat=1,
@@ -29,8 +31,8 @@ def _run(arguments: argparse.Namespace) -> int:
         bag=False,
         package_folders=(),
         plugins=(),
-        strict=False,
-        reporters=(),
+        strict=record.strict,
+        reporters=record.reporters,
         overrides=list(record.overrides.items()),
         seed=record.seed,
         samples=record.samples,

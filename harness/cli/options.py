@@ -144,6 +144,54 @@ def for_run(run: argparse.ArgumentParser) -> None:
                      help="no process for each scenario: for debuggers")  # fmt: skip
 
 
+def for_search(search: argparse.ArgumentParser) -> None:
+    """Of `harness search`."""
+    add = search.add_argument
+    add("file", metavar="FILE", help="a scenario file with `randomize`, or a bundled name")
+    _value_options(search)
+    add("--seed", metavar="N", type=int, default=None,
+        help="seed of every run and of the search, in place of the file's")  # fmt: skip
+    add("--case", metavar="NAME", default="", help="the parametrised case, where there are several")
+    add("--runs", metavar="N", type=whole_number, default=100,
+        help="runs of the search, without those that shrink a failure (default: 100)")  # fmt: skip
+    add("--start", metavar="N", type=whole_number, default=32,
+        help="how many of them are low-discrepancy samples, which show the rate"
+             " (default: 32)")  # fmt: skip
+    add("-j", metavar="N", dest="workers", type=whole_number, default=1,
+        help="make N runs side by side")  # fmt: skip
+    add("--resume", action="store_true",
+        help="go on where the same command was interrupted, without computing again")  # fmt: skip
+    add("--hard-cap", metavar="SECONDS", type=seconds, default=None,
+        help="wall time after which a run ends as an error (default: 600)")  # fmt: skip
+    add("--report-dir", metavar="DIR", default="reports",
+        help="files go to DIR/search (default: reports)")  # fmt: skip
+    add("--json", action="store_true", help="one JSON document on stdout")
+
+
+def for_results(results: argparse.ArgumentParser) -> None:
+    """Of `harness results`."""
+    add = results.add_argument
+    add("folder", metavar="DIR", help="report folder of many runs")
+    add("--outcome", choices=("passed", "failed", "invalid", "error"), default="",
+        help="only runs with this outcome")  # fmt: skip
+    add("--tag", metavar="TAG", dest="tags", action="append", default=[],
+        help="only runs whose file has this tag; repeatable")  # fmt: skip
+    add("--cause", metavar="TEXT", default="",
+        help="only failures whose cause has this text in it")  # fmt: skip
+    add("--where", metavar="NAME<VALUE", dest="conditions", action="append", default=[],
+        help="only runs in which this holds for a parameter, or for `margin`, `share`, `seed` or"
+             " `sim_time`; repeatable: --where 'friction<0.4' --where 'margin<1 mm'")  # fmt: skip
+    add("--limit", metavar="N", type=whole_number, default=None,
+        help="print at most N runs (default: 20)")  # fmt: skip
+    add("--against", metavar="DIR", default="",
+        help="compare with another campaign on the same conditions: exit code 1 when that one has"
+             " a lower success rate")  # fmt: skip
+    add("--csv", metavar="FILE", default="", help="write the selected runs as CSV")
+    add("--parquet", metavar="FILE", default="",
+        help="write them as Parquet; needs the extra `parquet`")  # fmt: skip
+    add("--json", action="store_true", help="one JSON document on stdout")
+
+
 def for_merge(merge: argparse.ArgumentParser) -> None:
     """Of `harness merge`."""
     merge.add_argument(
@@ -371,6 +419,11 @@ def _paths(command: argparse.ArgumentParser) -> None:
         nargs="+",
         help="a scenario file, a folder of *.scenario.yaml, or a bundled name",
     )
+    _value_options(command)
+
+
+def _value_options(command: argparse.ArgumentParser) -> None:
+    """Of every command that prepares scenarios: values, packages and plug-ins."""
     command.add_argument(
         "--set",
         metavar="PATH=VALUE",

@@ -153,6 +153,15 @@ def table_lines(
             yield f"  ... {len(rows) - MOST_ROWS} more"
 
 
+def short_value(value: Any) -> str:
+    """A value that varies with four digits, in the unit that it is written in."""
+    try:
+        number, unit = split_quantity(value)
+    except ValueError:
+        return str(value)
+    return f"{number:.4g} {unit}".rstrip()
+
+
 def _rows(entries: Sequence[tuple[Any, bool]]) -> list[tuple[str, int, int]]:
     """Label, passed and total of each value, or of each part of a range of numbers."""
     try:

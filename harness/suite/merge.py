@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from harness.core.errors import HarnessError
 from harness.reporting.result import CaseResult
 from harness.suite.plan import SuiteRequest, cases_of
 from harness.suite.shards import ShardRecord, read_shard_records
-from harness.suite.stream import FILE, read_results
+from harness.suite.stream import FILE, read_entries, read_results
 from harness.suite.suite_run import SuiteOptions, SuiteRun
 
 
-def merge_parts(folders: Sequence[Path]) -> tuple[SuiteRun, ShardRecord]:
+def merge_parts(
+    folders: Sequence[Path], target: Path | None = None
+) -> tuple[SuiteRun, ShardRecord]:
     """Merge report folders of `harness run --shard`.
+
+    Args:
+        folders: The report folders of the parts.
+        target: The folder that gets the results of all parts as one journal; None writes none.
 
     Returns:
         The whole suite, counted as one run would count it, and the description of the first part.
@@ -50,7 +58,32 @@ def merge_parts(folders: Sequence[Path]) -> tuple[SuiteRun, ShardRecord]:
     missing += [f"part {number}/{first.shard.count} is missing" for number in absent]
     suite.take_all(results)
     suite.missing_parts = tuple(missing)
+    if target is not None:
+        write_merged_journal(folders, records, target)
     return suite, first
+
+
+def write_merged_journal(
+    folders: Sequence[Path], records: Sequence[ShardRecord], target: Path
+) -> None:
+    """Write the results of all parts into one `results.jsonl`, for `harness results`.
+
+    Raises:
+        HarnessError: The file cannot be written.
+    """
+    part = target / f".{FILE}.{os.getpid()}"
+    try:
+        target.mkdir(parents=True, exist_ok=True)
+        with part.open("w", encoding="utf-8") as merged:
+            for folder, record in zip(folders, records, strict=True):
+                for entry in read_entries(folder / FILE):
+                    moved = replace(entry, result=_moved(entry.result, Path(record.root), folder))
+                    merged.write(moved.line)
+        part.replace(target / FILE)
+    except OSError as error:
+        raise HarnessError(f"'{target / FILE}' cannot be written: {error.strerror}") from error
+    finally:
+        part.unlink(missing_ok=True)
 
 
 def _moved(result: CaseResult, root: Path, folder: Path) -> CaseResult:

@@ -209,4 +209,6 @@ def record_of(
         request.overrides,
         request.seed,
         request.samples,
+        request.strict,
+        tuple(request.reporters),
     )

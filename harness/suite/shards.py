@@ -135,6 +135,8 @@ class ShardRecord:
         overrides: Dotted path -> value as YAML.
         seed: Seed that replaced the files' seeds.
         samples: Number of samples that replaced the files' numbers.
+        strict: Whether a warning of a verdict fails a case.
+        reporters: Names of other reporters that write into the reports.
         version: The version of the program that ran the part.
     """
 
@@ -146,6 +148,8 @@ class ShardRecord:
     overrides: Mapping[str, str] = field(default_factory=dict[str, str])
     seed: int | None = None
     samples: int | None = None
+    strict: bool = False
+    reporters: tuple[str, ...] = ()
     version: str = __version__
 
     @property

@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -68,16 +69,27 @@ class Stream:
         result = self._known.get(fingerprint(job)) if self._known else None
         return None if result is None or result.outcome == "error" else result
 
-    def write(self, job: RunRequest, result: CaseResult) -> None:
+    def write(
+        self,
+        job: RunRequest,
+        result: CaseResult,
+        values: Mapping[str, Any] | None = None,
+        tags: Sequence[str] = (),
+    ) -> None:
         """Keep a result.
+
+        Args:
+            job: The case that was run.
+            result: The result of the case.
+            values: What varies in the case, path -> value.
+            tags: The tags of its file.
 
         Raises:
             HarnessError: The disk is full.
         """
-        line = {"format": FORMAT, "key": fingerprint(job), "result": to_plain(result)}
+        entry = StreamEntry(fingerprint(job), result, values or {}, tuple(tags))
         try:
-            text = json.dumps(line, ensure_ascii=False, allow_nan=False)
-            self._file.write(f"{json_printable(text)}\n")
+            self._file.write(entry.line)
             self._file.flush()
         except OSError as error:
             raise HarnessError(f"'{self.path}' cannot be written: {error.strerror}") from error
@@ -87,20 +99,63 @@ class Stream:
         self._file.close()
 
 
+@dataclass(frozen=True)
+class StreamEntry:
+    """A line of a stream.
+
+    Attributes:
+        key: Fingerprint of what the result follows from.
+        result: The result of the case.
+        values: What varies in the case, path -> value.
+        tags: The tags of its file.
+    """
+
+    key: str
+    result: CaseResult
+    values: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    tags: tuple[str, ...] = ()
+
+    @property
+    def line(self) -> str:
+        """The entry as a line of the file."""
+        entry = {
+            "format": FORMAT,
+            "key": self.key,
+            "values": to_plain(dict(self.values)),
+            "tags": list(self.tags),
+            "result": to_plain(self.result),
+        }
+        return f"{json_printable(json.dumps(entry, ensure_ascii=False, allow_nan=False))}\n"
+
+
 def read_results(path: Path) -> Iterator[tuple[str, CaseResult]]:
     """Keys and results of a stream; a line that was cut off or has another format is left out."""
-    validator = _validator()
+    return ((entry.key, entry.result) for entry in read_entries(path))
+
+
+def read_entries(path: Path) -> Iterator[StreamEntry]:
+    """The entries of a stream; a line that was cut off or has another format is left out."""
     try:
-        with path.open(encoding="utf-8") as file:
+        with path.open("rb") as file:
             for line in file:
-                try:
-                    entry = cast("dict[str, Any]", json.loads(line))
-                    if entry["format"] == FORMAT:
-                        yield str(entry["key"]), validator.validate_python(entry["result"])
-                except (ValueError, KeyError, TypeError):
-                    continue
-    except (OSError, UnicodeDecodeError):
+                entry = entry_of(line)
+                if entry is not None:
+                    yield entry
+    except OSError:
         return
+
+
+def entry_of(line: bytes) -> StreamEntry | None:
+    """A line of a stream; None where it was cut off or has another format."""
+    try:
+        entry = cast("dict[str, Any]", json.loads(line))
+        if entry["format"] != FORMAT:
+            return None
+        result = _validator().validate_python(entry["result"])
+        tags = tuple(map(str, entry.get("tags", ())))
+        return StreamEntry(str(entry["key"]), result, dict(entry.get("values", {})), tags)
+    except (ValueError, KeyError, TypeError, RecursionError):
+        return None
 
 
 @cache
@@ -111,9 +166,13 @@ def _validator() -> TypeAdapter[CaseResult]:
 
 
 def fingerprint(job: RunRequest) -> str:
-    """What a case's result follows from: file, files it names, values, seed, version."""
+    """What a case's result follows from: file, files it names, values, seed, version.
+
+    Reporters count as well, as a report that another reporter has not written yet is not complete.
+    """
     said = [__version__, file_hash(job.file), job.case, str(job.seed), *_sorted(job.overrides)]
     said += ["strict"] if job.strict else []
+    said += [f"reporter {name}" for name in sorted(job.reporters)]
     return hashlib.sha256("\0".join(said).encode()).hexdigest()
 
 

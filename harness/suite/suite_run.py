@@ -107,7 +107,8 @@ class SuiteRun:
                     self.unfinished.pop(index, None)
                     kept = self._take(index, result)
                     if stream is not None:
-                        stream.write(self.jobs[index], kept)
+                        tags = self.plan[index // self._how.repeat].header.tags
+                        stream.write(self.jobs[index], kept, self.values(index), tags)
                     on_result(index, kept)
         except KeyboardInterrupt:
             self.is_interrupted = True

@@ -208,20 +208,33 @@ def _seed(text: str) -> int:
 
 
 def _drawn(distribution: Mapping[str, Any], rng: random.Random) -> Any:
-    """A value of a distribution, in the unit it is said in."""
+    """A random value of a distribution, in the unit it is said in."""
     if "choice" in distribution:
         return rng.choice(list(distribution["choice"]))
+    return value_at(distribution, rng.random())
+
+
+def value_at(distribution: Mapping[str, Any], share: float) -> Any:
+    """The value that a share of a distribution is below, in the unit it is said in.
+
+    Args:
+        distribution: A distribution of `randomize`.
+        share: The share, in [0, 1); of a choice, each value has an equal part.
+    """
+    if "choice" in distribution:
+        values = list(distribution["choice"])
+        return values[min(int(share * len(values)), len(values) - 1)]
     if "uniform" in distribution:
         (low, unit), (high, _) = (split_quantity(each) for each in distribution["uniform"])
-        return _with_unit(rng.uniform(low, high), unit)
+        return _with_unit(low + (high - low) * share, unit)
     normal = distribution["normal"]
     (mean, unit), (std, _) = split_quantity(normal["mean"]), split_quantity(normal["std"])
     curve = NormalDist(mean, std)
     low, high = (normal.get(end) for end in ("low", "high"))
     least = 0.0 if low is None else curve.cdf(split_quantity(low)[0])
     most = 1.0 if high is None else curve.cdf(split_quantity(high)[0])
-    share = rng.uniform(least, most)
-    return _with_unit(curve.inv_cdf(min(max(share, SMALLEST_SHARE), 1 - SMALLEST_SHARE)), unit)
+    below = least + (most - least) * share
+    return _with_unit(curve.inv_cdf(min(max(below, SMALLEST_SHARE), 1 - SMALLEST_SHARE)), unit)
 
 
 def _with_unit(value: float, unit: str) -> float | str:

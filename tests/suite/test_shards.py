@@ -278,3 +278,21 @@ def test_every_command_of_the_guide_is_accepted():
     for line in lines:
         words = line.split()
         _parser().parse_args([*words, *(["x"] if words[-1] == "--report-dir" else [])])
+
+
+def test_a_merged_suite_can_be_queried(parts, tmp_path):
+    merged = tmp_path / "merged"
+    harness("merge", "at1", "at2", "at3", "--report-dir", merged, cwd=parts)
+    found = json.loads(harness("results", merged, "--json", cwd=parts).stdout)
+    assert found["selected"] == 33  # a part runs samples that an early stop would leave out
+    grid = json.loads(harness("results", merged, "--tag", "grid", "--json", cwd=parts).stdout)
+    assert {run["time"] for run in grid["runs"]} == {"0.05 s", "0.1 s", "0.2 s"}
+
+
+def test_commands_to_run_again_have_the_options_of_the_parts(tmp_path):
+    (tmp_path / "grid.scenario.yaml").write_text(GRID)
+    harness("run", ".", "--shard", "1/1", "--strict", "--reporter", "rosbag", cwd=tmp_path)
+    merged = harness("merge", "reports", "--report-dir", "all", cwd=tmp_path)
+    [again] = re.findall(r"again: (.*)", merged.stdout)
+    assert "--strict" in again
+    assert "--reporter rosbag" in again

@@ -76,6 +76,21 @@ def apply_overrides(root: Located, overrides: list[Override], problems: list[Pro
     return root
 
 
+def value_at(root: Located, path: str) -> Any:
+    """The value that an override of a path would replace; None where the file has none.
+
+    Args:
+        root: The scenario's values, parameters substituted.
+        path: Path of a value, as `--set` takes it.
+    """
+    reader = _Reader(Override(path, Located(None, root.place), root.place))
+    try:
+        reader.set(root, Scenario, _parts(root, path))
+    except _PathError:
+        return None
+    return reader.found
+
+
 def _parts(root: Located, path: str) -> list[str]:
     """The path's parts; a bare name may be a parameter's."""
     parts = path.split(".")
@@ -124,7 +139,7 @@ class _Setter:
             key, below = old
         else:
             key = old.key if old is not None else place
-            below = located(default, place) if rest else Located(None, place)
+            below = located(default, place)
         if below.value is None and rest and (annotation is None or _is_mapping(annotation)):
             below = Located({}, place)
         if below.value is None and rest:
@@ -151,6 +166,17 @@ class _Setter:
     def _above(self, rest: list[str]) -> str:
         """The part of the path in front of the rest."""
         return self.override.path[: len(self.override.path) - len(".".join(rest)) - 1]
+
+
+class _Reader(_Setter):
+    """Follows a path as an override does, and keeps the value at its end."""
+
+    found: Any = None
+
+    def set(self, item: Located, annotation: Any, parts: list[str]) -> Located:
+        if not parts:
+            self.found = item.plain()
+        return super().set(item, annotation, parts)
 
 
 def _kind(item: Located, annotation: Any) -> Any:

@@ -35,8 +35,31 @@ def write_suite(
     texts = {
         RESULTS: json_text(results_document(record, exit_code)),
         JUNIT: junit_xml(record),
-        PAGE: suite_html(record, folder, history),
     }
+    return write_page(folder, record, texts, history)
+
+
+def write_page(
+    folder: Path,
+    record: SuiteRecord,
+    others: Mapping[str, str],
+    history: Mapping[Key, Sequence[float | None]] | None = None,
+) -> Path:
+    """Write the page of many runs, and other files first; each is whole or as it was.
+
+    Args:
+        folder: Made where it is missing.
+        record: The record of the suite.
+        others: Name -> text of the other files.
+        history: Worst margins of earlier runs.
+
+    Returns:
+        The page's path in the folder.
+
+    Raises:
+        HarnessError: A file cannot be written.
+    """
+    texts = {**others, PAGE: suite_html(record, folder, history)}
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in texts.items():

@@ -1,0 +1,1 @@
+"""Results of many runs as a database: queries, comparisons of two campaigns, and exports."""

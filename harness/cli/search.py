@@ -1,0 +1,161 @@
+"""`harness search`."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+import sys
+import time
+from collections.abc import Sequence
+from contextlib import closing
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from harness.cli.output import complain, guarded, only_json_on_stdout, output, say
+from harness.cli.progress import remaining
+from harness.reporting.result import CaseResult
+from harness.suite.discovery import UsageError, discover
+from harness.suite.outcome import EXIT_CODES
+from harness.suite.warm import WarmServer
+
+if TYPE_CHECKING:
+    from harness.failure_search.search import SearchResult
+    from harness.failure_search.write import WrittenFailure
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Search for conditions under which a scenario fails; exit code 1 when there are some."""
+    return guarded(lambda: _run(arguments))
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    if arguments.json:
+        from harness.failure_search.write import search_document
+
+        with only_json_on_stdout() as write_json:
+            found, written, code = _search(arguments)
+            write_json({**search_document(found, written), "exit_code": code})
+        return code
+    found, written, code = _search(arguments)
+    _show(arguments, found, written)
+    return code
+
+
+def _search(arguments: argparse.Namespace) -> tuple[SearchResult, list[WrittenFailure], int]:
+    files = discover([arguments.file])
+    if len(files) != 1:
+        raise UsageError(f"'{arguments.file}' holds {len(files)} scenarios; name one of them")
+    with WarmServer() as server:
+        from harness.failure_search.search import SearchRequest, search
+        from harness.failure_search.write import (
+            is_failing,
+            search_folder,
+            write_failures,
+            write_search,
+        )
+        from harness.suite.stream import Stream
+
+        request = SearchRequest(
+            files[0],
+            dict(arguments.overrides),
+            arguments.case,
+            arguments.seed,
+            arguments.runs,
+            min(arguments.start, arguments.runs),
+            arguments.workers,
+            arguments.hard_cap,
+        )
+        folder = search_folder(Path(arguments.report_dir), files[0])
+        progress = _Progress(arguments.runs)
+        with closing(Stream(folder, resume=arguments.resume)) as stream:
+            try:
+                found = search(
+                    request, server, stream=stream, on_run=progress.run, on_stage=progress.stage
+                )
+                progress.stage("writing the failures")
+                written = write_failures(found, folder, server)
+            except KeyboardInterrupt:
+                complain("interrupted: the same command with --resume goes on")
+                raise
+        write_search(found, written, folder)
+    output().status(None)
+    return found, written, EXIT_CODES["failed" if is_failing(found) else "passed"]
+
+
+class _Progress:
+    """The status line of a search: what it does, and how many runs it has made."""
+
+    def __init__(self, runs: int) -> None:
+        self._runs = runs
+        self._done = 0
+        self._failed = 0
+        self._stage = "starting"
+        self._begin = self._last = time.monotonic()
+
+    def stage(self, text: str) -> None:
+        """Show what the search does next."""
+        self._stage = text
+        output().status(self._text)
+
+    def run(self, number: int, result: CaseResult) -> None:
+        """Count a run."""
+        self._done, self._last = number, time.monotonic()
+        self._failed += result.outcome != "passed"
+        output().status(self._text, is_frequent=True)
+
+    def _text(self) -> str:
+        left = remaining(self._begin, self._last, time.monotonic(), self._done, self._runs)
+        return f"  {self._stage}: {self._done} runs, {self._failed} failed{left}"
+
+
+def _show(
+    arguments: argparse.Namespace, found: SearchResult, written: Sequence[WrittenFailure]
+) -> None:
+    from harness.failure_search.rate import failure_rate
+    from harness.failure_search.write import search_folder
+    from harness.reporting.suite.cause import cause_of
+    from harness.reporting.suite.write import PAGE
+    from harness.reporting.terminal import Style, report_link
+
+    style = Style.of(sys.stdout)
+    exploration = found.exploration
+    if found.nominal.result.outcome != "passed":
+        cause = cause_of(found.nominal.result)
+        say(f"{style.mark(False)} the scenario fails as its file has it: {cause and cause.said}")
+        say(f"  again:  {shlex.join(['harness', 'run', str(found.request.file)])}")
+        return
+    names = ", ".join(each.path for each in found.space.parameters)
+    say(f"{found.request.file}: {len(exploration.samples)} runs over {names}")
+    if exploration.start:
+        say(failure_rate(exploration.start).sentence)
+    if not written:
+        say(f"{style.mark(True)} no failure was found")
+    elif exploration.first_failure:
+        say(f"the first failure was run {exploration.first_failure}")
+    for each in written:
+        _show_failure(each, found, report_link(each.result, style))
+    page = search_folder(Path(arguments.report_dir), found.request.file) / PAGE
+    say("", f"all runs: {style.link(str(page), page.resolve().as_uri())}")
+
+
+def _show_failure(each: WrittenFailure, found: SearchResult, report: str) -> None:
+    from harness.failure_search.write import changes
+    from harness.reporting.suite.cause import cause_of
+
+    failure = each.failure
+    say("", f"FAILED in {len(failure.samples)} runs: {failure.kind}")
+    changed = changes(found, failure.nearest)
+    of = f"{len(changed)} of {len(found.space.parameters)} parameters"
+    say(f"  smallest change that fails in this way ({of}, {failure.shrink_runs} runs to shrink):")
+    for line in changed:
+        say(f"    {line}")
+    cause = cause_of(each.result)
+    if cause is not None:
+        say(f"  {cause.said}")
+    say(f"  report: {report}")
+    say(f"  again:  {shlex.join(['harness', 'run', str(each.file)])}")
+    if not each.is_same:
+        say(
+            f"  the file's run has the digest {each.result.digest[:12]}, and not"
+            f" {failure.nearest.result.digest[:12]} as the run that was found"
+        )

@@ -1,0 +1,1 @@
+"""Search for conditions under which a scenario fails, and the smallest change that does."""

@@ -1,0 +1,192 @@
+"""The files of a search: a scenario for each failure with its report, a page, and the numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from harness.core.errors import HarnessError
+from harness.core.printable import printable
+from harness.failure_search.evaluator import Sample
+from harness.failure_search.rate import FailureRate, failure_rate
+from harness.failure_search.search import Failure, SearchResult
+from harness.language.reading.load import load_scenario
+from harness.language.reading.resolve import resolved_text
+from harness.reporting.json_text import json_text
+from harness.reporting.result import CaseResult
+from harness.reporting.sampled import SampledRate, SuccessRate
+from harness.reporting.suite.cause import cause_of
+from harness.reporting.suite.record import SuiteCase, SuiteRecord
+from harness.reporting.suite.write import write_page
+from harness.session.run_request import RunRequest
+from harness.suite.cases import run_isolated
+from harness.suite.discovery import SUFFIX
+from harness.suite.folders import place_of
+from harness.suite.warm import WarmServer
+
+FORMAT = "armharness-search/1"
+FOLDER = "search"
+NUMBERS = "search.json"
+
+
+@dataclass(frozen=True)
+class WrittenFailure:
+    """A failure as a scenario file, which was run.
+
+    Attributes:
+        failure: The failure that the file repeats.
+        file: The scenario file that was written.
+        result: The result of running that file, with its report.
+    """
+
+    failure: Failure
+    file: Path
+    result: CaseResult
+
+    @property
+    def is_same(self) -> bool:
+        """Whether the file's run has the digest of the run that was found."""
+        return self.result.digest == self.failure.nearest.result.digest
+
+
+def search_folder(root: Path, file: Path) -> Path:
+    """Where the files of a search go."""
+    return root / FOLDER / place_of(file)
+
+
+def write_failures(found: SearchResult, folder: Path, server: WarmServer) -> list[WrittenFailure]:
+    """Write each shrunk failure as a scenario file, run that file, and report the run.
+
+    Raises:
+        HarnessError: A file cannot be written.
+    """
+    files = [folder / f"failure{i}{SUFFIX}" for i in range(1, len(found.failures) + 1)]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for stale in folder.glob(f"failure*{SUFFIX}"):
+            stale.unlink()
+        for file, failure in zip(files, found.failures, strict=True):
+            file.write_text(scenario_text(found, failure, folder), encoding="utf-8")
+    except OSError as error:
+        raise HarnessError(f"'{folder}' cannot be written: {error.strerror}") from error
+    jobs = [RunRequest(file, report_dir=folder / file.name.removesuffix(SUFFIX)) for file in files]
+    cap = found.request.hard_cap
+    results = dict(run_isolated(jobs, server, workers=found.request.workers, hard_cap=cap))
+    return [
+        WrittenFailure(failure, file, results[index])
+        for index, (failure, file) in enumerate(zip(found.failures, files, strict=True))
+    ]
+
+
+def scenario_text(found: SearchResult, failure: Failure, folder: Path) -> str:
+    """A scenario file that fails as the shrunk failure does, without anything that varies."""
+    sample = failure.nearest
+    overrides = {**found.overrides, **found.space.overrides(sample.point)}
+    loaded = load_scenario(found.request.file, overrides, found.request.seed)
+    lines = [
+        f"The smallest change of '{found.request.file}' that was found to fail in this way:",
+        failure.kind,
+        *changes(found, sample),
+        f"digest: {sample.result.digest}",
+    ]
+    comments = "".join(f"# {printable(line)}\n" for line in lines)
+    return comments + resolved_text(loaded, folder=folder)
+
+
+def changes(found: SearchResult, sample: Sample) -> list[str]:
+    """`friction: 1.0 -> 0.42` for each parameter that is not nominal."""
+    space = found.space
+    return [
+        f"{space.parameters[i].path}: {space.parameters[i].nominal} -> {sample.point[i]}"
+        for i in space.changed(sample.point)
+    ]
+
+
+def write_search(found: SearchResult, written: Sequence[WrittenFailure], folder: Path) -> Path:
+    """Write the page and the numbers of a search.
+
+    Returns:
+        The path of the page.
+
+    Raises:
+        HarnessError: A file cannot be written.
+    """
+    reports = {id(each.failure.nearest): each.result for each in written}
+    samples = [found.nominal, *found.exploration.samples, *(f.nearest for f in found.failures)]
+    cases = [
+        SuiteCase(_with_report(each, reports.get(id(each))), found.space.values(each.point))
+        for each in samples
+    ]
+    outcome = "failed" if is_failing(found) else "passed"
+    start = found.exploration.start
+    rates = [_sampled(found, failure_rate(start))] if start else []
+    document = search_document(found, written)
+    return write_page(folder, SuiteRecord(outcome, cases, rates), {NUMBERS: json_text(document)})
+
+
+def is_failing(found: SearchResult) -> bool:
+    """Whether the scenario fails somewhere."""
+    return found.nominal.result.outcome != "passed" or bool(found.failures)
+
+
+def _with_report(sample: Sample, reported: CaseResult | None) -> CaseResult:
+    if reported is None:
+        return sample.result
+    return replace(sample.result, report_dir=reported.report_dir, page=reported.page)
+
+
+def _sampled(found: SearchResult, rate: FailureRate) -> SampledRate:
+    """The share that passes, as the pages of suites show rates."""
+    is_good = not found.failures
+    return SampledRate(
+        str(found.request.file),
+        "low-discrepancy samples",
+        SuccessRate(
+            rate.total - rate.failed,
+            rate.total,
+            1 - rate.high,
+            1 - rate.low,
+            rate.confidence,
+            None,
+            "shown" if is_good else "refuted",
+        ),
+        "passed" if is_good else "failed",
+    )
+
+
+def search_document(found: SearchResult, written: Sequence[WrittenFailure]) -> dict[str, object]:
+    """What `search.json` and `--json` say."""
+    exploration = found.exploration
+    return {
+        "format": FORMAT,
+        "file": str(found.request.file),
+        "outcome": "failed" if is_failing(found) else "passed",
+        "nominal": {"outcome": found.nominal.result.outcome, "digest": found.nominal.result.digest},
+        "parameters": {
+            each.path: {"nominal": each.nominal, **each.distribution}
+            for each in found.space.parameters
+        },
+        "runs": len(exploration.samples),
+        "first_failure": exploration.first_failure or None,
+        "rate": failure_rate(exploration.start) if exploration.start else None,
+        "failures": [
+            {
+                "kind": each.failure.kind,
+                "cause": cause.said if (cause := cause_of(each.result)) else "",
+                "runs": len(each.failure.samples),
+                "shrink_runs": each.failure.shrink_runs,
+                "values": found.space.values(each.failure.nearest.point),
+                "changed": [
+                    found.space.parameters[i].path
+                    for i in found.space.changed(each.failure.nearest.point)
+                ],
+                "distance": found.space.distance(each.failure.nearest.point),
+                "scenario": str(each.file),
+                "report": each.result.report_dir,
+                "digest": each.result.digest,
+                "is_same_digest": each.is_same,
+            }
+            for each in written
+        ],
+    }

@@ -1,0 +1,165 @@
+"""`harness search`: a thin failing region is found, and shrunk to its boundary."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+import yaml
+
+from harness.cli.main import main
+
+THIN = """\
+scenario: A ball that must not be near a point
+robot: open_manipulator_x
+seed: 3
+params: {x: 0.0, y: 0 m, z: 0.5, color: red}
+objects:
+  - name: ball
+    sphere: {radius: 2 cm}
+    pose: {xyz: ["${x}", "${y}", "${z}"]}
+    static: true
+    color: "${color}"
+steps:
+  - wait: 2 ms
+expect:
+  - formula: "always (abs(x(ball) - 0.3) + abs(y(ball) + 0.2) + abs(z(ball) - 0.8) > 14 cm)"
+randomize:
+  x: {uniform: [-0.5, 0.5]}
+  y: {uniform: [-50 cm, 50 cm]}
+  z: {uniform: [0.4, 1.1]}
+  color: {choice: [red, green]}
+"""
+"""It fails in an octahedron of 4/3 0.14^3 m^3 of 0.7 m^3, which is 0.52 %."""
+
+TWO_KINDS = """\
+scenario: Two limits and a nuisance
+robot: open_manipulator_x
+params: {x: 0.0, y: 0.0, z: 0.5}
+objects:
+  - {name: ball, sphere: {radius: 2 cm}, pose: {xyz: ["${x}", "${y}", "${z}"]}, static: true}
+steps:
+  - wait: 2 ms
+expect:
+  - formula: "always (x(ball) < 0.3)"
+  - formula: "always (y(ball) > -0.4)"
+randomize:
+  x: {uniform: [-0.5, 0.5]}
+  y: {normal: {mean: 0, std: 0.2, low: -0.5, high: 0.5}}
+  z: {uniform: [0.4, 1.1]}
+"""
+
+SAFE = TWO_KINDS.replace("0.3)", "3)").replace("-0.4)", "-4)")
+
+
+def search(folder, text, *options):
+    """The exit code and the document of a search."""
+    file = folder / "thin.scenario.yaml"
+    file.write_text(text)
+    code = main(["search", str(file), "--report-dir", str(folder / "reports"), *options])
+    [numbers] = (folder / "reports").rglob("search.json")
+    return code, json.loads(numbers.read_text())
+
+
+def distance_to_boundary(values):
+    """How far the shrunk point is from the octahedron, as a share of the smallest range."""
+    y = float(str(values["y"]).split()[0]) / 100
+    total = abs(values["x"] - 0.3) + abs(y + 0.2) + abs(values["z"] - 0.8)
+    return abs(total - 0.14) / 0.7
+
+
+def test_a_thin_failure_is_found_shrunk_to_its_boundary_and_written_as_a_scenario(tmp_path):
+    code, found = search(tmp_path, THIN, "--seed", "2")
+    assert code == 1
+    assert found["first_failure"] <= 100
+    [failure] = found["failures"]
+    assert distance_to_boundary(failure["values"]) < 0.02
+    assert failure["changed"] == ["x", "y", "z"]  # the colour does not matter
+    assert failure["is_same_digest"]
+    text = (tmp_path / failure["scenario"]).read_text()
+    assert "randomize" not in yaml.safe_load(text)
+    assert failure["digest"] in text
+    assert list((tmp_path / failure["report"]).rglob("*.jpg"))
+
+
+def test_every_kind_of_failure_is_shrunk_to_the_parameter_that_causes_it(tmp_path):
+    code, found = search(tmp_path, TWO_KINDS, "--runs", "40", "--start", "8", "-j", "2")
+    assert code == 1
+    causes = {tuple(each["changed"]): each["values"] for each in found["failures"]}
+    assert set(causes) == {("x",), ("y",)}
+    assert causes[("x",)]["x"] == pytest.approx(0.3, abs=0.005)
+    assert causes[("y",)]["y"] == pytest.approx(-0.4, abs=0.005)
+
+
+def test_without_a_failure_the_bound_is_stated_and_the_workers_do_not_matter(tmp_path, capsys):
+    (tmp_path / "two").mkdir()
+    code, found = search(tmp_path, SAFE, "--runs", "12", "--start", "8")
+    assert code == 0
+    assert found["failures"] == []
+    assert found["rate"]["high"] == pytest.approx(1 - 0.05 ** (1 / 8))
+    assert "0 of 8 low-discrepancy samples failed: with 95% confidence" in capsys.readouterr().out
+    _, again = search(tmp_path / "two", SAFE, "--runs", "12", "--start", "8", "-j", "2")
+    assert {**again, "file": ""} == {**found, "file": ""}
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "message"),
+    [
+        (SAFE.split("randomize")[0], (), "nothing varies; give ranges with `randomize:`"),
+        (SAFE, ("--case", "small"), "has no case 'small'"),
+        (SAFE + "parametrize: {params.x: [0, 1]}\n", (), "has 2 cases; name one of them"),
+        (SAFE.replace("wait", "wiat"), (), "wiat"),
+    ],
+)
+def test_what_cannot_be_searched_is_refused(tmp_path, capsys, text, options, message):
+    file = tmp_path / "thin.scenario.yaml"
+    file.write_text(text)
+    code = main(["search", str(file), "--report-dir", str(tmp_path / "reports"), *options])
+    assert code == 2
+    assert message in capsys.readouterr().err
+    assert not list(tmp_path.rglob("search.json"))
+
+
+def test_a_scenario_that_fails_as_written_needs_no_search(tmp_path, capsys):
+    code, found = search(tmp_path, TWO_KINDS.replace("x: 0.0", "x: 0.4"))
+    assert code == 1
+    assert found["failures"] == []
+    assert "the scenario fails as its file has it" in capsys.readouterr().out
+
+
+@pytest.mark.search
+def test_a_thin_failure_is_found_within_100_runs_in_18_of_20_seeds(tmp_path):
+    found = []
+    for seed in range(1, 21):
+        folder = tmp_path / str(seed)
+        folder.mkdir()
+        _, document = search(folder, THIN, "--seed", str(seed), "-j", "2")
+        if document["failures"]:
+            found.append(document)
+            [failure] = document["failures"]
+            assert distance_to_boundary(failure["values"]) < 0.02
+            assert failure["is_same_digest"]
+    assert sum(document["first_failure"] <= 100 for document in found) >= 18
+
+
+@pytest.mark.search
+def test_an_interrupted_search_goes_on_with_resume(tmp_path):
+    import signal
+    import time
+
+    file = tmp_path / "thin.scenario.yaml"
+    file.write_text(SAFE)
+    command = [sys.executable, "-m", "harness.cli", "search", file.name, "--runs", "40"]
+    running = subprocess.Popen(command, cwd=tmp_path)
+    journal = tmp_path / "reports/search/thin/results.jsonl"
+    while not journal.exists() or len(journal.read_text().splitlines()) < 5:
+        time.sleep(0.1)
+    running.send_signal(signal.SIGINT)
+    assert running.wait() == 130
+    kept = len(journal.read_text().splitlines())
+    done = subprocess.run([*command, "--resume"], cwd=tmp_path, check=False)
+    assert done.returncode == 0
+    lines = journal.read_text().splitlines()
+    assert len(lines) == 41  # the nominal scenario is a run too
+    assert len({json.loads(line)["key"] for line in lines}) == 41
+    assert kept >= 5
