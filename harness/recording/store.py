@@ -7,6 +7,7 @@ import json
 import os
 import shutil
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import MISSING, dataclass, fields, replace
 from functools import cached_property
@@ -112,11 +113,13 @@ def write_run(folder: Path, stored: StoredRun, extra: Callable[[Path], None] | N
         text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
         (temporary / RUN).write_text(json_printable(text) + "\n", encoding="utf-8")
         (temporary / RESOLVED).write_text(run.resolved, encoding="utf-8", newline="")
-        write_npz(temporary / SIGNALS, arrays)
-        write_npz(temporary / VISUALS, _mesh_arrays(run))
-        write_files(temporary, run.files)
-        if extra is not None:
-            extra(temporary)
+        with ThreadPoolExecutor(1) as pool:  # compression runs next to Python
+            compressed = pool.submit(write_npz, temporary / SIGNALS, arrays)
+            write_npz(temporary / VISUALS, _mesh_arrays(run))
+            write_files(temporary, run.files)
+            if extra is not None:
+                extra(temporary)
+            compressed.result()
         _put_in_place(temporary, folder)
     except OSError as error:
         raise HarnessError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -46,6 +47,7 @@ def run_case(request: RunRequest, notify: Notify = lambda _: None) -> CaseResult
     try:
         executed = _executed(request, start, clock, progress)
         del start  # the simulator is the largest object, and the run holds its recording
+        gc.collect()  # parts of the simulator refer to each other
         with Pictures(request, prepared, executed) as pictures:
             judged = _judged(request, executed, prepared, pictures, clock, progress)
             result = _result(request, prepared, judged, overlaps, draw)
