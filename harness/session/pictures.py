@@ -129,7 +129,6 @@ def _drawings(
     prepared: Prepared, run: Run, activity: Activity, *, are_steps_drawn: bool
 ) -> Drawings:
     from harness.cameras.stills import Stills, draw_stills
-    from harness.cameras.videos import record_videos
     from harness.observation.visuals import mesh_records
 
     program = prepared.program
@@ -139,10 +138,15 @@ def _drawings(
         stills = draw_stills(description, objects, run, activity=activity)
         images = {f"{FOLDER}/{name}": content for name, content in stills.files.items()}
         images |= _failures(prepared, run, activity)
+    drawings = Drawings(meshes=mesh_records(run), images=images, note=stills.note)
+    if not program.videos:
+        return drawings
+    from harness.cameras.videos import record_videos  # loads a video library
+
     videos, files, findings = record_videos(
         description, objects, run, program.videos, activity=activity
     )
-    return Drawings(videos, findings, files, mesh_records(run), images, stills.note)
+    return replace(drawings, videos=videos, files=files, findings=findings)
 
 
 def _failures(prepared: Prepared, run: Run, activity: Activity) -> dict[str, bytes]:
