@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import cv2
 import numpy as np
 
@@ -14,19 +12,17 @@ RED, DARK = (50, 40, 200), (50, 45, 40)  # BGR
 FONT, SIZE, MARGIN = cv2.FONT_HERSHEY_SIMPLEX, 0.45, 10
 
 
-def write_captioned(
-    file: Path,
+def captioned_jpeg(
     pixels: np.ndarray,
     caption: str,
     *,
     ink: tuple[int, int, int] = RED,
     status: str = "",
     status_ink: tuple[int, int, int] = DARK,
-) -> None:
-    """Write RGB pixels as a JPEG with a caption over its lowest rows.
+) -> bytes:
+    """RGB pixels as a JPEG file with a caption over its lowest rows.
 
     Args:
-        file: The file to write.
         pixels: The picture, RGB, shape (height, width, 3), uint8.
         caption: Text at the left, scaled down to fit.
         ink: Colour of the caption, BGR.
@@ -45,4 +41,4 @@ def write_captioned(
     scale = SIZE * min(1.0, (right - MARGIN) / max(wide, 1))
     cv2.putText(picture, text, (MARGIN, height), FONT, scale, ink, 1, cv2.LINE_AA)
     _, content = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, 92])
-    file.write_bytes(content.tobytes())  # OpenCV crashes on file names that are not UTF-8
+    return content.tobytes()

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 import numpy as np
 
-from harness.cameras.caption import write_captioned
+from harness.cameras.caption import captioned_jpeg
 from harness.cameras.marks import GOAL, ORANGE, RED, frame_mark, line_mark, mark
 from harness.cameras.picture_model import PictureModel, build_picture_model
 from harness.cameras.recorded_scene import floor_height, scene_poses
@@ -29,11 +28,10 @@ def draw_failure(
     world_objects: Sequence[WorldObject],
     run: Run,
     step: StepRecord,
-    file: Path,
     *,
     backend: str = "auto",
-) -> None:
-    """Write a JPEG of the state that explains a failed step, with the goal.
+) -> bytes:
+    """A JPEG file of the state that explains a failed step, with the goal.
 
     The axes x, y, z of the goal's frame are red, green, blue; an orange line connects the link with
     it. Objects are where they were when the step failed, attached ones move with their link.
@@ -43,7 +41,6 @@ def draw_failure(
         world_objects: All objects of the scenario.
         run: The run with its recorded signals.
         step: A failed step that has an explanation.
-        file: The file to write; its folder exists.
         backend: `auto`, `egl`, `osmesa` or `rays`.
     """
     nearest = recorded_explanation(step.explanation).nearest
@@ -68,7 +65,7 @@ def draw_failure(
     picture.pose(poses | {mark.name: mark.pose for mark in marks})
     points, radii = _in_view(description, poses, marks)
     pixels = render_overview(picture, points, radii, WIDTH, HEIGHT, backend)
-    write_captioned(file, pixels, f"{step.error_code}: {nearest.shows}{_missed_by(nearest)}")
+    return captioned_jpeg(pixels, f"{step.error_code}: {nearest.shows}{_missed_by(nearest)}")
 
 
 def _tint(picture: PictureModel, nearest: NearestState) -> None:

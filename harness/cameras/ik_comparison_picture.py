@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from harness.cameras.caption import write_captioned
+from harness.cameras.caption import captioned_jpeg
 from harness.cameras.marks import frame_mark, line_mark, mark
 from harness.cameras.picture_model import build_picture_model
 from harness.cameras.recorded_scene import floor_height
@@ -75,7 +75,7 @@ def draw_ik_comparison(
     points = np.array([shown[name].translation for name in sizes])
     radii = np.array(list(sizes.values()))
     pixels = render_overview(picture, points, radii, WIDTH, HEIGHT, backend)
-    write_captioned(file, pixels, caption)
+    file.write_bytes(captioned_jpeg(pixels, caption))
 
 
 def _ghosts(description: RobotDescription, state: FloatArray) -> list[WorldObject]:

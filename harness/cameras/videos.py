@@ -13,7 +13,7 @@ from harness.cameras.sensor import as_delivered
 from harness.core.activity import Activity, unobserved
 from harness.core.camera import Camera
 from harness.core.world import WorldObject
-from harness.recording.film import encoded_film, film_size
+from harness.recording.film import SUFFIX, encoded_film, film_size
 from harness.recording.run import Finding, Run, VideoRecord
 from harness.robot.description import RobotDescription
 
@@ -89,7 +89,7 @@ def _record(
     content = encoded_film(pictures(), rate, size)
     if not times:
         return None, {}
-    file = f"{folder}/video.webm"
+    file = f"{folder}/video{SUFFIX}"
     video = VideoRecord(
         camera=camera.name,
         file=file,

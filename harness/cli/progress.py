@@ -48,6 +48,7 @@ class ProgressLines:
         self._noted: set[str] = set()  # every sample of a file has the same
         self._begun: dict[int, list[Moment]] = defaultdict(list)  # steps nest
         self._activities: dict[int, tuple[str, float]] = {}
+        self._shown: dict[int, str] = {}  # outcomes that are shown before the report is written
         self._done = 0
         self._start = self._last_end = clock()
         self._output.status(self._status(None, 0))
@@ -60,6 +61,8 @@ class ProgressLines:
             self._begin(index)
             speed = self._speed(index, event)
             self._line(index, step_done(replace(event, speed=speed), self._style))
+        elif event.result is not None and len(self._cases) == 1:
+            self._verdict(index, event.result)
         if event.kind in ("step_started", "activity"):
             if not self._is_brief:
                 self._begin(index)
@@ -70,18 +73,24 @@ class ProgressLines:
         """Show a case's outcome."""
         self._done += 1
         self._last_end = self._clock()
-        line = case_line(result, self._style)
-        if self._is_brief:
-            self._line(index, f"  {line}" if self._is_side_by_side else self._named(index, line))
-        else:
-            self._begin(index)
-            self._line(index, f"  {line}")
+        if self._shown.get(index) != result.outcome:
+            self._verdict(index, result)
         for note in result.notes:
             if note not in self._noted:
                 self._noted.add(note)
                 self._line(index, f"  {self._style.quiet(f'note: {note}')}")
         is_last = self._done == len(self._cases)
         self._output.status(None if is_last else self._status(None, index))
+
+    def _verdict(self, index: int, result: CaseResult) -> None:
+        """Show a case's outcome, its report written or not."""
+        self._shown[index] = result.outcome
+        line = case_line(result, self._style)
+        if self._is_brief:
+            self._line(index, f"  {line}" if self._is_side_by_side else self._named(index, line))
+        else:
+            self._begin(index)
+            self._line(index, f"  {line}")
 
     def _status(self, event: ProgressEvent | None, index: int) -> Callable[[], str]:
         """What the status line says, at any later moment."""

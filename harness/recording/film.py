@@ -1,69 +1,58 @@
-"""Videos as VP8 WebM files, which browsers and players read without another codec."""
+"""Videos as MP4 files with H.264, which every browser, player and slide program shows."""
 
 from __future__ import annotations
 
-import tempfile
+import io
 from collections.abc import Iterable, Iterator
-from pathlib import Path
+from fractions import Fraction
+from typing import Any
 
-import cv2
+import av
 import numpy as np
+from av.error import FFmpegError
 
-from harness.recording.quiet import quiet_stderr
-
-TRACK_UID = b"\x73\xc5\x88"
-"""Matroska's element for it, and that its content has 8 bytes."""
+SUFFIX, MEDIA_TYPE = ".mp4", "video/mp4"
+OPTIONS = {"preset": "veryfast", "crf": "23"}
+"""Speed and quality of the encoder; one thread, so that equal pictures give equal bytes."""
 
 
 def film_size(width: int, height: int, widest: int | None = None) -> tuple[int, int]:
-    """The size of a video [pixels]: the pictures', or narrower, in even numbers as VP8 has them."""
+    """The size of a video [pixels]: the pictures', or narrower; H.264 has even numbers."""
     scale = 1.0 if widest is None else min(1.0, widest / width)
     return max(2, 2 * round(scale * width / 2)), max(2, 2 * round(scale * height / 2))
 
 
 def encoded_film(frames: Iterable[np.ndarray], rate: float, size: tuple[int, int]) -> bytes:
-    """A WebM file of RGB or grey pictures; the same bytes for the same pictures.
+    """A video file of RGB or grey pictures; the same bytes for the same pictures.
 
     Args:
         frames: The frames, of any size; at least one.
         rate: The number of frames per second.
         size: The size of the video, as `film_size` gives it.
     """
-    with tempfile.TemporaryDirectory() as place:
-        file = Path(place) / "film.webm"
-        with quiet_stderr():
-            writer = cv2.VideoWriter(str(file), cv2.VideoWriter.fourcc(*"VP80"), rate, size)
+    content = io.BytesIO()
+    film: Any = av.open(content, "w", format="mp4")
+    with film:
+        stream = film.add_stream("libx264", rate=Fraction(rate).limit_denominator(1000))
+        stream.options = OPTIONS
+        stream.width, stream.height = size
+        stream.pix_fmt = "yuv420p"
+        stream.codec_context.thread_count = 1
         for frame in frames:
-            colours = frame if frame.ndim == 3 else cv2.cvtColor(frame, cv2.COLOR_GRAY2RGB)
-            if colours.shape[1::-1] != size:
-                colours = cv2.resize(colours, size, interpolation=cv2.INTER_AREA)
-            writer.write(np.ascontiguousarray(colours[:, :, ::-1]))
-        with quiet_stderr():
-            writer.release()
-        return _reproducible(file.read_bytes())
+            colours = np.ascontiguousarray(frame)
+            kind = "rgb24" if colours.ndim == 3 else "gray"
+            picture = av.VideoFrame.from_ndarray(colours, format=kind)
+            film.mux(stream.encode(picture.reformat(*size, "yuv420p")))
+        film.mux(stream.encode())
+    return content.getvalue()
 
 
 def decoded_film(content: bytes) -> Iterator[np.ndarray]:
     """The RGB pictures of a video file, one after the other; none where it cannot be read."""
-    with tempfile.TemporaryDirectory() as place:
-        file = Path(place) / "film.webm"
-        file.write_bytes(content)
-        with quiet_stderr():
-            reader = cv2.VideoCapture(str(file))
-        try:
-            while True:
-                is_there, frame = reader.read()
-                if not is_there:
-                    return
-                yield frame[:, :, ::-1]
-        finally:
-            reader.release()
-
-
-def _reproducible(webm: bytes) -> bytes:
-    """The same video without the random number that names its track, in two places."""
-    place = webm.find(TRACK_UID)
-    if place < 0:
-        return webm
-    begin = place + len(TRACK_UID)
-    return webm.replace(webm[begin : begin + 8], (1).to_bytes(8, "big"))
+    try:
+        film: Any = av.open(io.BytesIO(content))
+        with film:
+            for frame in film.decode(video=0):
+                yield frame.to_ndarray(format="rgb24")
+    except (FFmpegError, IndexError):
+        return

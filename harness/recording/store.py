@@ -7,6 +7,7 @@ import json
 import os
 import shutil
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import MISSING, dataclass, fields, replace
 from functools import cached_property
@@ -90,18 +91,13 @@ class StoredRun:
         return changes
 
 
-def write_run(
-    folder: Path, stored: StoredRun, extra: Callable[[Path], tuple[str, ...]] | None = None
-) -> tuple[str, ...]:
+def write_run(folder: Path, stored: StoredRun, extra: Callable[[Path], None] | None = None) -> None:
     """Write a run's folder under a temporary name next to it, then put it in its place.
 
     Args:
         folder: Its final name; an older run there is replaced, anything else is not touched.
         stored: The judged run that is written.
-        extra: Adds more files to the folder it is given, before anyone sees it; returns notes.
-
-    Returns:
-        The notes of `extra`.
+        extra: Adds more files to the folder it is given, before anyone sees it.
 
     Raises:
         HarnessError: The disk is full, the place is not writable, or is no place for a run.
@@ -117,10 +113,13 @@ def write_run(
         text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
         (temporary / RUN).write_text(json_printable(text) + "\n", encoding="utf-8")
         (temporary / RESOLVED).write_text(run.resolved, encoding="utf-8", newline="")
-        write_npz(temporary / SIGNALS, arrays)
-        write_npz(temporary / VISUALS, _mesh_arrays(run))
-        write_files(temporary, run.files)
-        notes = extra(temporary) if extra is not None else ()
+        with ThreadPoolExecutor(1) as pool:  # compression runs next to Python
+            compressed = pool.submit(write_npz, temporary / SIGNALS, arrays)
+            write_npz(temporary / VISUALS, _mesh_arrays(run))
+            write_files(temporary, run.files)
+            if extra is not None:
+                extra(temporary)
+            compressed.result()
         _put_in_place(temporary, folder)
     except OSError as error:
         raise HarnessError(
@@ -130,7 +129,6 @@ def write_run(
     finally:
         if temporary is not None:
             shutil.rmtree(temporary, ignore_errors=True)
-    return notes
 
 
 def read_run(folder: Path) -> StoredRun:

@@ -24,6 +24,7 @@ class ProgressEvent:
         sim_time: Simulation time so far [s].
         wall_time: The time on a monotonic clock [s]; shown, never judged.
         speed: Simulated over wall seconds of the step that finished; None where it is not known.
+        result: The outcome of a case that is judged, before its report is written.
     """
 
     kind: Literal["compiled", "step_started", "step_finished", "activity", "judged", "written"]
@@ -35,6 +36,7 @@ class ProgressEvent:
     message: str
     wall_time: float = 0.0
     speed: float | None = None
+    result: CaseResult | None = None
 
 
 @dataclass(frozen=True)

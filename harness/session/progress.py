@@ -11,7 +11,7 @@ from harness.cell.program import Program, ProgramStep
 from harness.ports import Simulator
 from harness.recording.run import StepRecord
 from harness.recording.store import StoredRun
-from harness.reporting.result import ProgressEvent
+from harness.reporting.result import CaseResult, ProgressEvent
 
 Notify = Callable[[ProgressEvent], None]
 
@@ -58,10 +58,13 @@ class Progress:
         )
         self.notify(event)
 
-    def judged(self, stored: StoredRun) -> None:
-        """Report the outcome."""
-        total, seconds = len(self.program.steps), stored.run.duration
-        self.notify(ProgressEvent("judged", total, total, "", stored.outcome, seconds, ""))
+    def judged(self, result: CaseResult) -> None:
+        """Report the outcome, before the report is written."""
+        total = len(self.program.steps)
+        event = ProgressEvent(
+            "judged", total, total, "", result.outcome, result.sim_time, "", result=result
+        )
+        self.notify(event)
 
     def written(self, stored: StoredRun, folder: str) -> None:
         """Report where the run was written."""

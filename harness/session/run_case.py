@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 
 from harness.assertions.judge import judge
 from harness.core.errors import HarnessError, SpecError
@@ -15,7 +17,8 @@ from harness.recording.run import Run
 from harness.recording.store import PAGE, StoredRun
 from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.terminal import verdict_warnings
-from harness.session.observe import observed_run, with_distances
+from harness.session.observe import observed_run, with_believed_poses
+from harness.session.pictures import Pictures
 from harness.session.prepare import Prepared
 from harness.session.progress import Notify, Progress
 from harness.session.record import executed_run
@@ -41,44 +44,19 @@ def run_case(request: RunRequest, notify: Notify = lambda _: None) -> CaseResult
     prepared, overlaps, draw = start.prepared, start.simulator.overlaps_at_start, start.draw
     progress = Progress(notify, prepared.program)
     progress.compiled()
-    folder, notes = request.report_dir, ()
     try:
         executed = _executed(request, start, clock, progress)
         del start  # the simulator is the largest object, and the run holds its recording
-        observe = partial(observed_run, request, prepared, executed, clock, progress.activity)
-        run = observe(is_kept=folder is not None and not request.only_failed)
-        judged = _judged(request, run, prepared, clock, progress)
-        warned = verdict_warnings(str(request.file), judged.verdicts)
-        if request.only_failed and judged.outcome == "passed":
-            folder = None
-        if folder is not None:
-            if request.only_failed:
-                judged = replace(judged, run=observe(is_kept=True))
-            progress.activity("writing the report")
-            with clock.part("write"):
-                notes = write_report(request, folder, prepared, judged, progress.activity)
-            progress.written(judged, str(folder))
+        gc.collect()  # parts of the simulator refer to each other
+        with Pictures(request, prepared, executed) as pictures:
+            judged = _judged(request, executed, prepared, pictures, clock, progress)
+            result = _result(request, prepared, judged, overlaps, draw)
+            progress.judged(result)
+            if request.report_dir is None or (request.only_failed and result.outcome == "passed"):
+                return result
+            return _reported(request, request.report_dir, judged, result, pictures, clock, progress)
     except HarnessError as error:
         return _broken(request, prepared, clock, error)
-    return CaseResult(
-        file=str(request.file),
-        case=request.case,
-        title=prepared.program.title,
-        outcome=judged.outcome,
-        digest=judged.digest,
-        seed=prepared.program.seed,
-        sim_time=judged.run.duration,
-        report_dir=str(folder) if folder is not None else "",
-        page=str(folder / PAGE) if folder is not None and request.page else "",
-        steps=tuple(StepLine.of(step) for step in judged.run.steps),
-        verdicts=judged.verdicts,
-        message="\n".join(warned) if request.strict else "",
-        notes=(*warned, *_notes(prepared, overlaps), *notes),
-        overlap=-overlaps[0].distance if overlaps else 0.0,
-        redraws=draw,
-        values=request.redraw.redrawn(draw).values if request.redraw is not None and draw else {},
-        wall_times=clock.seconds,
-    )
 
 
 def _executed(request: RunRequest, start: Start, clock: Clock, progress: Progress) -> Run:
@@ -94,29 +72,89 @@ def _executed(request: RunRequest, start: Start, clock: Clock, progress: Progres
             simulator,
             partial(progress.step, simulator),
         )
-    progress.activity("measuring distances and contacts")
-    with clock.part("judge"):
-        signals = with_distances(prepared, execution, simulator.finish())
     # what is not physics in execution is planning
     executed = clock.seconds.pop("execute")
     clock.seconds["plan"] = max(0.0, executed - clock.seconds.get("simulate", 0.0))
+    signals = with_believed_poses(prepared, execution, simulator.finish())
     return executed_run(request, prepared, execution, signals, simulator.overlaps_at_start)
 
 
 def _judged(
-    request: RunRequest, run: Run, prepared: Prepared, clock: Clock, progress: Progress
+    request: RunRequest,
+    executed: Run,
+    prepared: Prepared,
+    pictures: Pictures,
+    clock: Clock,
+    progress: Progress,
 ) -> StoredRun:
-    """The run with its verdicts; a strict request fails with a warning."""
+    """The observed run with its verdicts; a strict request fails with a warning."""
+    progress.activity("measuring distances and contacts")
+    with clock.part("judge"):
+        run = observed_run(prepared, executed)
+    with clock.part("render"):
+        run = pictures.captured(run, progress.activity)
     progress.activity("judging")
     with clock.part("judge"):
         verdicts = judge(run, prepared.expectations)
-    is_good = not run.ended_early and all(verdict.status == "passed" for verdict in verdicts)
-    if request.strict and verdict_warnings(str(request.file), verdicts):
-        is_good = False
-    outcome, fingerprint = "passed" if is_good else "failed", digest(run, verdicts)
-    judged = StoredRun(run, verdicts, outcome, fingerprint, clock.seconds)
-    progress.judged(judged)
-    return judged
+        is_good = not run.ended_early and all(verdict.status == "passed" for verdict in verdicts)
+        if request.strict and verdict_warnings(str(request.file), verdicts):
+            is_good = False
+        outcome = "passed" if is_good else "failed"
+        return StoredRun(run, verdicts, outcome, digest(run, verdicts), clock.seconds)
+
+
+def _result(
+    request: RunRequest, prepared: Prepared, judged: StoredRun, overlaps: Sequence[Touch], draw: int
+) -> CaseResult:
+    """The outcome of a judged case of which no report is written yet."""
+    warned = verdict_warnings(str(request.file), judged.verdicts)
+    return CaseResult(
+        file=str(request.file),
+        case=request.case,
+        title=prepared.program.title,
+        outcome=judged.outcome,
+        digest=judged.digest,
+        seed=prepared.program.seed,
+        sim_time=judged.run.duration,
+        steps=tuple(StepLine.of(step) for step in judged.run.steps),
+        verdicts=judged.verdicts,
+        message="\n".join(warned) if request.strict else "",
+        notes=(*warned, *_notes(prepared, overlaps)),
+        overlap=-overlaps[0].distance if overlaps else 0.0,
+        redraws=draw,
+        values=request.redraw.redrawn(draw).values if request.redraw is not None and draw else {},
+        wall_times=dict(judged.wall_times),
+    )
+
+
+def _reported(
+    request: RunRequest,
+    folder: Path,
+    judged: StoredRun,
+    result: CaseResult,
+    pictures: Pictures,
+    clock: Clock,
+    progress: Progress,
+) -> CaseResult:
+    """The result of a case with its report, which is written here.
+
+    Raises:
+        HarnessError: The folder cannot be written, or a reporter fails.
+    """
+    progress.activity("writing the report")
+    with clock.part("render"):
+        run, drawings = pictures.drawn(judged.run, progress.activity)
+    with clock.part("write"):
+        judged = replace(judged, run=run)
+        write_report(request, folder, judged, drawings.images, progress.activity)
+    progress.written(judged, str(folder))
+    return replace(
+        result,
+        report_dir=str(folder),
+        page=str(folder / PAGE) if request.page else "",
+        notes=(*result.notes, drawings.note) if drawings.note else result.notes,
+        wall_times=clock.seconds,
+    )
 
 
 def _notes(prepared: Prepared, overlaps: Sequence[Touch]) -> tuple[str, ...]:

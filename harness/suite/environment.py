@@ -16,7 +16,7 @@ def prepare_process() -> None:
     use_one_thread()
     without_mujoco_gl = os.environ.pop(MUJOCO_GL, None)
     try:
-        import harness.simulation.mujoco_library  # noqa: F401
+        import harness.simulation  # noqa: F401
     finally:
         if without_mujoco_gl is not None:
             os.environ[MUJOCO_GL] = without_mujoco_gl

@@ -23,7 +23,6 @@ from harness.suite.environment import server_environment, use_one_thread
 from harness.suite.server import receive, send
 
 RUN_MODULES = (
-    "harness.simulation.mujoco_library",
     "harness.planning.timing.toppra_library",
     "harness.session.run_case",
     "harness.session.timed_simulator",

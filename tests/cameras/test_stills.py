@@ -13,7 +13,7 @@ import pytest
 from harness.cameras.picture_model import build_picture_model
 from harness.cameras.recorded_scene import scene_poses
 from harness.cameras.renderer import make_renderer
-from harness.cameras.stills import overview, save_stills
+from harness.cameras.stills import draw_stills, overview
 from harness.cameras.viewpoint import fit_viewpoint
 from harness.core.geometry import Mesh, Shape
 from harness.robot.forward_kinematics import robot_poses
@@ -84,27 +84,25 @@ def test_rays_and_graphics_library_draw_the_same_picture(ur3e):
     assert np.abs(first - second).mean() < 25
 
 
-def test_one_picture_is_saved_for_each_executed_step(ur3e, tmp_path):
-    report = save_stills(ur3e, OBJECTS, a_run(ur3e), tmp_path / "images")
-    names = [file.name for file in report.files]
-    assert names == [f"0{i + 1}-step-{i}.jpg" for i in range(4)]
-    for file in report.files:
-        assert cv2.imread(str(file)).shape == (480, 640, 3)
-    assert (report.note == "") is (report.backend != "rays")
+def test_one_picture_is_drawn_for_each_executed_step(ur3e):
+    stills = draw_stills(ur3e, OBJECTS, a_run(ur3e))
+    assert list(stills.files) == [f"0{i + 1}-step-{i}.jpg" for i in range(4)]
+    for content in stills.files.values():
+        picture = cv2.imdecode(np.frombuffer(content, np.uint8), cv2.IMREAD_COLOR)
+        assert picture.shape == (480, 640, 3)
+    assert (stills.note == "") is (stills.backend != "rays")
 
 
-def test_without_a_graphics_library_the_rays_draw_and_the_note_says_so(tmp_path):
+def test_without_a_graphics_library_the_rays_draw_and_the_note_says_so():
     """PyOpenGL with the name of a missing library stands for a machine without one."""
     program = """
-import sys
-from pathlib import Path
-from harness.cameras.stills import save_stills
+from harness.cameras.stills import draw_stills
 from harness.robot.load import load_robot
 from harness.language.scenario import RobotSpec
 from tests.cameras.recorded_runs import OBJECTS, a_run
 robot = load_robot(RobotSpec(model="open_manipulator_x"))
-report = save_stills(robot, OBJECTS, a_run(robot), Path(sys.argv[1]))
-print(report.backend, len(report.files), report.note, sep="|")
+stills = draw_stills(robot, OBJECTS, a_run(robot))
+print(stills.backend, len(stills.files), stills.note, sep="|")
 """
     environment = {
         **os.environ,
@@ -112,7 +110,7 @@ print(report.backend, len(report.files), report.note, sep="|")
         "PYTHONPATH": os.pathsep.join(sys.path),
     }
     done = subprocess.run(
-        [sys.executable, "-c", program, str(tmp_path)],
+        [sys.executable, "-c", program],
         capture_output=True, text=True, env=environment, check=True,
     )  # fmt: skip
     assert done.stdout.strip() == (
@@ -189,6 +187,6 @@ def test_the_overview_holds_every_point():
 def test_a_mesh_that_cannot_be_drawn_is_named_in_the_note(ur3e, tmp_path):
     collada = Shape(Mesh(tmp_path / "mug.dae"), rgba=(1, 0, 0, 1))
     mug = replace(IMAGINED, name="mug", shapes=(collada,))
-    assert save_stills(ur3e, OBJECTS, a_run(ur3e), tmp_path / "a", backend="rays").note == ""
-    report = save_stills(ur3e, (*OBJECTS, mug), a_run(ur3e), tmp_path / "b", backend="rays")
-    assert report.note == "not in the pictures: mug.dae; save them as OBJ or STL"
+    assert draw_stills(ur3e, OBJECTS, a_run(ur3e), backend="rays").note == ""
+    stills = draw_stills(ur3e, (*OBJECTS, mug), a_run(ur3e), backend="rays")
+    assert stills.note == "not in the pictures: mug.dae; save them as OBJ or STL"

@@ -2,6 +2,7 @@ import io
 import re
 import subprocess
 import sys
+from dataclasses import replace
 
 from harness.cli.output import Output
 from harness.cli.progress import ProgressLines, remaining
@@ -52,6 +53,19 @@ def test_a_step_has_its_own_speed_also_around_steps_nested_in_it():
     )
     assert lines[1].endswith("pick  t=12.00 s  2.0x real time")
     assert lines[2].endswith("1/2  pick  t=20.00 s  2.5x real time")
+
+
+def test_the_outcome_is_shown_before_the_report_is_written_and_once():
+    passed = CaseResult("a", "", "Pick", "passed")
+    stream = Terminal()
+    lines = ProgressLines(Output(stream), ["a"], is_side_by_side=False, style=Style())
+    lines.step(0, replace(event("judged", 1.0, 0.1), result=passed))
+    assert "passed  Pick" in stream.getvalue()
+    lines.step(0, ProgressEvent("activity", 1, 2, "drawing", "", 0.0, ""))
+    lines.result(0, passed)
+    assert stream.getvalue().count("passed  Pick") == 1
+    lines.result(0, replace(passed, outcome="error"))
+    assert "error" in stream.getvalue(), "the report could not be written"
 
 
 def test_piped_a_case_is_one_line():

@@ -8,7 +8,6 @@ from typing import Any
 import cv2
 import numpy as np
 
-from harness.recording.film import decoded_film, encoded_film, film_size
 from harness.recording.run import Run
 from harness.reporting.html.packing import Packer
 
@@ -29,18 +28,22 @@ def pack_cameras(run: Run, packer: Packer) -> list[dict[str, Any]]:
 
 
 def _videos(run: Run, packer: Packer) -> list[dict[str, Any]]:
+    if not run.videos:
+        return []
+    from harness.recording import film  # loads a video library
+
     views: list[dict[str, Any]] = []
     for number, video in enumerate(run.videos):
         data = run.files.get(video.file, b"")
         if not data or not video.times:
             continue
-        if video.width > WIDEST_VIDEO:
-            size = film_size(video.width, video.height, WIDEST_VIDEO)
-            data = encoded_film(decoded_film(data), video.rate, size)
+        if video.width > WIDEST_VIDEO or not video.file.endswith(film.SUFFIX):
+            size = film.film_size(video.width, video.height, WIDEST_VIDEO)
+            data = film.encoded_film(film.decoded_film(data), video.rate, size)
         if len(data) > LARGEST_VIDEO:
             continue
         name = packer.add(f"video.{number}", data)
-        source = {"buffer": name, "type": "video/webm", "start": video.times[0]}
+        source = {"buffer": name, "type": film.MEDIA_TYPE, "start": video.times[0]}
         views.append(
             {"name": video.camera, "note": _note(video.backend), "video": source, "images": []}
         )

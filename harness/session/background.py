@@ -1,0 +1,101 @@
+"""A value that another process computes while this one goes on."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import select
+import signal
+from collections.abc import Callable
+from contextlib import suppress
+from multiprocessing.connection import Connection, Pipe
+from pathlib import Path
+from typing import Generic, NoReturn, TypeVar
+
+from harness.core.activity import Activity
+from harness.core.errors import HarnessError
+
+T = TypeVar("T")
+_TASKS = Path("/proc/self/task")
+"""One entry for each thread of this process, threads of native libraries included."""
+
+
+class Background(Generic[T]):
+    """The value of a function, from a fork of this process.
+
+    A process that has threads is not forked: it computes the value itself when it is needed. The
+    function must not have other effects, so that an interruption leaves nothing half-written.
+    """
+
+    def __init__(self, function: Callable[[Activity], T]) -> None:
+        """Begin to compute the value.
+
+        Args:
+            function: Returns a value that can be pickled; reports its progress to its argument.
+        """
+        self._function = function
+        self._pid = 0
+        if len(list(_TASKS.iterdir())) > 1:
+            return
+        self._reading, writing = Pipe(duplex=False)
+        self._pid = os.fork()
+        if self._pid == 0:
+            _compute(function, writing)
+        writing.close()
+
+    def result(self, activity: Activity) -> T:
+        """The value, as soon as it is known; its progress is reported until then.
+
+        Raises:
+            HarnessError: The process ended without a value.
+            Exception: What the function raised.
+        """
+        if not self._pid:
+            return self._function(activity)
+        try:
+            while True:
+                kind, payload = pickle.loads(self._reading.recv_bytes())
+                if kind == "value":
+                    return payload
+                if kind == "raised":
+                    raise payload
+                activity(*payload)
+        except EOFError:
+            _, status = os.waitpid(self._pid, 0)
+            self._pid = 0
+            code = os.waitstatus_to_exitcode(status)
+            raise HarnessError(f"the process that draws pictures ended with code {code}") from None
+        finally:
+            self.close()
+
+    def close(self) -> None:
+        """End the process, if it is still at work."""
+        if self._pid:
+            with suppress(ProcessLookupError):
+                os.kill(self._pid, signal.SIGKILL)
+            os.waitpid(self._pid, 0)
+            self._pid = 0
+            self._reading.close()
+
+
+def _compute(function: Callable[[Activity], T], writing: Connection) -> NoReturn:
+    """Send the function's value, and do nothing else that this process is to do."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C is reported by the parent
+
+    def report(what: str, done: int = 0, total: int = 0) -> None:
+        if select.select([], [writing], [], 0)[1]:  # it never waits for the parent
+            writing.send_bytes(pickle.dumps(("progress", (what, done, total))))
+
+    try:
+        message = pickle.dumps(("value", function(report)))
+    except BaseException as error:  # noqa: BLE001 - the parent raises it
+        message = _raised(error)
+    with suppress(OSError):  # the parent is gone
+        writing.send_bytes(message)
+    os._exit(0)
+
+
+def _raised(error: BaseException) -> bytes:
+    with suppress(Exception):
+        return pickle.dumps(("raised", error))
+    return pickle.dumps(("raised", RuntimeError(repr(error))))
