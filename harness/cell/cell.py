@@ -17,7 +17,14 @@ from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.language.poses import Direction, Pose
 from harness.language.step import Step
-from harness.ports import Kinematics, MotionPlan, MotionPlanner, PlanningScene, Simulator
+from harness.ports import (
+    ExternalControl,
+    Kinematics,
+    MotionPlan,
+    MotionPlanner,
+    PlanningScene,
+    Simulator,
+)
 from harness.recording.execution_failures import TimeoutFailure
 from harness.recording.run import AttachmentRecord
 from harness.robot.description import Gripper, RobotDescription
@@ -89,6 +96,7 @@ class Cell:
     seed: int = 0
     cameras: Mapping[str, Camera] = field(default_factory=dict[str, Camera])
     run_steps: Callable[[Sequence[ProgramStep]], None] = _cannot_nest
+    external: ExternalControl | None = None
 
     @property
     def current(self) -> ProgramStep:

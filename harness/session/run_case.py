@@ -15,6 +15,7 @@ from harness.recording.run import Run
 from harness.recording.store import PAGE, StoredRun
 from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.terminal import verdict_warnings
+from harness.session.external import ExternalSession, MakeSession, no_programs
 from harness.session.observe import observed_run, with_distances
 from harness.session.prepare import Prepared
 from harness.session.progress import Notify, Progress
@@ -25,12 +26,17 @@ from harness.session.start import Start, overlap_note, start_case
 from harness.session.timing import Clock
 
 
-def run_case(request: RunRequest, notify: Notify = lambda _: None) -> CaseResult:
+def run_case(
+    request: RunRequest,
+    notify: Notify = lambda _: None,
+    make_session: MakeSession = no_programs,
+) -> CaseResult:
     """Load, compile, execute, observe, judge and report one case.
 
     Args:
         request: The case, and what is written of it.
         notify: Called with the case's progress.
+        make_session: Makes the session of the programs to which a step hands the robot over.
     """
     clock = Clock()
     try:
@@ -43,11 +49,15 @@ def run_case(request: RunRequest, notify: Notify = lambda _: None) -> CaseResult
     progress.compiled()
     folder, notes = request.report_dir, ()
     try:
-        executed = _executed(request, start, clock, progress)
-        del start  # the simulator is the largest object, and the run holds its recording
+        session = make_session(prepared, start.simulator)
+        executed = _executed(request, start, clock, progress, session)
+        refusal = session.refusal()
+        del start, session  # the simulator is the largest object, and the run holds its recording
         observe = partial(observed_run, request, prepared, executed, clock, progress.activity)
         run = observe(is_kept=folder is not None and not request.only_failed)
         judged = _judged(request, run, prepared, clock, progress)
+        if refusal and judged.outcome != "passed":
+            judged = replace(judged, outcome="error")
         warned = verdict_warnings(str(request.file), judged.verdicts)
         if request.only_failed and judged.outcome == "passed":
             folder = None
@@ -72,7 +82,11 @@ def run_case(request: RunRequest, notify: Notify = lambda _: None) -> CaseResult
         page=str(folder / PAGE) if folder is not None and request.page else "",
         steps=tuple(StepLine.of(step) for step in judged.run.steps),
         verdicts=judged.verdicts,
-        message="\n".join(warned) if request.strict else "",
+        message=refusal
+        if judged.outcome == "error"
+        else "\n".join(warned)
+        if request.strict
+        else "",
         notes=(*warned, *_notes(prepared, overlaps), *notes),
         overlap=-overlaps[0].distance if overlaps else 0.0,
         redraws=draw,
@@ -81,7 +95,9 @@ def run_case(request: RunRequest, notify: Notify = lambda _: None) -> CaseResult
     )
 
 
-def _executed(request: RunRequest, start: Start, clock: Clock, progress: Progress) -> Run:
+def _executed(
+    request: RunRequest, start: Start, clock: Clock, progress: Progress, session: ExternalSession
+) -> Run:
     """Plan and simulate the steps, and record what happens."""
     prepared, simulator, _ = start
     progress.activity("setting up planning and physics")
@@ -93,6 +109,7 @@ def _executed(request: RunRequest, start: Start, clock: Clock, progress: Progres
             prepared.planner,
             simulator,
             partial(progress.step, simulator),
+            external=session,
         )
     progress.activity("measuring distances and contacts")
     with clock.part("judge"):
@@ -100,7 +117,8 @@ def _executed(request: RunRequest, start: Start, clock: Clock, progress: Progres
     # what is not physics in execution is planning
     executed = clock.seconds.pop("execute")
     clock.seconds["plan"] = max(0.0, executed - clock.seconds.get("simulate", 0.0))
-    return executed_run(request, prepared, execution, signals, simulator.overlaps_at_start)
+    run = executed_run(request, prepared, execution, signals, simulator.overlaps_at_start)
+    return replace(run, commands=session.commands)
 
 
 def _judged(
