@@ -18,6 +18,7 @@ from harness.core.world import WorldObject
 from harness.language.poses import Direction, Pose
 from harness.language.step import Step
 from harness.ports import (
+    ExternalControl,
     Kinematics,
     MotionPlan,
     MotionPlanner,
@@ -98,6 +99,7 @@ class Cell:
     seed: int = 0
     cameras: Mapping[str, Camera] = field(default_factory=dict[str, Camera])
     run_steps: Callable[[Sequence[ProgramStep]], None] = _cannot_nest
+    external: ExternalControl | None = None
 
     @property
     def current(self) -> ProgramStep:

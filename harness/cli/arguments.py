@@ -77,6 +77,11 @@ def seconds(text: str) -> float:
     return _positive(text, "seconds")
 
 
+def factor(text: str) -> float:
+    """A factor above 0."""
+    return _positive(text, "simulated seconds in a second")
+
+
 def rate(text: str) -> float:
     """Messages a second, above 0."""
     return _positive(text, "messages a second")

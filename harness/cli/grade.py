@@ -21,6 +21,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace) -> int:
+    if bool(arguments.bag) == bool(arguments.nodes):
+        raise UsageError("give either a recording (BAG) or a command (--node) to grade")
+    if arguments.nodes:
+        return _run_node(arguments)
     scenarios = discover([arguments.scenario])
     if len(scenarios) != 1:
         raise UsageError(f"'{arguments.scenario}' holds {len(scenarios)} scenarios; name one")
@@ -39,6 +43,52 @@ def _run(arguments: argparse.Namespace) -> int:
     grade = grade_bag(scenarios[0], Path(arguments.bag), topics, *options)
     _print_grade(grade)
     return _code(grade)
+
+
+def _run_node(arguments: argparse.Namespace) -> int:
+    """Grade what a student's node does with the simulated robot."""
+    if arguments.json:
+        with only_json_on_stdout() as write_json:
+            code, document = _graded_node(arguments)
+            write_json(document)
+        return code
+    return _graded_node(arguments)[0]
+
+
+def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
+    from contextlib import nullcontext
+
+    from harness.cli.bridge import bridge_request, show_case, show_wall
+    from harness.grading.grade import Grade, graded
+    from harness.recording.store import read_run
+    from harness.ros.bridge import run_bridge
+    from harness.ros.domain import free_domain
+
+    given = arguments.domain
+    with free_domain() if given is None else nullcontext(given) as domain:
+        request = bridge_request(arguments, domain, arguments.timeout)
+        result = run_bridge(request)
+    case = result.case
+    if case.outcome in ("invalid", "error"):
+        if not arguments.json:
+            show_case(case, request.run)
+        show_wall(result)
+        problems = [str(problem) for problem in case.problems]
+        code = EXIT_CODES[case.outcome]
+        said = {"outcome": case.outcome, "message": case.message, "problems": problems}
+        return code, {"format": "armharness-grade/1", "exit_code": code, **said}
+    run = read_run(Path(case.report_dir)).run if case.report_dir else None
+    grade = Grade(run, graded(case.verdicts), case.notes)
+    code = _code(grade) if case.outcome == "passed" else EXIT_CODES["failed"]
+    if not arguments.json:
+        for step in case.steps:
+            if step.status == "failed":
+                say(f"{step.id} failed, {step.error_code}: {step.message}")
+        _print_grade(grade)
+        if case.report_dir:
+            say(f"report: {case.report_dir}")
+    show_wall(result)
+    return code, {**_document(grade), "exit_code": code}
 
 
 def _code(grade: Grade) -> int:
@@ -82,11 +132,11 @@ def _points(row: Graded) -> str:
     return f"{row.earned:g}{mark}/{row.points:g}"
 
 
-def _document(grade: Grade) -> object:
+def _document(grade: Grade) -> dict[str, object]:
     return {
         "format": "armharness-grade/1",
         "exit_code": _code(grade),
-        "recording": grade.run.file,
+        "recording": grade.run.file if grade.run is not None else "",
         "points": grade.points,
         "earned": grade.earned,
         "not_observable": grade.open,

@@ -195,6 +195,10 @@ def _parser() -> argparse.ArgumentParser:
     options.for_view(command("view", "open the page of a run"))
     options.for_judge(command("judge", "judge a saved run again"))
     options.for_grade(command("grade", "grade a recording of another program by a scenario"))
+    options.for_bridge(command("bridge", "let ROS 2 nodes command a scenario's robot"))
+    options.for_replay(
+        command("replay", "run the recorded commands of ROS 2 nodes again", module="bridge")
+    )
     options.for_compare(command("compare", "report what changed from one saved run to another"))
     options.for_new(command("new", "write a commented scenario that passes"))
     options.for_export(command("export", "write a saved run as a rosbag2, and its robot as a URDF"))

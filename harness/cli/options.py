@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from harness.cli.arguments import (
+    factor,
     folder,
     metres,
     names_of,
@@ -277,7 +278,12 @@ def for_grade(grade: argparse.ArgumentParser) -> None:
     """Of `harness grade`."""
     grade.add_argument("scenario", metavar="SCENARIO", help="a scenario file, or a bundled name")
     _plugin_option(grade)
-    grade.add_argument("bag", metavar="BAG", help="a rosbag2 folder, an .mcap or a .db3 file")
+    grade.add_argument("bag", metavar="BAG", nargs="?", default="",
+                       help="a rosbag2 folder, .mcap or .db3 file; or give --node")  # fmt: skip
+    _node_options(grade)
+    grade.add_argument("--timeout", metavar="SECONDS", type=seconds, default=60.0,
+                       help="simulated time of the nodes where no step is `external`"
+                       " (default: 60)")  # fmt: skip
     grade.add_argument("--joint-states", metavar="TOPIC", default="/joint_states",
                        help="where the joints are (default: /joint_states)")  # fmt: skip
     grade.add_argument("--objects", metavar="TOPIC", action="append", default=[],
@@ -295,6 +301,49 @@ def for_grade(grade: argparse.ArgumentParser) -> None:
                        + ", ".join(DOUBTS))  # fmt: skip
     _package_option(grade)
     grade.add_argument("--json", action="store_true", help="one JSON document on stdout")
+
+
+def for_bridge(bridge: argparse.ArgumentParser) -> None:
+    """Of `harness bridge`."""
+    bridge.add_argument("scenario", metavar="SCENARIO", help="a scenario file, or a bundled name")
+    _node_options(bridge)
+    bridge.add_argument("--duration", metavar="SECONDS", type=seconds, default=None,
+                        help="end after this simulated time where no step is `external`"
+                        " (default: 600)")  # fmt: skip
+    bridge.add_argument("--set", metavar="PATH=VALUE", dest="overrides", action="append",
+                        type=override_argument, default=[],
+                        help="change a value of the file")  # fmt: skip
+    _package_option(bridge)
+    _plugin_option(bridge)
+    bridge.set_defaults(command="bridge")
+
+
+def for_replay(replay: argparse.ArgumentParser) -> None:
+    """Of `harness replay`."""
+    replay.add_argument("run", metavar="RUN", help="the run's report folder")
+    replay.add_argument("--report-dir", metavar="DIR", default="",
+                        help="write the replayed run into this folder")  # fmt: skip
+    replay.add_argument("--json", action="store_true", help="one JSON document on stdout")
+    _plugin_option(replay)
+    replay.set_defaults(command="replay")
+
+
+def _node_options(command: argparse.ArgumentParser) -> None:
+    """Of commands that serve a robot to ROS 2 nodes."""
+    add = command.add_argument
+    add("--node", metavar="[NAME=]COMMAND", dest="nodes", action="append", default=[],
+        help="a command that the scenario may start: 'python student.py'; repeatable")  # fmt: skip
+    add("--domain", metavar="N", type=int, default=None,
+        help="ROS domain (default: ROS_DOMAIN_ID or 0; of `grade` a free one)")  # fmt: skip
+    add("--network", action="store_true", help="let nodes of other machines in too")
+    add("--adapter", choices=("rtps", "rclpy"), default="rtps",
+        help="who speaks ROS 2: the program itself, or the rclpy that is installed")  # fmt: skip
+    add("--pace", metavar="FACTOR", type=factor, default=1.0,
+        help="simulated seconds in a wall second (default: 1)")  # fmt: skip
+    add("--seed", metavar="N", type=int, default=None, help="in place of the file's")
+    add("--report-dir", metavar="DIR", default="reports",
+        help="where reports go (default: reports)")  # fmt: skip
+    add("--no-report", action="store_true", help="write no report")
 
 
 def for_compare(compare: argparse.ArgumentParser) -> None:

@@ -11,7 +11,7 @@ from harness.cell.program import Program, ProgramStep
 from harness.core.details import Details
 from harness.core.errors import StepFailed
 from harness.engine.advice import advice
-from harness.ports import Kinematics, MotionPlanner, PlanningScene, Simulator
+from harness.ports import ExternalControl, Kinematics, MotionPlanner, PlanningScene, Simulator
 from harness.recording.execution_failures import TimeoutFailure
 from harness.recording.explanation import Explanation
 from harness.recording.run import AttachmentRecord, ObjectRecord, StepRecord, StepStatus
@@ -114,6 +114,7 @@ def execute_program(
     on_step: OnStep,
     *,
     keep_going: bool = False,
+    external: ExternalControl | None = None,
 ) -> Execution:
     """Run a program on adapters that stand at its start state.
 
@@ -127,6 +128,7 @@ def execute_program(
         on_step: Called before and after each step.
         keep_going: Whether a failed step of the file lets the next one begin all the same; a step
             made of others ends with the first of them that fails.
+        external: Programs to which a step may hand the robot over; None: such a step does nothing.
     """
     cell = Cell(
         description=program.description,
@@ -137,6 +139,7 @@ def execute_program(
         later_objects=program.later_objects,
         seed=program.seed,
         cameras=program.cameras,
+        external=external,
     )
     for obj in program.world.objects:
         cell.presence[obj.name] = Presence(obj, obj.pose, [[0.0, float("inf")]])

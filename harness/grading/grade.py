@@ -40,12 +40,12 @@ class Grade:
     """The grade of a recording.
 
     Attributes:
-        run: The recording, as far as it goes.
+        run: The recording, as far as it goes; None where nothing of a run was kept.
         rows: One an expectation, in file order.
         notes: What a person should know of the recording.
     """
 
-    run: Run
+    run: Run | None
     rows: tuple[Graded, ...]
     notes: tuple[str, ...]
 

@@ -161,6 +161,17 @@ class RobotSpec(SpecModel):
         return self
 
 
+class Ros2Names(SpecModel):
+    """Names on the ROS 2 graph, where they differ from the robot's own."""
+
+    arm_controllers: tuple[Name, ...] | None = Field(
+        default=None, description="The arm's trajectory controller; each name leads to the same."
+    )
+    gripper_controller: Name | None = Field(
+        default=None, description="The gripper's controller, of GripperCommand and trajectories."
+    )
+
+
 class WorldChoice(SpecModel):
     """The world: a bundled one, or a file."""
 
@@ -213,6 +224,9 @@ class Scenario(SpecModel):
     planning: Planning = Field(
         default=Planning(),
         description="Planning parameters of all steps that have none of their own.",
+    )
+    ros2: Ros2Names = Field(
+        default=Ros2Names(), description="Names that `harness bridge` serves on the ROS 2 graph."
     )
     deterministic: Flag = Field(
         default=True, description="`false` allows planners whose result cannot be repeated."

@@ -13,6 +13,7 @@ from harness.core.camera import Camera
 from harness.core.geometry import Rgba, Shape
 from harness.core.quantity import distinct
 from harness.core.types import FloatArray, IntArray
+from harness.recording.commands import CommandRecord
 
 StepStatus = Literal["passed", "failed", "expected_error", "not_reached"]
 VerdictStatus = Literal["passed", "failed", "not reached", "not observable"]
@@ -519,6 +520,7 @@ class Run:
         cameras: Every camera of robot, world and scenario.
         captures: Pictures taken, in order of time.
         videos: The videos of the cameras that were recorded all along.
+        commands: What external programs commanded, in the order of arrival.
         files: Content of the pictures and videos by path in the run's folder; a saved run reads
             each on first use.
     """
@@ -546,6 +548,7 @@ class Run:
     cameras: tuple[Camera, ...] = ()
     captures: tuple[CaptureRecord, ...] = ()
     videos: tuple[VideoRecord, ...] = ()
+    commands: tuple[CommandRecord, ...] = ()
     files: Mapping[str, bytes] = field(default_factory=dict[str, bytes], repr=False)
 
     @property

@@ -106,6 +106,12 @@ def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -
         cameras=_cameras(parts, tree_links),
         tracking=TrackingTolerances(**first.facts.tracking.model_dump()),
         ik_solver=first.facts.ik_solver,
+        controllers={
+            kind: names
+            for part in parts
+            for kind, names in part.facts.controllers.model_dump().items()
+            if names
+        },
         notes=tuple(note for part in parts for note in part.notes),
     )
 

@@ -192,6 +192,7 @@ class RobotDescription:
             `numeric`; or `auto`: the first of these that fits.
         position_only_groups: Groups whose pose goals fix the position alone, as with MoveIt's
             `position_only_ik`.
+        controllers: Names of its ROS 2 controllers, of `arm` and `gripper`; MoveIt's by default.
         notes: Notes on ignored elements and assumptions.
     """
 
@@ -212,6 +213,7 @@ class RobotDescription:
     tracking: TrackingTolerances = field(default_factory=TrackingTolerances)
     ik_solver: str = "numeric"
     position_only_groups: frozenset[str] = frozenset()
+    controllers: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
     @cached_property

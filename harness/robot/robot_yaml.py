@@ -131,6 +131,15 @@ class Tracking(SpecModel):
     )
 
 
+class Controllers(SpecModel):
+    """Names of the robot's ROS 2 controllers; `GROUP_controller` where there are none."""
+
+    arm: tuple[Name, ...] = Field(
+        default=(), description="The arm's trajectory controller; several names lead to the same."
+    )
+    gripper: tuple[Name, ...] = Field(default=(), description="The gripper's controller.")
+
+
 class RobotYaml(SpecModel):
     """The robot.yaml of a robot's folder.
 
@@ -193,6 +202,9 @@ class RobotYaml(SpecModel):
     )
     tracking: Tracking = Field(
         default=Tracking(), description="Tolerances of the trajectory controller."
+    )
+    controllers: Controllers = Field(
+        default=Controllers(), description="Names of its ROS 2 controllers."
     )
 
     @model_validator(mode="after")

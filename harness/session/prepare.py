@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from harness.assertions.observations import Observations, merged
-from harness.assertions.placed import PlacedExpectation
+from harness.assertions.placed import PlacedExpectation, as_expectation
 from harness.cell.program import Program
 from harness.cell.scope import Prerequisite
 from harness.core.errors import Problem, RobotError, RobotOptionError, SpecError
@@ -33,6 +33,7 @@ from harness.ports import Kinematics, MotionPlanner, PlanningScene
 from harness.recording.run import Finding
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
+from harness.steps.external import External
 from harness.world.imported import ImportedWorld
 from harness.world.world_format import read_foreign_world
 
@@ -61,8 +62,11 @@ class Prepared:
 
     @cached_property
     def observations(self) -> Observations:
-        """Everything that the expectations read of a run."""
-        return merged(each.spec.observations() for each in self.expectations)
+        """Everything that the expectations read of a run, the ends of steps included."""
+        ends = (step.spec.until for step in self.program.all_steps()
+                if isinstance(step.spec, External) and step.spec.until is not None)  # fmt: skip
+        specs = (*(each.spec for each in self.expectations), *map(as_expectation, ends))
+        return merged(spec.observations() for spec in specs)
 
     @property
     def observed_links(self) -> list[str]:

@@ -17,6 +17,7 @@ from harness.recording.run import Run
 from harness.recording.store import PAGE, StoredRun
 from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.terminal import verdict_warnings
+from harness.session.external import ExternalSession, MakeSession, no_programs
 from harness.session.observe import observed_run, with_believed_poses
 from harness.session.pictures import Pictures
 from harness.session.prepare import Prepared
@@ -28,12 +29,17 @@ from harness.session.start import Start, overlap_note, start_case
 from harness.session.timing import Clock
 
 
-def run_case(request: RunRequest, notify: Notify = lambda _: None) -> CaseResult:
+def run_case(
+    request: RunRequest,
+    notify: Notify = lambda _: None,
+    make_session: MakeSession = no_programs,
+) -> CaseResult:
     """Load, compile, execute, observe, judge and report one case.
 
     Args:
         request: The case, and what is written of it.
         notify: Called with the case's progress.
+        make_session: Makes the session of the programs to which a step hands the robot over.
     """
     clock = Clock()
     try:
@@ -45,12 +51,16 @@ def run_case(request: RunRequest, notify: Notify = lambda _: None) -> CaseResult
     progress = Progress(notify, prepared.program)
     progress.compiled()
     try:
-        executed = _executed(request, start, clock, progress)
-        del start  # the simulator is the largest object, and the run holds its recording
+        session = make_session(prepared, start.simulator)
+        executed = _executed(request, start, clock, progress, session)
+        refusal = session.refusal()
+        del start, session  # the simulator is the largest object, and the run holds its recording
         gc.collect()  # parts of the simulator refer to each other
         with Pictures(request, prepared, executed) as pictures:
             judged = _judged(request, executed, prepared, pictures, clock, progress)
-            result = _result(request, prepared, judged, overlaps, draw)
+            if refusal and judged.outcome != "passed":
+                judged = replace(judged, outcome="error")
+            result = _result(request, prepared, judged, overlaps, draw, refusal)
             progress.judged(result)
             if request.report_dir is None or (request.only_failed and result.outcome == "passed"):
                 return result
@@ -59,7 +69,9 @@ def run_case(request: RunRequest, notify: Notify = lambda _: None) -> CaseResult
         return _broken(request, prepared, clock, error)
 
 
-def _executed(request: RunRequest, start: Start, clock: Clock, progress: Progress) -> Run:
+def _executed(
+    request: RunRequest, start: Start, clock: Clock, progress: Progress, session: ExternalSession
+) -> Run:
     """Plan and simulate the steps, and record what happens."""
     prepared, simulator, _ = start
     progress.activity("setting up planning and physics")
@@ -71,12 +83,14 @@ def _executed(request: RunRequest, start: Start, clock: Clock, progress: Progres
             prepared.planner,
             simulator,
             partial(progress.step, simulator),
+            external=session,
         )
     # what is not physics in execution is planning
     executed = clock.seconds.pop("execute")
     clock.seconds["plan"] = max(0.0, executed - clock.seconds.get("simulate", 0.0))
     signals = with_believed_poses(prepared, execution, simulator.finish())
-    return executed_run(request, prepared, execution, signals, simulator.overlaps_at_start)
+    run = executed_run(request, prepared, execution, signals, simulator.overlaps_at_start)
+    return replace(run, commands=session.commands)
 
 
 def _judged(
@@ -104,10 +118,16 @@ def _judged(
 
 
 def _result(
-    request: RunRequest, prepared: Prepared, judged: StoredRun, overlaps: Sequence[Touch], draw: int
+    request: RunRequest,
+    prepared: Prepared,
+    judged: StoredRun,
+    overlaps: Sequence[Touch],
+    draw: int,
+    refusal: str,
 ) -> CaseResult:
     """The outcome of a judged case of which no report is written yet."""
     warned = verdict_warnings(str(request.file), judged.verdicts)
+    message = "\n".join(warned) if request.strict else ""
     return CaseResult(
         file=str(request.file),
         case=request.case,
@@ -118,7 +138,7 @@ def _result(
         sim_time=judged.run.duration,
         steps=tuple(StepLine.of(step) for step in judged.run.steps),
         verdicts=judged.verdicts,
-        message="\n".join(warned) if request.strict else "",
+        message=refusal if judged.outcome == "error" else message,
         notes=(*warned, *_notes(prepared, overlaps)),
         overlap=-overlaps[0].distance if overlaps else 0.0,
         redraws=draw,

@@ -260,6 +260,44 @@ class MujocoSimulator:
         self._advance(self._controls(part), part.positions[1:], part.velocities[1:])
         self._command = part.positions[-1]
 
+    @property
+    def timestep(self) -> float:
+        """Time between samples [s]."""
+        return self._timestep
+
+    @property
+    def actuated_joints(self) -> tuple[str, ...]:
+        """Names of the joints with a servo, in the order of set points."""
+        return tuple(self.description.joint_names[place] for place in self.physics.actuated)
+
+    def stream(self, rows: tuple[FloatArray, FloatArray, FloatArray]) -> None:
+        """Advance along set points of all actuated joints, one physics step from row to row.
+
+        Args:
+            rows: Positions, velocities and accelerations, shape (N + 1, m) each; the first row is
+                where the command stands.
+        """
+        points = SetPoints(*rows)
+        self._recording.refuse_beyond(len(points) - 1)
+        self.renew_grip_limit()
+        self.follow(points, 0, len(points) - 1)
+        self._control = self._controls(self._still(self._command))[0]
+
+    def measured(self, first: int) -> tuple[FloatArray, FloatArray]:
+        """Positions and velocities from a sample on, description order, shape (N, n) each."""
+        return self._recording.joint_positions(first), self._recording.joint_velocities(first)
+
+    def efforts(self) -> FloatArray:
+        """Efforts of the actuated joints at the last sample, shape (m,)."""
+        return self._recording.actuator_efforts()
+
+    def limit_gripper(self, effort: float) -> None:
+        """Limit the effort of the gripper's joint from now on."""
+        gripper = self.description.gripper
+        if gripper is not None:
+            place = self.description.joint_index[gripper.joint]
+            self.limit_grip(int(np.searchsorted(self.physics.actuated, place)), effort)
+
     def whole(self, points: SetPoints, columns: IntArray) -> SetPoints:
         """Set points of all actuated joints, those outside `columns` held, shape (N, m)."""
         shape = (len(points), len(self._command))

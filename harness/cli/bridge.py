@@ -1,0 +1,166 @@
+"""`harness bridge` and `harness replay`: external programs command a scenario's robot."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from harness.cli.output import complain, guarded, only_json_on_stdout, output, say, say_text
+from harness.suite.discovery import UsageError, discover
+from harness.suite.outcome import EXIT_CODES
+
+if TYPE_CHECKING:
+    from harness.reporting.result import CaseResult
+    from harness.ros.bridge import BridgeRequest, BridgeResult
+    from harness.session.run_request import RunRequest
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Serve a scenario's cell, or run a recorded command stream again."""
+    work = _replay if arguments.command == "replay" else _bridge
+    return guarded(lambda: work(arguments), ticks=False)
+
+
+def one_scenario(name: str) -> Path:
+    """The scenario file that an argument names.
+
+    Raises:
+        UsageError: It names none, or several.
+    """
+    found = discover([name])
+    if len(found) != 1:
+        raise UsageError(f"'{name}' holds {len(found)} scenarios; name one")
+    return found[0]
+
+
+def named_commands(given: Sequence[str]) -> dict[str, str]:
+    """Commands by name, from `NAME=COMMAND` or `COMMAND`.
+
+    Raises:
+        UsageError: A command is empty, or two have the same name.
+    """
+    commands: dict[str, str] = {}
+    for text in given:
+        name, equals, command = text.partition("=")
+        if not (equals and name.isidentifier()):
+            name, command = "node", text
+        if not command.strip():
+            raise UsageError(f"--node '{text}' has no command")
+        if name in commands:
+            raise UsageError(f"--node: two commands are called '{name}'; write NAME=COMMAND")
+        commands[name] = command
+    return commands
+
+
+def bridge_request(
+    arguments: argparse.Namespace, domain: int, timeout: float | None
+) -> BridgeRequest:
+    """What the arguments request; the steps are replaced where none hands the robot over."""
+    from harness.language.reading.load import read_scenario
+    from harness.ros.bridge import BridgeRequest, handed_over
+    from harness.session.run_request import RunRequest
+    from harness.steps.external import External
+    from harness.suite.folders import report_folders
+
+    file = one_scenario(arguments.scenario)
+    folder = None
+    if not arguments.no_report:
+        folder = report_folders([file], Path(arguments.report_dir))[0]
+    request = RunRequest(
+        file, overrides=dict(arguments.overrides), seed=arguments.seed, report_dir=folder
+    )
+    loaded = read_scenario(file, request.overrides, request.seed).loaded
+    if loaded is not None and not any(isinstance(s, External) for s in loaded.scenario.steps):
+        request = handed_over(request, *([timeout] if timeout else []))
+        count = sum(len(step.expect) for step in loaded.scenario.steps)
+        if count:
+            complain(
+                f"note: no step of {file} is `external`, so all of its steps are left to the nodes,"
+                f" and the {count} expectations of these steps are not judged"
+            )
+    return BridgeRequest(
+        request,
+        domain=domain,
+        is_local=not arguments.network,
+        adapter=arguments.adapter,
+        nodes=named_commands(arguments.nodes),
+        factor=arguments.pace,
+        say=complain,
+    )
+
+
+def _bridge(arguments: argparse.Namespace) -> int:
+    from dataclasses import replace
+
+    from harness.ros.bridge import run_bridge
+    from harness.ros.domain import domain_of_user
+
+    domain = domain_of_user(arguments.domain)
+    request = bridge_request(arguments, domain, arguments.duration)
+    where = "this machine" if request.is_local else "the network"
+    complain(f"serving {request.run.file} in ROS domain {domain} on {where}; Ctrl-C ends it")
+    result = run_bridge(replace(request, is_interactive=True))
+    show_case(result.case, request.run)
+    show_wall(result)
+    return EXIT_CODES[result.case.outcome]
+
+
+def show_wall(result: BridgeResult) -> None:
+    """What is said of wall time and of the launched program; nothing of it is judged."""
+    if result.pace:
+        complain(f"{result.commands} commands; {result.pace}")
+    if result.output and result.case.outcome != "passed":
+        complain("the launched program printed:")
+        for line in result.output.splitlines():
+            complain(f"  {line}")
+
+
+def show_case(case: CaseResult, request: RunRequest) -> None:
+    """The outcome of one run, with what failed."""
+    from harness.reporting.terminal import Style, case_line, failure, report_link
+    from harness.suite.header import source_lines
+
+    style = Style.of(sys.stdout)
+    output().status(None)
+    for note in case.notes:
+        say(f"note: {note}")
+    say(case_line(case, style))
+    if case.outcome != "passed":
+        say_text(failure(case, style, source=source_lines(request.file)))
+    if case.report_dir:
+        say(f"report: {report_link(case, style)}")
+
+
+def _replay(arguments: argparse.Namespace) -> int:
+    folder = Path(arguments.run)
+    if not (folder / "run.json").is_file():
+        raise UsageError(f"'{folder}' is no run's folder: it has no run.json")
+    from harness.recording.store import read_run
+    from harness.ros.replay import replay
+
+    target = Path(arguments.report_dir) if arguments.report_dir else None
+    recorded = read_run(folder)
+    case = replay(folder, target)
+    is_equal = case.digest == recorded.digest
+    if arguments.json:
+        with only_json_on_stdout() as write_json:
+            write_json(
+                {
+                    "format": "armharness-replay/1",
+                    "outcome": case.outcome,
+                    "commands": len(recorded.run.commands),
+                    "digest": case.digest,
+                    "recorded_digest": recorded.digest,
+                    "is_equal": is_equal,
+                }
+            )
+    else:
+        say(f"{len(recorded.run.commands)} commands replayed; {case.outcome}")
+        if case.outcome not in ("passed", "failed"):
+            say(case.message)
+        same = "equal to the recorded one" if is_equal else f"recorded: {recorded.digest[:12]}"
+        say(f"digest {case.digest[:12]}, {same}")
+    return 0 if is_equal else EXIT_CODES["failed"]

@@ -1,0 +1,32 @@
+"""What external programs commanded while the arm was theirs, in the order of arrival."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+CommandKind = Literal["trajectory", "gripper", "cancel", "end"]
+
+
+@dataclass(frozen=True)
+class CommandRecord:
+    """One command and the moment of simulated time at which it took effect.
+
+    Attributes:
+        sample: Index of the physics sample after which it took effect; this orders a replay.
+        time: Simulated time of that sample [s].
+        kind: What it is; `end` is the end of a launched program or of the session.
+        controller: The controller that it addresses, such as `arm_controller`.
+        goal: The goal's identifier in hex; empty for what came on a topic.
+        content: The values of the message.
+        answer: What became of it at once: `accepted`, or why not.
+    """
+
+    sample: int
+    time: float
+    kind: CommandKind
+    controller: str = ""
+    goal: str = ""
+    content: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    answer: str = ""

@@ -1,0 +1,179 @@
+"""Action servers and clients from services and topics, as rcl_action makes them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+
+from harness.ros.graph import Graph, Reply
+from harness.ros.interfaces import CANCEL, UUID, message, seconds, stamp
+
+MOST_ENDED = 100
+"""Goals that are kept after their end, for those who request the result later."""
+
+
+class Status(IntEnum):
+    """States of a goal (action_msgs/GoalStatus)."""
+
+    UNKNOWN = 0
+    ACCEPTED = 1
+    EXECUTING = 2
+    CANCELING = 3
+    SUCCEEDED = 4
+    CANCELED = 5
+    ABORTED = 6
+
+
+class CancelCode(IntEnum):
+    """Return codes of a request to cancel."""
+
+    NONE = 0
+    REJECTED = 1
+    UNKNOWN_GOAL = 2
+    TERMINATED = 3
+
+
+@dataclass
+class _Goal:
+    accepted: float
+    status: Status = Status.EXECUTING
+    result: Any = None
+    waiting: list[Reply] = field(default_factory=list[Reply])
+
+
+class ActionServer:
+    """Serves one action; the caller decides about goals, and reports their end."""
+
+    def __init__(
+        self,
+        graph: Graph,
+        name: str,
+        kind: str,
+        *,
+        clock: Callable[[], float],
+        on_goal: Callable[[str, Any], bool],
+        on_cancel: Callable[[str], bool],
+    ) -> None:
+        """Serve an action from now on.
+
+        Args:
+            graph: Where.
+            name: Such as `/arm_controller/follow_joint_trajectory`.
+            kind: Such as `control_msgs/action/FollowJointTrajectory`.
+            clock: The simulated time [s].
+            on_goal: Called with a goal's identifier and content; whether it is accepted. It runs
+                from then on, and may have ended already.
+            on_cancel: Called with the identifier of a running goal; whether it will be canceled.
+        """
+        self.name, self.kind = name, kind
+        self._clock, self._on_goal, self._on_cancel = clock, on_goal, on_cancel
+        self._goals: dict[str, _Goal] = {}
+        self._feedback = graph.advertise(f"{name}/_action/feedback", f"{kind}_FeedbackMessage")
+        self._status = graph.advertise(
+            f"{name}/_action/status", "action_msgs/msg/GoalStatusArray", latched=True, depth=1
+        )
+        graph.serve(f"{name}/_action/send_goal", f"{kind}_SendGoal", self._take_goal)
+        graph.serve(f"{name}/_action/cancel_goal", CANCEL, self._take_cancel)
+        graph.serve(f"{name}/_action/get_result", f"{kind}_GetResult", self._take_request)
+
+    def owns(self, goal: str) -> bool:
+        """Whether a goal came to this server."""
+        return goal in self._goals
+
+    def feedback(self, goal: str, content: Any) -> None:
+        """Publish feedback of a goal."""
+        kind = f"{self.kind}_FeedbackMessage"
+        self._feedback.publish(message(kind, goal_id=_uuid(goal), feedback=content))
+
+    def finish(self, goal: str, status: Status, result: Any) -> None:
+        """End a goal; who requested its result gets it."""
+        known = self._goals[goal]
+        if known.status is Status.CANCELING and status is Status.ABORTED:
+            status = Status.CANCELED
+        known.status, known.result = status, result
+        for reply in known.waiting:
+            reply(self._response(known))
+        known.waiting.clear()
+        self._publish_status()
+        ended = [each for each, known in self._goals.items() if known.result is not None]
+        for each in ended[:-MOST_ENDED]:
+            del self._goals[each]
+
+    def _take_goal(self, request: Any, reply: Reply) -> None:
+        goal = _hex(request.goal_id)
+        accepted = goal not in self._goals
+        if accepted:
+            now = self._clock()
+            self._goals[goal] = _Goal(now)
+            accepted = self._on_goal(goal, request.goal)
+            if not accepted:
+                del self._goals[goal]
+        kind = f"{self.kind}_SendGoal_Response"
+        reply(message(kind, accepted=accepted, stamp=stamp(self._clock())))
+        if accepted:
+            self._publish_status()
+
+    def _take_request(self, request: Any, reply: Reply) -> None:
+        known = self._goals.get(_hex(request.goal_id))
+        if known is not None and known.result is None:
+            known.waiting.append(reply)
+        else:
+            reply(self._response(known))
+
+    def _take_cancel(self, request: Any, reply: Reply) -> None:
+        info = request.goal_info
+        goal, before = _hex(info.goal_id), seconds(info.stamp)
+        is_named = any(info.goal_id.uuid)
+        chosen = [
+            each
+            for each, known in self._goals.items()
+            if (is_named and each == goal)
+            or (before and known.accepted <= before)
+            or not (is_named or before)
+        ]
+        running = [each for each in chosen if self._goals[each].result is None]
+        code = CancelCode.NONE
+        if is_named and goal not in self._goals:
+            code = CancelCode.UNKNOWN_GOAL
+        elif is_named and goal not in running:
+            code = CancelCode.TERMINATED
+        canceling: list[str] = []
+        for each in running:
+            self._goals[each].status = Status.CANCELING
+            if self._on_cancel(each):
+                canceling.append(each)
+            else:
+                self._goals[each].status = Status.EXECUTING
+                code = CancelCode.REJECTED
+        infos = [self._info(each) for each in canceling]
+        reply(message(f"{CANCEL}_Response", return_code=int(code), goals_canceling=infos))
+
+    def _response(self, known: _Goal | None) -> Any:
+        kind = f"{self.kind}_GetResult_Response"
+        if known is None:
+            return message(kind, status=int(Status.UNKNOWN))
+        return message(kind, status=int(known.status), result=known.result)
+
+    def _info(self, goal: str) -> Any:
+        kind = "action_msgs/msg/GoalInfo"
+        return message(kind, goal_id=_uuid(goal), stamp=stamp(self._goals[goal].accepted))
+
+    def _publish_status(self) -> None:
+        kind = "action_msgs/msg/GoalStatus"
+        states = [
+            message(kind, goal_info=self._info(goal), status=int(known.status))
+            for goal, known in self._goals.items()
+        ]
+        self._status.publish(message("action_msgs/msg/GoalStatusArray", status_list=states))
+
+
+def _uuid(goal: str) -> Any:
+    return message(UUID, uuid=np.frombuffer(bytes.fromhex(goal), np.uint8))
+
+
+def _hex(uuid: Any) -> str:
+    return bytes(uuid.uuid).hex()

@@ -1,0 +1,105 @@
+"""A scenario's cell on the ROS 2 graph, executed, recorded and judged as any other run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from harness.ports import LONGEST_RUN
+from harness.reporting.result import CaseResult
+from harness.ros.graph import Graph
+from harness.ros.launch import Allowed
+from harness.ros.live import LiveControl, LiveOptions, Say
+from harness.session.progress import Notify
+from harness.session.run_case import run_case
+from harness.session.run_request import RunRequest
+
+NODE = "bridge"
+
+
+@dataclass(frozen=True)
+class BridgeRequest:
+    """A scenario, and how nodes reach its cell.
+
+    Attributes:
+        run: The case, and what is written of it.
+        domain: ROS_DOMAIN_ID.
+        is_local: Whether nodes of other machines are kept out.
+        adapter: `rtps`, or `rclpy` of a ROS 2 installation.
+        nodes: Commands that steps may start, by name.
+        factor: Simulated seconds in a wall second.
+        is_interactive: Whether Ctrl-C ends the session in order.
+        say: Receives notes for the user while it runs.
+    """
+
+    run: RunRequest
+    domain: int
+    is_local: bool = True
+    adapter: str = "rtps"
+    nodes: Mapping[str, str] = field(default_factory=dict[str, str])
+    factor: float = 1.0
+    is_interactive: bool = False
+    say: Say = lambda _: None
+
+
+@dataclass(frozen=True)
+class BridgeResult:
+    """The judged run, and what is said of the wall around it.
+
+    Attributes:
+        case: The result, as of any run.
+        pace: One sentence about simulated and wall time.
+        output: The end of what the launched program printed.
+        commands: Number of commands that arrived.
+    """
+
+    case: CaseResult
+    pace: str = ""
+    output: str = ""
+    commands: int = 0
+
+
+def open_graph(adapter: str, domain: int, *, node: str, is_local: bool = True) -> Graph:
+    """Join a domain.
+
+    Raises:
+        NetworkError: The domain cannot be joined, or the adapter is not installed.
+    """
+    if adapter == "rclpy":
+        from harness.ros.rclpy_graph import RclpyGraph
+
+        return RclpyGraph(domain, node=node, is_local=is_local)
+    from harness.ros.rtps.graph import RtpsGraph
+
+    return RtpsGraph(domain, node=node, is_local=is_local)
+
+
+def run_bridge(request: BridgeRequest, notify: Notify = lambda _: None) -> BridgeResult:
+    """Run a scenario whose step `external` is nodes' to carry out.
+
+    Raises:
+        NetworkError: The domain cannot be joined.
+    """
+    graph = open_graph(request.adapter, request.domain, node=NODE, is_local=request.is_local)
+    options = LiveOptions(
+        Allowed(request.nodes, request.domain), request.factor, request.say, request.is_interactive
+    )
+    made: list[LiveControl] = []
+
+    def session(prepared: object, simulator: object) -> LiveControl:
+        made.append(LiveControl(prepared, simulator, graph, options))
+        return made[0]
+
+    try:
+        case = run_case(request.run, notify, session)
+    finally:
+        graph.close()
+    if not made:
+        return BridgeResult(case)
+    return BridgeResult(case, made[0].pace.text(), made[0].output, len(made[0].commands))
+
+
+def handed_over(request: RunRequest, timeout: float = LONGEST_RUN) -> RunRequest:
+    """The request with all steps of its file replaced by one that hands the robot over."""
+    steps = f"[{{external: {{}}, timeout: {timeout:g} s}}]"
+    return replace(request, overrides={**request.overrides, "steps": steps})

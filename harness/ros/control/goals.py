@@ -1,0 +1,206 @@
+"""Goals of FollowJointTrajectory: what a message must hold before the arm moves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.robot.description import Joint
+
+LIMIT_SLACK = 1e-4
+"""Excess of a position limit that is rounding of a decimal number [rad or m]."""
+
+OTHER_CLOCK = 1e6
+"""Stamps that differ from the simulated time by more are those of another clock [s]."""
+
+
+class Code(IntEnum):
+    """Error codes of FollowJointTrajectory's result."""
+
+    SUCCESSFUL = 0
+    INVALID_GOAL = -1
+    INVALID_JOINTS = -2
+    OLD_HEADER_TIMESTAMP = -3
+    PATH_TOLERANCE_VIOLATED = -4
+    GOAL_TOLERANCE_VIOLATED = -5
+
+
+class GoalRefused(Exception):
+    """A trajectory that cannot be followed.
+
+    Attributes:
+        code: The error code of the result.
+    """
+
+    def __init__(self, code: Code, message: str) -> None:
+        self.code = code
+        super().__init__(message)
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """Largest deviations of a joint; inf where there is none."""
+
+    position: float = np.inf
+    velocity: float = np.inf
+
+
+@dataclass(frozen=True, eq=False)
+class TrajectoryGoal:
+    """A trajectory in the order of the controller's joints, checked.
+
+    Attributes:
+        times: Time from start of each point [s], shape (N,).
+        positions: Shape (N, dof).
+        velocities: Shape (N, dof); None where the points have none.
+        accelerations: Shape (N, dof); None where the points have none.
+        stamp: Simulated time at which it starts [s]; 0 for at once.
+        path: Tolerances on the way, by joint, where the goal has its own.
+        goal: Tolerances at the end, by joint, where the goal has its own.
+        goal_time: Time after the end in which the goal must be reached [s]; 0 for the default.
+    """
+
+    times: FloatArray
+    positions: FloatArray
+    velocities: FloatArray | None
+    accelerations: FloatArray | None
+    stamp: float = 0.0
+    path: Mapping[str, Tolerance] = field(default_factory=dict[str, Tolerance])
+    goal: Mapping[str, Tolerance] = field(default_factory=dict[str, Tolerance])
+    goal_time: float = 0.0
+
+
+def checked_goal(content: Mapping[str, Any], joints: Sequence[Joint], now: float) -> TrajectoryGoal:
+    """The goal that a recorded message holds.
+
+    Args:
+        content: `joint_names`, `points` (lists of time, positions, velocities, accelerations),
+            `stamp`, and the tolerances of an action.
+        joints: The joints of the controller.
+        now: Simulated time [s].
+
+    Raises:
+        GoalRefused: With the error code that the message's own result has for it.
+    """
+    order = _order(content["joint_names"], [joint.name for joint in joints])
+    points = content["points"]
+    if not points:
+        raise GoalRefused(Code.INVALID_GOAL, "the trajectory has no points")
+    times = np.array([point["time"] for point in points], dtype=float)
+    _check_times(times)
+    positions = _column(points, "positions", order)
+    if positions is None:
+        raise GoalRefused(Code.INVALID_GOAL, "the points have no positions")
+    velocities = _column(points, "velocities", order)
+    accelerations = _column(points, "accelerations", order) if velocities is not None else None
+    _check_limits(positions, joints)
+    if velocities is not None and np.abs(velocities[-1]).max() > 1e-6:
+        raise GoalRefused(
+            Code.INVALID_GOAL, "the last point has a velocity; a trajectory must end at rest"
+        )
+    stamp = float(content.get("stamp", 0.0))
+    if stamp and abs(stamp - now) > OTHER_CLOCK:
+        stamp = 0.0
+    if stamp and stamp + times[-1] < now:
+        raise GoalRefused(
+            Code.OLD_HEADER_TIMESTAMP,
+            f"the trajectory ends at t={stamp + times[-1]:.3f} s, and it is t={now:.3f} s",
+        )
+    names = [joint.name for joint in joints]
+    return TrajectoryGoal(
+        times,
+        positions,
+        velocities,
+        accelerations,
+        stamp,
+        _tolerances(content.get("path_tolerance", ()), names),
+        _tolerances(content.get("goal_tolerance", ()), names),
+        float(content.get("goal_time", 0.0)),
+    )
+
+
+def _order(given: Sequence[str], names: Sequence[str]) -> list[int]:
+    """Columns of the message for the controller's joints."""
+    if not given:
+        raise GoalRefused(Code.INVALID_JOINTS, "the trajectory names no joints")
+    unknown = [name for name in given if name not in names]
+    missing = [name for name in names if name not in given]
+    if unknown:
+        raise GoalRefused(
+            Code.INVALID_JOINTS,
+            f"this controller has no joint {', '.join(map(repr, unknown[:6]))}; it has"
+            f" {', '.join(names)}",
+        )
+    if missing:
+        raise GoalRefused(
+            Code.INVALID_JOINTS, f"the trajectory lacks {', '.join(map(repr, missing))}"
+        )
+    if len(set(given)) < len(given):
+        raise GoalRefused(Code.INVALID_JOINTS, "the trajectory names a joint twice")
+    return [list(given).index(name) for name in names]
+
+
+def _check_times(times: FloatArray) -> None:
+    steps = np.flatnonzero(~(np.diff(times) > 0))
+    if len(steps):
+        place = int(steps[0])
+        raise GoalRefused(
+            Code.INVALID_GOAL,
+            f"time_from_start must rise: point {place + 1} is at {times[place + 1]:.6g} s, the one"
+            f" before at {times[place]:.6g} s",
+        )
+    if times[0] < 0:
+        raise GoalRefused(Code.INVALID_GOAL, f"the first point is at {times[0]:.6g} s, before 0")
+
+
+def _column(points: Sequence[Mapping[str, Any]], key: str, order: list[int]) -> FloatArray | None:
+    """Positions, velocities or accelerations of all points; None where the points have none."""
+    lengths = {len(point[key]) for point in points}
+    if lengths == {0}:
+        return None
+    if lengths != {len(order)}:
+        wrong = next(i for i, point in enumerate(points) if len(point[key]) != len(order))
+        raise GoalRefused(
+            Code.INVALID_GOAL,
+            f"point {wrong} has {len(points[wrong][key])} {key}, and there are {len(order)} joints",
+        )
+    values = np.array([point[key] for point in points], dtype=float)[:, order]
+    if not np.isfinite(values).all():
+        place = int(np.flatnonzero(~np.isfinite(values).all(axis=1))[0])
+        raise GoalRefused(Code.INVALID_GOAL, f"point {place} has {key} that are not finite numbers")
+    return values
+
+
+def _check_limits(positions: FloatArray, joints: Sequence[Joint]) -> None:
+    lower = np.array([joint.lower for joint in joints])
+    upper = np.array([joint.upper for joint in joints])
+    excess = np.maximum(lower - positions, positions - upper)
+    if (excess > LIMIT_SLACK).any():
+        row, column = map(int, np.argwhere(excess > LIMIT_SLACK)[0])
+        joint = joints[column]
+        raise GoalRefused(
+            Code.INVALID_GOAL,
+            f"point {row} puts '{joint.name}' to {positions[row, column]:.6g}; it goes from"
+            f" {joint.lower:.6g} to {joint.upper:.6g}",
+        )
+
+
+def _tolerances(given: Sequence[Mapping[str, Any]], names: Sequence[str]) -> dict[str, Tolerance]:
+    """Own tolerances of a goal: 0 is the controller's default, a negative number none."""
+    found: dict[str, Tolerance] = {}
+    for each in given:
+        if each["name"] not in names:
+            raise GoalRefused(
+                Code.INVALID_JOINTS, f"a tolerance is for '{each['name']}', which is no joint here"
+            )
+        values = [float(each[key]) for key in ("position", "velocity")]
+        if not np.isfinite(values).all():
+            raise GoalRefused(Code.INVALID_GOAL, f"the tolerance of '{each['name']}' is no number")
+        bounds = [np.inf if value < 0 else value or np.nan for value in values]
+        found[each["name"]] = Tolerance(*bounds)
+    return found

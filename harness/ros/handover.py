@@ -1,0 +1,112 @@
+"""The time in which external programs command the robot: the same loop, live and in a replay."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from harness.core.world import WorldObject
+from harness.ports import ExternalRequest, ExternalResult
+from harness.recording.commands import CommandRecord
+from harness.recording.run import ObjectRecord
+from harness.ros.control.cell import ExternalCell, controller_names
+from harness.ros.watch import Watch
+from harness.session.prepare import Prepared
+from harness.session.record import robot_record
+from harness.simulation.mujoco_simulator import MujocoSimulator
+
+GRACE = 1.0
+"""Simulated time that a step goes on after its program has ended and the arm stands [s]."""
+
+
+@dataclass
+class HandOver:
+    """What commands the robot between two ticks, and what is done after each.
+
+    Attributes:
+        prepared: The scenario.
+        simulator: The physics.
+    """
+
+    prepared: Prepared
+    simulator: MujocoSimulator
+    cell: ExternalCell = field(init=False)
+
+    def __post_init__(self) -> None:
+        description = self.prepared.program.description
+        names = controller_names(description, self.prepared.loaded.scenario.ros2)
+        self.cell = ExternalCell(self.simulator, names)
+        self.robot = robot_record(description, self.prepared.kinematics)
+
+    @property
+    def commands(self) -> tuple[CommandRecord, ...]:
+        """Everything that was received, in order."""
+        return tuple(self.cell.commands)
+
+    def refusal(self) -> str:
+        """Why a run that did not pass says nothing about the programs; empty where it does."""
+        return ""
+
+    def drive(
+        self, request: ExternalRequest, feed: Callable[[], None], after: Callable[[], None]
+    ) -> ExternalResult:
+        """Move time tick by tick until the request's end.
+
+        Args:
+            request: What ends it.
+            feed: Lets commands take effect before a tick.
+            after: Called after each tick.
+        """
+        cell, before = self.cell, len(self.cell.commands)
+        cell.hold_commanded(self.simulator.commanded_positions())
+        objects = tuple(map(_object_record, self.prepared.program.world.objects))
+        watch = Watch(request, self.simulator, self.robot, objects)
+        ended_at: float | None = None
+        ended: ExternalResult | None = None
+        while ended is None:
+            feed()
+            end = _end_of(cell.commands[before:])
+            if end is not None and end.content.get("reason") == "stopped":
+                ended = ExternalResult("stopped", len(cell.commands) - before)
+                break
+            cell.tick()
+            after()
+            received = len(cell.commands) - before
+            if end is not None and (ended_at is None or not cell.is_idle):
+                ended_at = cell.time
+            if watch.holds():
+                ended = ExternalResult("until", received)
+            elif watch.elapsed >= request.timeout - 1e-9:
+                ended = ExternalResult("timeout", received, _said(end))
+            elif end is not None and ended_at is not None and cell.time >= ended_at + GRACE:
+                ended = ExternalResult("exit", received - 1, _said(end))
+        cell.finish()
+        after()
+        return ended
+
+
+def _end_of(commands: list[CommandRecord]) -> CommandRecord | None:
+    return next((each for each in reversed(commands) if each.kind == "end"), None)
+
+
+def _said(end: CommandRecord | None) -> str:
+    """What is said of a program that ended."""
+    if end is None:
+        return ""
+    code = end.content.get("code")
+    how = "without an error" if code == 0 else f"with exit code {code}"
+    return f"the launched program ended {how} at t={end.time:.2f} s"
+
+
+def _object_record(obj: WorldObject) -> ObjectRecord:
+    return ObjectRecord(
+        name=obj.name,
+        is_static=obj.is_static,
+        in_planning=obj.in_planning,
+        in_simulation=obj.in_simulation,
+        shapes=obj.shapes,
+        visuals=obj.visuals,
+        present=((0.0, float("inf")),),
+        pose=tuple(float(value) for value in obj.pose.as_vector()),
+        mass=obj.mass,
+    )

@@ -1,0 +1,121 @@
+"""Message types of the bridge: those of rosbags, control_msgs, and what actions are made of."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys.store import Typestore
+
+FOLLOW = "control_msgs/action/FollowJointTrajectory"
+GRIPPER = "control_msgs/action/GripperCommand"
+TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
+CANCEL = "action_msgs/action/CancelGoal"
+"""The service action_msgs/srv/CancelGoal; rosbags takes no messages of the folder `srv`."""
+
+UUID = "unique_identifier_msgs/msg/UUID"
+_POINT = "trajectory_msgs/msg/JointTrajectoryPoint"
+_MULTI_POINT = "trajectory_msgs/msg/MultiDOFJointTrajectoryPoint"
+_RESULT = "float64 position\nfloat64 effort\nbool stalled\nbool reached_goal"
+
+ACTIONS = {
+    FOLLOW: (
+        f"{TRAJECTORY} trajectory\n"
+        "trajectory_msgs/msg/MultiDOFJointTrajectory multi_dof_trajectory\n"
+        "control_msgs/msg/JointTolerance[] path_tolerance\n"
+        "control_msgs/msg/JointComponentTolerance[] component_path_tolerance\n"
+        "control_msgs/msg/JointTolerance[] goal_tolerance\n"
+        "control_msgs/msg/JointComponentTolerance[] component_goal_tolerance\n"
+        "builtin_interfaces/msg/Duration goal_time_tolerance",
+        "int32 error_code\nstring error_string",
+        "std_msgs/msg/Header header\nstring[] joint_names\n"
+        f"{_POINT} desired\n{_POINT} actual\n{_POINT} error\n"
+        "string[] multi_dof_joint_names\n"
+        f"{_MULTI_POINT} multi_dof_desired\n{_MULTI_POINT} multi_dof_actual\n"
+        f"{_MULTI_POINT} multi_dof_error",
+    ),
+    GRIPPER: ("control_msgs/msg/GripperCommand command", _RESULT, _RESULT),
+}
+"""Goal, result and feedback of each action (control_msgs, BSD-3-Clause, field lists)."""
+
+MESSAGES = {
+    "control_msgs/msg/GripperCommand": "float64 position\nfloat64 max_effort",
+    "control_msgs/msg/JointTolerance": (
+        "string name\nfloat64 position\nfloat64 velocity\nfloat64 acceleration"
+    ),
+    "control_msgs/msg/JointComponentTolerance": (
+        "string joint_name\nuint16 component\nfloat64 position\nfloat64 velocity\n"
+        "float64 acceleration"
+    ),
+    f"{CANCEL}_Request": "action_msgs/msg/GoalInfo goal_info",
+    f"{CANCEL}_Response": ("int8 return_code\naction_msgs/msg/GoalInfo[] goals_canceling"),
+}
+
+
+def _typestore() -> Typestore:
+    store = get_typestore(Stores.ROS2_JAZZY)
+    for name, definition in MESSAGES.items():
+        store.register(get_types_from_msg(definition, name))
+    for action, parts in ACTIONS.items():
+        goal, result, feedback = (f"{action}_{part}" for part in ("Goal", "Result", "Feedback"))
+        for name, definition in zip((goal, result, feedback), parts, strict=True):
+            store.register(get_types_from_msg(definition, name))
+        for suffix, definition in {
+            "SendGoal_Request": f"{UUID} goal_id\n{goal} goal",
+            "SendGoal_Response": "bool accepted\nbuiltin_interfaces/msg/Time stamp",
+            "GetResult_Request": f"{UUID} goal_id",
+            "GetResult_Response": f"int8 status\n{result} result",
+            "FeedbackMessage": f"{UUID} goal_id\n{feedback} feedback",
+        }.items():
+            store.register(get_types_from_msg(definition, f"{action}_{suffix}"))
+    return store
+
+
+_STORE = _typestore()
+
+
+def typestore() -> Typestore:
+    """Every type that the bridge writes or reads."""
+    return _STORE
+
+
+def message(kind: str, /, **fields: Any) -> Any:
+    """A message of a type; fields that are left out are zero or empty."""
+    store = typestore()
+    definitions = store.fielddefs[kind][1]
+    values = {
+        name: fields.pop(name) if name in fields else _default(definition)
+        for name, definition in definitions
+    }
+    if fields:
+        raise TypeError(f"{kind} has no field {', '.join(fields)}")
+    return store.types[kind](**values)
+
+
+def _default(kind: Any) -> Any:
+    import numpy as np
+    from rosbags.interfaces import Nodetype
+
+    node, detail = kind
+    if node == Nodetype.NAME:
+        return message(detail)
+    if node == Nodetype.BASE:
+        base = detail[0]
+        return (
+            "" if base == "string" else False if base == "bool" else 0.0 if "float" in base else 0
+        )
+    element, size = detail
+    if element[0] == Nodetype.BASE and element[1][0] != "string":
+        return np.zeros(size or 0, dtype=np.dtype(element[1][0].replace("octet", "uint8")))
+    return [_default(element) for _ in range(size or 0)]
+
+
+def stamp(seconds: float) -> Any:
+    """A simulated time as a stamp; the clock of the bridge begins at 0, as that of Gazebo."""
+    whole, rest = divmod(round(seconds * 1e9), 10**9)
+    return message("builtin_interfaces/msg/Time", sec=whole, nanosec=rest)
+
+
+def seconds(moment: Any) -> float:
+    """A stamp or a duration in seconds."""
+    return moment.sec + moment.nanosec * 1e-9

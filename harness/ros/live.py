@@ -1,0 +1,125 @@
+"""Live nodes command the robot: the graph, the pace, the programs that were launched."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from types import FrameType
+from typing import Any
+
+import numpy as np
+
+from harness.ports import ExternalRequest, ExternalResult
+from harness.recording.commands import CommandRecord
+from harness.ros.graph import Graph
+from harness.ros.handover import HandOver
+from harness.ros.launch import Allowed, Program
+from harness.ros.pacing import Pace
+from harness.ros.state_topics import StateTopics
+from harness.ros.wiring import Wiring
+
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class LiveOptions:
+    """How a live session is run.
+
+    Attributes:
+        allowed: Commands that steps may start.
+        factor: Simulated seconds in a wall second.
+        say: Receives notes for the user while it runs.
+        is_interactive: Whether Ctrl-C ends the session and not the command.
+    """
+
+    allowed: Allowed
+    factor: float = 1.0
+    say: Say = lambda _: None
+    is_interactive: bool = False
+
+
+class LiveControl(HandOver):
+    """Serves the robot on a graph while a step hands it over."""
+
+    def __init__(self, prepared: Any, simulator: Any, graph: Graph, options: LiveOptions) -> None:
+        super().__init__(prepared, simulator)
+        self.pace = Pace(options.factor)
+        self._graph, self._options = graph, options
+        self._states = StateTopics(graph, self.robot)
+        self._wiring = Wiring(graph, self.cell, self._note)
+        self._program: Program | None = None
+        self._is_stopped = False
+        self._said: set[str] = set()
+        self.output = ""
+
+    def hand_over(self, request: ExternalRequest) -> ExternalResult:
+        """Serve the robot until the request's end; start the program that it names."""
+        self._program = self._options.allowed.start(request.launch)
+        self._wiring.is_open = True
+        self.pace.start()
+        try:
+            with self._interruptible():
+                return self.drive(request, self._feed, self._after)
+        finally:
+            self._wiring.is_open = False
+            if self._program is not None:
+                self.output = self._program.output()
+                self._program.stop()
+                self._program = None
+
+    def refusal(self) -> str:
+        """Why a run that did not pass says nothing about the nodes; empty where it does."""
+        if not self.pace.is_slow:
+            return ""
+        return f"this machine is too slow to judge the nodes: {self.pace.text()}"
+
+    def _feed(self) -> None:
+        """Receive until the next tick is due."""
+        self._graph.spin(self.pace.next())
+        self.pace.tick()
+        if self._is_stopped:
+            self._is_stopped = False
+            self.cell.receive("end", content={"reason": "stopped"})
+        program = self._program
+        if program is not None and program.exit_code is not None:
+            self.cell.receive("end", content={"reason": "exit", "code": program.exit_code})
+            self.output = program.output()
+            program.stop()
+            self._program = None
+
+    def _after(self) -> None:
+        simulator = self.simulator
+        positions, velocities = simulator.measured(simulator.sample_count - 1)
+        efforts = np.zeros(len(simulator.description.joint_names))
+        efforts[simulator.physics.actuated] = simulator.efforts()
+        self._wiring.after_tick()
+        self._states.publish(simulator.time, positions[-1], velocities[-1], efforts)
+
+    def _note(self, record: CommandRecord) -> None:
+        """A command took effect; say it, where it did not."""
+        self.pace.command()
+        if record.answer != "accepted" and record.answer not in self._said:
+            self._said.add(record.answer)
+            self._options.say(
+                f"t={record.time:.2f} s: {record.kind} for {record.controller}: {record.answer}"
+            )
+        self._wiring.report()
+
+    @contextmanager
+    def _interruptible(self) -> Generator[None]:
+        """Let the first Ctrl-C end an interactive session in order."""
+        if not self._options.is_interactive:
+            yield
+            return
+
+        def stop(_number: int, _frame: FrameType | None) -> None:
+            self._is_stopped = True
+            signal.signal(signal.SIGINT, before)
+
+        before = signal.signal(signal.SIGINT, stop)
+        try:
+            yield
+        finally:
+            signal.signal(signal.SIGINT, before)

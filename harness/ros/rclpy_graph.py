@@ -1,0 +1,185 @@
+"""The port to ROS 2 through the rclpy of an installation, or of its wheels."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from harness.ros.graph import Publisher, Reply, ServiceClient
+from harness.ros.interfaces import CANCEL, typestore
+from harness.ros.rtps.participant import NetworkError
+
+_PARTS = ("SendGoal", "GetResult")
+
+
+@dataclass
+class _Codec:
+    """Converts messages of one type, through their serialised form."""
+
+    kind: str
+    ros_type: Any
+    serialization: Any
+
+    def to_ros(self, content: Any) -> Any:
+        data = bytes(typestore().serialize_cdr(content, self.kind))
+        return self.serialization.deserialize_message(data, self.ros_type)
+
+    def from_ros(self, content: Any) -> Any:
+        return typestore().deserialize_cdr(self.serialization.serialize_message(content), self.kind)
+
+
+@dataclass
+class _Publisher:
+    publisher: Any
+    codec: _Codec
+
+    @property
+    def subscribers(self) -> int:
+        return self.publisher.get_subscription_count()
+
+    def publish(self, message: Any) -> None:
+        self.publisher.publish(self.codec.to_ros(message))
+
+
+@dataclass
+class _Client:
+    client: Any
+    request: _Codec
+    response: _Codec
+
+    @property
+    def is_ready(self) -> bool:
+        return self.client.service_is_ready()
+
+    def call(self, request: Any, on_response: Callable[[Any], None]) -> None:
+        future = self.client.call_async(self.request.to_ros(request))
+        future.add_done_callback(lambda done: on_response(self.response.from_ros(done.result())))
+
+
+class RclpyGraph:
+    """A node of rclpy; callbacks run inside `spin`."""
+
+    def __init__(self, domain: int, *, node: str, is_local: bool = True) -> None:
+        """Join a domain.
+
+        Args:
+            domain: ROS_DOMAIN_ID.
+            node: The name of the node.
+            is_local: Whether it talks to this machine alone.
+
+        Raises:
+            NetworkError: rclpy cannot be imported.
+        """
+        if is_local:
+            os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+        try:
+            rclpy = importlib.import_module("rclpy")
+            self._serialization = importlib.import_module("rclpy.serialization")
+            self._qos = importlib.import_module("rclpy.qos")
+            task = importlib.import_module("rclpy.task")
+        except ImportError as error:
+            raise NetworkError(f"--adapter rclpy: rclpy cannot be imported: {error}") from error
+        self._context = rclpy.Context()
+        rclpy.init(context=self._context, domain_id=domain)
+        self._node = rclpy.create_node(node, context=self._context)
+        executors = importlib.import_module("rclpy.executors")
+        self._executor = executors.SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self._node)
+        self._future: Any = task.Future
+
+    def advertise(
+        self,
+        topic: str,
+        kind: str,
+        *,
+        latched: bool = False,
+        reliable: bool = True,
+        depth: int = 10,
+    ) -> Publisher:
+        codec = self._codec(kind)
+        profile = self._profile(latched, reliable, depth)
+        return _Publisher(self._node.create_publisher(codec.ros_type, topic, profile), codec)
+
+    def subscribe(
+        self,
+        topic: str,
+        kind: str,
+        on_message: Callable[[Any], None],
+        *,
+        latched: bool = False,
+        reliable: bool = True,
+    ) -> None:
+        codec, profile = self._codec(kind), self._profile(latched, reliable, 10)
+
+        def take(content: Any) -> None:
+            on_message(codec.from_ros(content))
+
+        self._node.create_subscription(codec.ros_type, topic, take, profile)
+
+    def serve(self, name: str, kind: str, on_request: Callable[[Any, Reply], None]) -> None:
+        service, request, response = self._service(kind)
+
+        async def answer(content: Any, _: Any) -> Any:
+            replied = self._future(executor=self._executor)
+            on_request(request.from_ros(content), replied.set_result)
+            return response.to_ros(await replied)
+
+        self._node.create_service(service, name, answer)
+
+    def client(self, name: str, kind: str) -> ServiceClient:
+        service, request, response = self._service(kind)
+        return _Client(self._node.create_client(service, name), request, response)
+
+    def spin(self, until: float) -> None:
+        self._executor.spin_once(timeout_sec=0.0)
+        while (left := until - time.monotonic()) > 0:
+            self._executor.spin_once(timeout_sec=left)
+
+    def close(self) -> None:
+        self._executor.shutdown()
+        self._node.destroy_node()
+        self._context.try_shutdown()
+
+    def _profile(self, latched: bool, reliable: bool, depth: int) -> Any:
+        qos = self._qos
+        reliability, durability = qos.ReliabilityPolicy, qos.DurabilityPolicy
+        return qos.QoSProfile(
+            depth=depth,
+            reliability=reliability.RELIABLE if reliable else reliability.BEST_EFFORT,
+            durability=durability.TRANSIENT_LOCAL if latched else durability.VOLATILE,
+        )
+
+    def _codec(self, kind: str) -> _Codec:
+        package, folder, name = kind.split("/")
+        module = _imported(f"{package}.{folder}")
+        action, _, part = name.partition("_")
+        if folder == "action" and part == "FeedbackMessage":
+            return _Codec(kind, getattr(module, action).Impl.FeedbackMessage, self._serialization)
+        return _Codec(kind, getattr(module, name), self._serialization)
+
+    def _service(self, kind: str) -> tuple[Any, _Codec, _Codec]:
+        """The service of an action, and the codecs of its request and response."""
+        if kind == CANCEL:
+            service = _imported("action_msgs.srv").CancelGoal
+        else:
+            package, folder, name = kind.split("/")
+            action, _, part = name.partition("_")
+            if part not in _PARTS:
+                raise NetworkError(f"{kind} is no service of an action")
+            service = getattr(
+                getattr(_imported(f"{package}.{folder}"), action).Impl, f"{part}Service"
+            )
+        request = _Codec(f"{kind}_Request", service.Request, self._serialization)
+        response = _Codec(f"{kind}_Response", service.Response, self._serialization)
+        return service, request, response
+
+
+def _imported(module: str) -> Any:
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        raise NetworkError(f"--adapter rclpy needs the package `{module}`: {error}") from error

@@ -1,0 +1,230 @@
+"""Submessages and parameter lists of DDSI-RTPS as bytes (OMG formal/2019-04-03, 8.3 and 9)."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+VERSION = b"\x02\x03"
+VENDOR = b"\x01\x7a"
+"""A vendor that is not registered: peers use no private extension with it."""
+
+NO_ENTITY = bytes(4)
+SPDP_WRITER, SPDP_READER = b"\x00\x01\x00\xc2", b"\x00\x01\x00\xc7"
+PUBLICATIONS_WRITER, PUBLICATIONS_READER = b"\x00\x00\x03\xc2", b"\x00\x00\x03\xc7"
+SUBSCRIPTIONS_WRITER, SUBSCRIPTIONS_READER = b"\x00\x00\x04\xc2", b"\x00\x00\x04\xc7"
+PARTICIPANT = b"\x00\x00\x01\xc1"
+
+ACKNACK, HEARTBEAT, GAP, INFO_TS, INFO_DST = 0x06, 0x07, 0x08, 0x09, 0x0E
+NACK_FRAG, HEARTBEAT_FRAG, DATA, DATA_FRAG = 0x12, 0x13, 0x15, 0x16
+
+PID_SENTINEL, PID_LEASE, PID_TOPIC, PID_TYPE = 0x01, 0x02, 0x05, 0x07
+PID_DOMAIN, PID_VERSION, PID_VENDOR = 0x0F, 0x15, 0x16
+PID_RELIABILITY, PID_DURABILITY, PID_USER_DATA = 0x1A, 0x1D, 0x2C
+PID_UNICAST, PID_DEFAULT_UNICAST, PID_META_UNICAST = 0x2F, 0x31, 0x32
+PID_PARTICIPANT, PID_BUILTIN, PID_ENDPOINT = 0x50, 0x58, 0x5A
+PID_NAME, PID_KEY_HASH, PID_STATUS, PID_RELATED = 0x62, 0x70, 0x71, 0x83
+PID_RELATED_OLD = 0x800F
+"""The related sample identity as Fast DDS wrote it before it had a number of the standard."""
+
+FRAGMENT = 57_344
+"""Bytes of a sample in one datagram; UDP carries at most 65,507."""
+LARGEST_SAMPLE = 2**26
+"""Samples that claim to be larger are ignored [bytes]."""
+MOST_BITS = 256
+"""Sequence numbers in one set."""
+
+
+@dataclass(frozen=True)
+class Submessage:
+    """One submessage of a datagram.
+
+    Attributes:
+        kind: Its identifier.
+        flags: The eight bits of its flags.
+        body: What follows its header.
+    """
+
+    kind: int
+    flags: int
+    body: bytes
+
+    @property
+    def order(self) -> str:
+        """The byte order, for `struct`."""
+        return "<" if self.flags & 1 else ">"
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A sample or a part of one, as DATA and DATA_FRAG carry it.
+
+    Attributes:
+        reader: Entity of the reader; zeros for all readers.
+        writer: Entity of the writer.
+        number: The sequence number.
+        inline: Parameters that come with the sample.
+        payload: Encapsulation header and content, or fragments of them.
+        first: Number of the first fragment, from 1; 0 for a whole sample.
+        fragment_size: Bytes of each fragment but the last.
+        size: Bytes of the whole sample.
+    """
+
+    reader: bytes
+    writer: bytes
+    number: int
+    inline: dict[int, bytes]
+    payload: bytes
+    first: int = 0
+    fragment_size: int = 0
+    size: int = 0
+
+
+def header(prefix: bytes) -> bytes:
+    """The header of a message of a participant."""
+    return b"RTPS" + VERSION + VENDOR + prefix
+
+
+def submessage(kind: int, body: bytes, flags: int = 0) -> bytes:
+    """A little-endian submessage; a length of zero says `up to the end` of a long one."""
+    length = len(body) if len(body) < 2**16 else 0
+    return struct.pack("<BBH", kind, flags | 1, length) + body
+
+
+def submessages(datagram: bytes) -> Iterator[Submessage]:
+    """The submessages of a datagram; what is cut off is left out."""
+    place = 20
+    while place + 4 <= len(datagram):
+        kind, flags = datagram[place], datagram[place + 1]
+        (length,) = struct.unpack_from("<H" if flags & 1 else ">H", datagram, place + 2)
+        if length == 0 and kind not in (INFO_TS, 0x01):
+            length = len(datagram) - place - 4
+        yield Submessage(kind, flags, datagram[place + 4 : place + 4 + length])
+        place += 4 + length
+
+
+def sequence_number(number: int) -> bytes:
+    """A sequence number in its two words."""
+    return struct.pack("<iI", number >> 32, number & 0xFFFFFFFF)
+
+
+def number_at(body: bytes, place: int, order: str) -> int:
+    """The sequence number at a place."""
+    high, low = struct.unpack_from(f"{order}iI", body, place)
+    return (high << 32) + low
+
+
+def number_set(base: int, numbers: Sequence[int]) -> bytes:
+    """A set of sequence numbers from a base on."""
+    chosen = [number for number in numbers if base <= number < base + MOST_BITS]
+    bits = max(chosen) - base + 1 if chosen else 0
+    words = [0] * ((bits + 31) // 32)
+    for number in chosen:
+        words[(number - base) // 32] |= 1 << (31 - (number - base) % 32)
+    return sequence_number(base) + struct.pack(f"<I{len(words)}I", bits, *words)
+
+
+def numbers_of(body: bytes, place: int, order: str) -> tuple[int, list[int]]:
+    """The base and the members of a set of sequence numbers."""
+    base = number_at(body, place, order)
+    return base, [base + each for each in _members(body, place + 8, order)]
+
+
+def fragments_of(body: bytes, place: int, order: str) -> list[int]:
+    """The members of a set of fragment numbers."""
+    (base,) = struct.unpack_from(f"{order}I", body, place)
+    return [base + each for each in _members(body, place + 4, order)]
+
+
+def _members(body: bytes, place: int, order: str) -> Iterator[int]:
+    (bits,) = struct.unpack_from(f"{order}I", body, place)
+    for bit in range(min(bits, MOST_BITS)):
+        (word,) = struct.unpack_from(f"{order}I", body, place + 4 + 4 * (bit // 32))
+        if word >> (31 - bit % 32) & 1:
+            yield bit
+
+
+def parameters(values: Sequence[tuple[int, bytes]]) -> bytes:
+    """A parameter list, each value padded to four bytes."""
+    parts = [
+        struct.pack("<HH", key, len(value) + -len(value) % 4) + value + bytes(-len(value) % 4)
+        for key, value in values
+    ]
+    return b"".join(parts) + struct.pack("<HH", PID_SENTINEL, 0)
+
+
+def parsed_parameters(body: bytes, place: int, order: str) -> tuple[dict[int, list[bytes]], int]:
+    """The values of a parameter list by their keys, and where it ends."""
+    found: dict[int, list[bytes]] = {}
+    while True:
+        key, length = struct.unpack_from(f"{order}HH", body, place)
+        place += 4
+        if key == PID_SENTINEL:
+            return found, place
+        found.setdefault(key, []).append(body[place : place + length])
+        place += length
+
+
+def parameters_of(payload: bytes) -> dict[int, list[bytes]]:
+    """The parameters of a discovery sample, after its encapsulation header."""
+    order = "<" if payload[1] & 1 else ">"
+    return parsed_parameters(payload, 4, order)[0]
+
+
+def text(value: str) -> bytes:
+    """A string of CDR."""
+    content = value.encode() + b"\0"
+    return struct.pack("<I", len(content)) + content
+
+
+def text_of(value: bytes) -> str:
+    """What a string of CDR says."""
+    (length,) = struct.unpack_from("<I", value)
+    return value[4 : 4 + length].rstrip(b"\0").decode("utf-8", "replace")
+
+
+def locator(address: str, port: int) -> bytes:
+    """A UDPv4 locator."""
+    return struct.pack("<iI", 1, port) + bytes(12) + bytes(map(int, address.split(".")))
+
+
+def address_of(value: bytes) -> tuple[str, int] | None:
+    """Address and port of a UDPv4 locator; None for other kinds."""
+    kind, port = struct.unpack_from("<iI", value)
+    if kind != 1 or len(value) < 24 or not 0 < port < 2**16:
+        return None
+    return ".".join(map(str, value[20:24])), port
+
+
+def data(reader: bytes, writer: bytes, number: int, payload: bytes, inline: bytes = b"") -> bytes:
+    """A whole sample."""
+    flags = 0x04 | (0x02 if inline else 0)
+    head = struct.pack("<HH", 0, 16) + reader + writer + sequence_number(number)
+    return submessage(DATA, head + inline + payload, flags)
+
+
+def fragment(
+    reader: bytes, writer: bytes, number: int, payload: bytes, place: int, inline: bytes = b""
+) -> bytes:
+    """Fragment `place` of a sample, from 1."""
+    part = payload[(place - 1) * FRAGMENT : place * FRAGMENT]
+    head = struct.pack("<HH", 0, 28) + reader + writer + sequence_number(number)
+    head += struct.pack("<IHHI", place, 1, FRAGMENT, len(payload))
+    return submessage(DATA_FRAG, head + inline + part, 0x02 if inline else 0)
+
+
+def sample_of(message: Submessage) -> Sample:
+    """What DATA or DATA_FRAG carries."""
+    body, order, is_part = message.body, message.order, message.kind == DATA_FRAG
+    (to_inline,) = struct.unpack_from(f"{order}H", body, 2)
+    number, place = number_at(body, 12, order), 4 + to_inline
+    inline: dict[int, bytes] = {}
+    if message.flags & 0x02:
+        listed, place = parsed_parameters(body, place, order)
+        inline = {key: values[0] for key, values in listed.items()}
+    rest = body[4:8], body[8:12], number, inline, body[place:]
+    if not is_part:
+        return Sample(*rest)
+    first, _, fragment_size, size = struct.unpack_from(f"{order}IHHI", body, 20)
+    return Sample(*rest, first, fragment_size, size)

@@ -1,0 +1,92 @@
+"""What the cell publishes of itself: joints, frames, the clock, the robot's description."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.recording.link_poses import placement_poses
+from harness.recording.run import RobotRecord
+from harness.ros.graph import Graph
+from harness.ros.interfaces import message, stamp
+
+TF_EVERY = 2
+"""Ticks between two messages of frames: 50 Hz."""
+
+
+class StateTopics:
+    """Publishes the state of the robot after every tick."""
+
+    def __init__(self, graph: Graph, robot: RobotRecord) -> None:
+        self._robot = robot
+        self._names = [joint.name for joint in robot.joints]
+        self._moved = [placement for placement in robot.placements if placement.joint]
+        self._clock = graph.advertise("/clock", "rosgraph_msgs/msg/Clock", depth=1)
+        self._joints = graph.advertise("/joint_states", "sensor_msgs/msg/JointState")
+        self._tf = graph.advertise("/tf", "tf2_msgs/msg/TFMessage", depth=100)
+        static = graph.advertise("/tf_static", "tf2_msgs/msg/TFMessage", latched=True, depth=1)
+        fixed = [placement for placement in robot.placements if not placement.joint]
+        transforms = [_stamped(0.0, each.parent, each.link, np.array(each.pose)) for each in fixed]
+        static.publish(message("tf2_msgs/msg/TFMessage", transforms=transforms))
+        description = graph.advertise(
+            "/robot_description", "std_msgs/msg/String", latched=True, depth=1
+        )
+        description.publish(message("std_msgs/msg/String", data=robot.urdf))
+        self._ticks = 0
+
+    def publish(
+        self, time: float, positions: FloatArray, velocities: FloatArray, efforts: FloatArray
+    ) -> None:
+        """Publish the state at a simulated time.
+
+        Args:
+            time: Simulated time [s].
+            positions: In description order, shape (n,).
+            velocities: Shape (n,).
+            efforts: Shape (n,); 0 for joints without a motor.
+        """
+        moment = stamp(time)
+        self._clock.publish(message("rosgraph_msgs/msg/Clock", clock=moment))
+        self._joints.publish(
+            message(
+                "sensor_msgs/msg/JointState",
+                header=message("std_msgs/msg/Header", stamp=moment),
+                name=self._names,
+                position=positions,
+                velocity=velocities,
+                effort=efforts,
+            )
+        )
+        self._ticks += 1
+        if self._ticks % TF_EVERY == 0 and self._tf.subscribers:
+            self._publish_frames(time, positions)
+
+    def _publish_frames(self, time: float, positions: FloatArray) -> None:
+        columns = {name: column for column, name in enumerate(self._names)}
+        transforms = [
+            _stamped(
+                time,
+                each.parent,
+                each.link,
+                placement_poses(each, positions[[columns[each.joint]]])[0],
+            )
+            for each in self._moved
+        ]
+        self._tf.publish(message("tf2_msgs/msg/TFMessage", transforms=transforms))
+
+
+def _stamped(time: float, parent: str, child: str, pose: FloatArray) -> Any:
+    """A pose (xyz, quaternion wxyz) as a TransformStamped."""
+    x, y, z, qw, qx, qy, qz = map(float, pose)
+    return message(
+        "geometry_msgs/msg/TransformStamped",
+        header=message("std_msgs/msg/Header", stamp=stamp(time), frame_id=parent),
+        child_frame_id=child,
+        transform=message(
+            "geometry_msgs/msg/Transform",
+            translation=message("geometry_msgs/msg/Vector3", x=x, y=y, z=z),
+            rotation=message("geometry_msgs/msg/Quaternion", x=qx, y=qy, z=qz, w=qw),
+        ),
+    )

@@ -1,0 +1,79 @@
+"""Whether the expectation holds that ends a step, from what the physics recorded so far."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from harness.assertions.judge import judge
+from harness.assertions.placed import PlacedExpectation
+from harness.language.expectation import ExpectationFields
+from harness.ports import ExternalRequest
+from harness.recording.run import ObjectRecord, RobotRecord, Run, Signals, StepRecord
+
+EVERY = 0.5
+"""Simulated time between two looks [s]: a number of the language, so that a replay ends alike."""
+
+
+class Recorder(Protocol):
+    """The part of the simulator that is looked at."""
+
+    @property
+    def sample_count(self) -> int: ...
+    @property
+    def time(self) -> float: ...
+    def finish(self) -> Signals: ...
+
+
+@dataclass
+class Watch:
+    """Looks at one step's `until`."""
+
+    request: ExternalRequest
+    recorder: Recorder
+    robot: RobotRecord
+    objects: tuple[ObjectRecord, ...]
+
+    def __post_init__(self) -> None:
+        self._begin = self.recorder.time
+        self._first = max(0, self.recorder.sample_count - 1)
+        self._looks = 0
+
+    @property
+    def elapsed(self) -> float:
+        """Simulated time since the step began [s]."""
+        return self.recorder.time - self._begin
+
+    def holds(self) -> bool:
+        """Whether the expectation passes now; looked up only every half second."""
+        until = self.request.until
+        looks = int((self.elapsed + 1e-9) / EVERY)
+        if not isinstance(until, ExpectationFields) or looks == self._looks:
+            return False
+        self._looks = looks
+        step = StepRecord(
+            id=self.request.step,
+            path=self.request.step,
+            verb="external",
+            summary="",
+            line=self.request.line,
+            status="passed",
+            start_time=self._begin,
+            end_time=self.recorder.time,
+            start_index=self._first,
+            end_index=self.recorder.sample_count,
+        )
+        run = Run(
+            scenario="",
+            file="",
+            case="",
+            seed=0,
+            robot=self.robot,
+            objects=self.objects,
+            attachments=(),
+            steps=(step,),
+            signals=self.recorder.finish(),
+            unrecorded=("clearances", "planned_clearances"),
+        )
+        placed = PlacedExpectation.of(until, self.request.step, self.request.line)
+        return judge(run, [placed])[0].status == "passed"

@@ -1,0 +1,91 @@
+"""external: programs outside command the arm."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from pydantic import Field
+
+from harness.assertions.placed import as_expectation, check_expectation
+from harness.cell.cell import Cell
+from harness.cell.scope import At
+from harness.core.errors import StepFailed
+from harness.language.base import Name, PositiveDuration
+from harness.language.expectation import AnyExpectation
+from harness.language.step import Step
+from harness.ports import ExternalRequest
+from harness.recording.execution_failures import TimeoutFailure
+
+DEFAULT_TIMEOUT = 60.0  # [s] of simulation
+
+
+class External(Step):
+    """Hand the arm over to ROS 2 nodes until an expectation holds.
+
+    The nodes move the robot through its controllers on the ROS 2 graph, as they move the robot of
+    Gazebo or a real one. `harness grade SCENARIO --node COMMAND` and `harness bridge` run a
+    scenario with this step; every command is recorded, and `harness replay` repeats the run.
+    """
+
+    verb: ClassVar[str] = "external"
+
+    timeout: PositiveDuration | None = Field(
+        default=DEFAULT_TIMEOUT,
+        description="Simulated time that the nodes have [s]; without `until`, the step then ends.",
+    )
+    until: AnyExpectation | None = Field(
+        default=None,
+        description="The step ends when this holds; it is looked at twice a simulated second.",
+    )
+    launch: Name | None = Field(
+        default=None,
+        description="The command that is started, by the name that the user gave it with `--node "
+        "NAME=COMMAND`; the default is the only one that was given.",
+    )
+
+    def summary(self) -> str:
+        return f"nodes, up to {self.timeout or DEFAULT_TIMEOUT:g} s"
+
+    def check(self, at: At) -> None:
+        at.scope.take_time(self.timeout or DEFAULT_TIMEOUT, at.key("timeout"))
+        if self.until is None:
+            return
+        until = as_expectation(self.until)
+        check_expectation(until, at.key("until"), at.scope)
+        seen = until.observations()
+        if seen.reads_distances or seen.planned_clearances or seen.pictures:
+            at.scope.problems.add(
+                at.key("until"),
+                "distances and pictures are measured after the run, so they cannot end a step",
+                "expect it under `expect`, and end the step by joints, poses, contacts or objects",
+                needs=(),
+            )
+
+    def execute(self, cell: Cell) -> None:
+        """Hand the arm over.
+
+        Raises:
+            StepFailed: TIMED_OUT, when `until` did not become true; COMMUNICATION_FAILURE, when
+                nothing outside can be reached.
+        """
+        if cell.external is None:
+            return
+        timeout, step = self.timeout or DEFAULT_TIMEOUT, cell.current
+        begin = cell.simulator.time
+        request = ExternalRequest(step.id, step.line, timeout, self.until, self.launch or "")
+        result = cell.external.hand_over(request)
+        cell.notes.result.update(
+            ended_by=result.ended_by, commands=result.commands, detail=result.detail
+        )
+        if self.until is None or result.ended_by == "until":
+            return
+        spent = cell.simulator.time - begin
+        why = {"exit": "the node ended", "stopped": "the session was stopped"}
+        reason = why.get(result.ended_by, f"the nodes had {timeout:g} s")
+        detail = f"; {result.detail}" if result.detail else ""
+        raise StepFailed(
+            "TIMED_OUT",
+            f"`until` did not become true: {reason}, after {spent:.2f} s and"
+            f" {result.commands} commands{detail}",
+            TimeoutFailure(spent, timeout),
+        )

@@ -1,0 +1,108 @@
+"""`harness grade --node`, `bridge` and `replay` at the command line."""
+
+import json
+import re
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+
+from harness.cli.main import main
+from tests.engine.front_door import problems
+from tests.ros.bridging import scenario
+
+HERE = Path(__file__).parent
+BOX = "ros2/01_lift_the_red_box"
+LIFT = f"{sys.executable} {HERE / 'lift_the_box.py'}"
+
+
+@pytest.fixture(autouse=True)
+def _importable(monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", str(HERE.parents[1]))
+
+
+def json_of(capsys, *arguments):
+    code = main([*arguments, "--json"])
+    return code, json.loads(capsys.readouterr().out)
+
+
+def test_a_node_earns_the_points_of_the_lesson_and_its_commands_replay(tmp_path, capsys):
+    code, grade = json_of(capsys, "grade", BOX, "--node", LIFT, "--report-dir", str(tmp_path))
+    assert [(row["verdict"]["status"], row["earned"]) for row in grade["rows"]] == [
+        ("passed", points) for points in (1, 2, 2, 3, 1, 1)
+    ]
+    assert (code, grade["earned"], grade["points"]) == (0, 10, 10)
+    [folder] = [path.parent for path in tmp_path.rglob("run.json")]
+    code, replayed = json_of(capsys, "replay", str(folder))
+    assert (code, replayed["is_equal"], replayed["commands"]) == (0, True, 4)
+    record = json.loads((folder / "run.json").read_text())
+    kinds = [command["kind"] for command in record["commands"]]
+    assert kinds == ["gripper", "trajectory", "gripper", "trajectory"]
+
+
+def test_a_node_that_crashes_ends_the_step_and_shows_what_it_printed(tmp_path, capsys):
+    code = main(["grade", BOX, "--node", f"{LIFT} --crash", "--report-dir", str(tmp_path)])
+    said = capsys.readouterr()
+    assert code == 1
+    assert "TIMED_OUT: `until` did not become true: the node ended" in said.out
+    assert "the launched program ended with exit code 1" in said.out
+    assert "no idea how this works" in said.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        ([], "give either a recording (BAG) or a command (--node)"),
+        (["a.mcap", "--node", "x"], "give either a recording (BAG) or a command (--node)"),
+        (["--node", "student="], "has no command"),
+        (["--node", "a", "--node", "b"], "two commands are called 'node'"),
+        (["--node", "x", "--domain", "400"], "domains are 0 to 232"),
+    ],
+)
+def test_wrong_usage_is_explained(tmp_path, capsys, arguments, reason):
+    assert main(["grade", BOX, *arguments, "--report-dir", str(tmp_path)]) in (2, 3)
+    assert reason in capsys.readouterr().err
+
+
+def test_a_command_that_cannot_be_started_is_named(tmp_path, capsys):
+    main(["grade", BOX, "--node", "/no/such/program", "--report-dir", str(tmp_path)])
+    assert "`/no/such/program` cannot be started: No such file" in capsys.readouterr().out
+
+
+def test_a_scenario_starts_only_what_the_user_allowed(tmp_path, capsys):
+    file = scenario(tmp_path, "- external: {launch: student}")
+    main(["grade", str(file), "--node", "teacher=true", "--no-report"])
+    assert "give it with --node 'student=COMMAND'; allowed: teacher" in capsys.readouterr().out
+
+
+def test_without_nodes_a_run_says_which_command_to_use(tmp_path, capsys):
+    assert main(["run", str(scenario(tmp_path)), "--no-report", "--in-process"]) == 1
+    assert "harness grade SCENARIO --node COMMAND" in re.sub(r"\s+", " ", capsys.readouterr().out)
+
+
+def test_a_planned_lesson_is_handed_over_as_a_whole(tmp_path, capsys):
+    steps = "- wait: 1 s\n  expect: [{always: within_limits}]"
+    file = scenario(tmp_path, steps)
+    code, grade = json_of(
+        capsys, "grade", str(file), "--node", "true", "--report-dir", str(tmp_path / "r")
+    )
+    assert (code, grade["points"], grade["earned"]) == (0, 1, 1)
+
+
+def test_an_end_that_is_measured_after_the_run_is_refused(tmp_path):
+    steps = "- external: {until: {clearance: {between: [robot, any], at_least: 1 cm}}}"
+    [(line, message)] = problems(tmp_path, steps)
+    assert line == 5
+    assert "measured after the run" in message
+
+
+def test_the_commands_of_another_run_are_refused(tmp_path, capsys):
+    file = scenario(tmp_path, "- wait: 10 ms")
+    main(["run", str(file), "--report-dir", str(tmp_path / "r"), "--in-process", "--no-page"])
+    [folder] = [path.parent for path in (tmp_path / "r").rglob("run.json")]
+    capsys.readouterr()
+    assert main(["replay", str(folder)]) == 0
+    assert "0 commands replayed" in capsys.readouterr().out
+    shutil.rmtree(folder)
+    assert main(["replay", str(folder)]) == 2
