@@ -49,6 +49,10 @@ class ContactRecord:
             more = max(len(self._end), rows - len(self._end))
             self._end = np.concatenate([self._end, np.zeros(more, dtype=np.int64)])
 
+    def rewind(self, rows: int) -> None:
+        """Forget the contacts of all samples after the first `rows`."""
+        self.count = int(self._end[rows - 1]) if rows else 0
+
     def keep(self, data: mujoco.MjData, row: int) -> None:
         """Copy the contacts of the current physics state as those of one sample."""
         begin = self.count
