@@ -356,8 +356,10 @@ def for_robot(robot: argparse.ArgumentParser) -> None:
 def for_studio(studio: argparse.ArgumentParser) -> None:
     """Of `harness studio`."""
     add = studio.add_argument
-    add("target", metavar="ROBOT | SCENARIO", nargs="?", default="open_manipulator_x",
-        help=f"{ROBOT}; or a scenario's file (default: open_manipulator_x)")  # fmt: skip
+    add("target", metavar="ROBOT|SCENARIO|RUN", nargs="?", default="open_manipulator_x",
+        help=f"{ROBOT}; a scenario; a run's folder (default: open_manipulator_x)")  # fmt: skip
+    add("--at", metavar="SECONDS", type=seconds, default=None,
+        help="of a run's folder: the time to go on from by hand (default: 0)")  # fmt: skip
     add("--world", metavar="WORLD", default="", help="a bundled world or its file, for a robot")
     add("--gripper", metavar="NAME", default="", help="a bundled gripper to be mounted on a robot")
     add("--port", metavar="N", type=port_number, default=8011,

@@ -29,7 +29,7 @@ def _run(arguments: argparse.Namespace) -> int:
     from harness.studio.server import page_assets, start_server
     from harness.studio.studio import Studio
 
-    path, text = _start(arguments)
+    path, text, time = _start(arguments)
     files = StudioFiles(Path.cwd(), path)
     restored = files.restored()
     is_restored = restored is not None and restored != text
@@ -40,6 +40,9 @@ def _run(arguments: argparse.Namespace) -> int:
             " Save keeps it; delete that file to begin again."
         )
     studio = Studio.opened(files, text, restored if is_restored else None, notice)
+    if time is not None:
+        say(f"going on to t={time:g} s, as the run did")
+        studio.cell.run_until(time)
     host = arguments.host or LOOPBACK[0]
     is_open = host not in ("127.0.0.1", "localhost", "::1")
     guard = Guard.of(page_assets(), is_open=is_open)
@@ -76,9 +79,20 @@ def _open_browser(address: str) -> None:
         complain(f"no browser could be opened here; open {address}")
 
 
-def _start(arguments: argparse.Namespace) -> tuple[Path, str]:
-    """The file that the studio saves to, and the text with which it begins."""
+def _start(arguments: argparse.Namespace) -> tuple[Path, str, float | None]:
+    """The file that the studio saves to, the text with which it begins, and the time to go to."""
+    from harness.recording.store import RESOLVED, RUN
+
     word: str = arguments.target
+    if (Path(word) / RUN).is_file():
+        text = (Path(word) / RESOLVED).read_text(encoding="utf-8")
+        return Path(word) / f"continued{SUFFIX}", text, arguments.at or 0.0
+    if arguments.at is not None:
+        raise UsageError(f"--at is for the folder of a run, which '{word}' is not")
+    return (*_text(word, arguments), None)
+
+
+def _text(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
     if word.endswith((".yaml", ".yml")) or Path(word).is_dir():
         return _scenario(word, arguments)
     from harness.studio.document import new_text

@@ -188,6 +188,22 @@ class LiveCell:
                 self.simulator.pace = None
             self._keep(self.steps_done + 1)
 
+    def run_until(self, time: float) -> None:
+        """Execute the file's steps from the start up to a moment; a step is stopped in its middle.
+
+        Args:
+            time: Simulated time from the start [s].
+        """
+        self.reset()
+        self.simulator.stop_sample = round(time / self.timestep) + 1
+        try:
+            self.run_steps(self.document.step_count)
+        finally:
+            self.simulator.stop_sample = None
+        if self.execution.ended_early:
+            self.execution.ended_early = ""
+            self.history[-1] = replace(self.history[-1], is_run=False, ended_early="")
+
     def go_to(self, count: int) -> None:
         """Make the state the one after some steps: forwards by executing, backwards restored."""
         if count < self.steps_done or self.is_by_hand or not self.is_run:

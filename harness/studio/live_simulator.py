@@ -32,10 +32,12 @@ class LiveSimulator(TimedSimulator):
 
     Attributes:
         pace: Called while a step of a program advances the physics; None: as fast as possible.
+        stop_sample: The number of samples at which a motion is stopped; None lets it go on.
     """
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         self.pace: Pace | None = None
+        self.stop_sample: int | None = None
         super().__init__(*arguments, **options)
 
     def idle(self, samples: int) -> None:
@@ -88,14 +90,16 @@ class LiveSimulator(TimedSimulator):
         self, controls: FloatArray, commands: FloatArray, command_velocities: FloatArray
     ) -> None:
         count = len(controls) - 1
-        if self.pace is None:
-            super()._advance(controls, commands, command_velocities)
-            return
-        for begin in range(0, count, CHUNK):
-            end = min(begin + CHUNK, count)
-            super()._advance(
-                controls[begin : end + 1], commands[begin:end], command_velocities[begin:end]
-            )
-            if not self.pace(end - begin):
-                self.command(commands[end - 1])
+        begin = 0
+        while begin < count:
+            left = count if self.stop_sample is None else self.stop_sample - self.sample_count
+            end = min(begin + (count if self.pace is None else CHUNK), count, begin + left)
+            if end > begin:
+                super()._advance(
+                    controls[begin : end + 1], commands[begin:end], command_velocities[begin:end]
+                )
+            goes_on = self.pace is None or self.pace(end - begin)
+            if end == begin or not goes_on:
+                self.command(commands[max(0, end - 1)])
                 raise StepFailed("PREEMPTED", "the motion was stopped by hand")
+            begin = end

@@ -28,7 +28,7 @@ GHOST, REFUSED, PLANNED = (70, 130, 220), (214, 60, 50), (40, 160, 90)
 PLANE_SIZE = 6.0  # [m]
 
 Color = tuple[int, int, int]
-OnDrag = Callable[[int, str, SE3], None]
+OnDrag = Callable[[int, str, SE3, str], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,15 +140,16 @@ class SceneView:
         self._links = {
             name: self._body(f"/robot/{name}", parts) for name, parts in self._shapes.items()
         }
+        self._scale = 0.25 * reach
         self.handle = scene.add_transform_controls(
-            "/tcp", scale=0.25 * reach, depth_test=False, line_width=3.0
+            "/tcp", scale=self._scale, depth_test=False, line_width=3.0
         )
         self.move_handle(tcp_pose)
 
         @self.handle.on_update
         async def _(event: Any) -> None:
             pose = SE3.from_xyz_quat(event.target.position, event.target.wxyz)
-            self._on_drag(event.client_id, event.phase, pose)
+            self._on_drag(event.client_id, event.phase, pose, "")
 
     def show_objects(self, objects: Sequence[WorldObject]) -> None:
         """Draw these objects in place of those shown."""
@@ -211,6 +212,27 @@ class SceneView:
             self._path = self._server.scene.add_line_segments(
                 "/path", segments, PLANNED, thickness=0.006
             )
+
+    def show_object_handle(self, name: str, pose: SE3 | None) -> None:
+        """Put a second handle on an object; None takes it away."""
+        if self._object_handle is not None:
+            self._object_handle.remove()
+            self._object_handle = None
+        if pose is None:
+            return
+        vector = pose.as_vector()
+        self._object_handle = self._server.scene.add_transform_controls(
+            "/object_handle",
+            scale=self._scale,
+            depth_test=False,
+            position=tuple(vector[:3]),
+            wxyz=tuple(vector[3:]),
+        )
+
+        @self._object_handle.on_update
+        async def _(event: Any) -> None:
+            pose = SE3.from_xyz_quat(event.target.position, event.target.wxyz)
+            self._on_drag(event.client_id, event.phase, pose, name)
 
     def move_handle(self, pose: SE3) -> None:
         """Put the handle on a pose T_world_tcp."""

@@ -125,3 +125,23 @@ def test_planning_moves_nothing(cell):
     executed = cell.execution.records[1].trajectory
     assert executed["times"][-1] == pytest.approx(found.duration)
     assert "xyz: [0.2, 0.05, 0.15]" in text
+
+
+def test_a_run_opens_in_the_middle_of_a_step_exactly_as_it_was(cell):
+    cell.run_steps(3)
+    recorded = cell.judged().run.signals
+    middle = len(recorded.times) // 3
+    cell.run_until(recorded.times[middle])
+    assert cell.simulator.sample_count == middle + 1
+    assert np.array_equal(cell.joint_positions(), recorded.joint_positions[middle])
+    assert not cell.is_run
+    cell.execute("gripper: close")  # and goes on by hand from there
+    assert cell.simulator.joint_positions()[-1] != recorded.joint_positions[middle][-1]
+
+
+def test_a_motion_that_is_stopped_by_hand_fails_and_leaves_the_arm_where_it_is(cell):
+    cell.pace = lambda _: cell.simulator.time < 0.3
+    cell.run_steps(3)
+    [record, *_] = cell.execution.records
+    assert (record.status, record.error_code) == ("failed", "PREEMPTED")
+    assert 0.3 <= cell.simulator.time < 0.35

@@ -30,6 +30,8 @@ on("robot", (message) => {
   options($("goal-kind"), robot.states, [["", "the handle"]]);
   options($("verb"), robot.verbs);
   options($("frame"), robot.frames);
+  options($("handle-name"), robot.bodies, [["", "none"]]);
+  $("verbs").replaceChildren(...robot.steps.map((value) => element("option", { value })));
   options($("camera"), robot.cameras);
   $("camera-box").hidden = !robot.cameras.length;
   showGripper();
@@ -105,7 +107,7 @@ on("reach", (message) => {
   reach = message;
   const box = $("reach");
   box.classList.toggle("refused", Boolean(message.refusal));
-  box.textContent = message.refusal || (message.ways.length ? `${message.ways.length} ways to the handle` : "");
+  box.textContent = message.refusal || (message.ways.length ? `${message.ways.length === 1 ? "1 way" : `${message.ways.length} ways`} to the handle` : "");
   $("ways").replaceChildren(...message.ways.map((way, index) => element("button", {
     class: `way${way.refusal ? " refused" : ""}${index === message.best ? " best" : ""}`,
     onclick: async () => { lastWay = index; await act("choose", { way: index }); $("goal-kind").value = ""; } },
@@ -169,9 +171,10 @@ click("goal-here", () => { if (state) { showGoal(state.tcp); setGoal(); } });
 click("goal-set", () => setGoal());
 click("camera-look", async () => {
   const reply = await act("camera", { name: $("camera").value });
-  if (reply.image) $("camera-image").src = `data:image/png;base64,${reply.image}`;
+  if (reply.image) $("camera-image").src = `data:image/jpeg;base64,${reply.image}`;
 });
 $("speed").addEventListener("change", () => act("speed", { value: Number($("speed").value) }));
+$("follow").addEventListener("change", () => act("follow", { on: $("follow").checked }));
 $("share").addEventListener("change", () => act("share", { value: Number($("share").value) }));
 $("verb").addEventListener("change", () => { $("interim-label").hidden = $("verb").value !== "circ"; });
 
@@ -182,7 +185,7 @@ function setGoal() {
 
 const object = () => ({ name: $("object-name").value.trim(), kind: $("object-kind").value, size: numbers($("object-size").value), xyz: numbers($("object-xyz").value) });
 click("object-add", () => act("add_object", object()));
-click("object-move", () => act("move_object", { ...object(), live: true }));
+click("object-handle", () => act("handle", { name: $("handle-name").value }));
 click("object-delete", () => act("delete_object", object()));
 
 click("save", save);
