@@ -18,7 +18,7 @@ from harness.robot.description import RobotDescription
 
 
 class CameraScene:
-    """The robot and the simulated objects of a run, posed as in a recorded sample.
+    """The robot and the simulated objects, posed as in a recorded sample or by the caller.
 
     Attributes:
         picture: The model that renderers draw.
@@ -28,17 +28,20 @@ class CameraScene:
     """
 
     def __init__(
-        self, description: RobotDescription, objects: Sequence[WorldObject], run: Run
+        self,
+        description: RobotDescription,
+        objects: Sequence[WorldObject],
+        cameras: Sequence[Camera],
     ) -> None:
-        self._description, self._run = description, run
+        self._description = description
         self._objects = [obj for obj in objects if obj.in_simulation]
         self.object_names = tuple(obj.name for obj in self._objects)
         self.picture: PictureModel = build_picture_model(
             description,
             self._objects,
             floor_height=floor_height(description, self._objects),
-            width=max(camera.width for camera in run.cameras),
-            height=max(camera.height for camera in run.cameras),
+            width=max(camera.width for camera in cameras),
+            height=max(camera.height for camera in cameras),
         )
         # a third of the time without a graphics card; rays have shadows of their own
         self.picture.model.vis.quality.offsamples = 0
@@ -53,9 +56,9 @@ class CameraScene:
         for name, geoms in self.picture.geoms.items():
             self.geom_labels[geoms] = self.labels[name]
 
-    def pose(self, sample: int) -> dict[str, SE3]:
-        """Pose all bodies as in a sample; returns T_world_body of those present, and of `world`."""
-        poses = scene_poses(self._description, self._objects, self._run, sample)
+    def pose(self, run: Run, sample: int) -> dict[str, SE3]:
+        """Pose all bodies as in a sample; returns T_world_body of those present and of `world`."""
+        poses = scene_poses(self._description, self._objects, run, sample)
         self.picture.pose(poses)
         return poses
 

@@ -61,14 +61,14 @@ def take_pictures(
         return (), {}
     cameras = {camera.name: camera for camera in run.cameras}
     folders = camera_folders(run.cameras)
-    scene = CameraScene(description, objects, run)
+    scene = CameraScene(description, objects, run.cameras)
     renderers: dict[str, RayRenderer] = {}
     captures: list[CaptureRecord] = []
     files: dict[str, bytes] = {}
     for number, look in enumerate(looks):
         activity("taking camera pictures", number, len(looks))
         camera = cameras[look.camera]
-        poses = scene.pose(look.sample)
+        poses = scene.pose(run, look.sample)
         view = scene.view(camera, poses)
         if view is None:
             continue

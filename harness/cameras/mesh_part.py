@@ -28,10 +28,12 @@ class MeshPart:
     rgba: Rgba | None
 
 
-def coarsen(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
-    """Merge vertices that share a cell of the grid and drop triangles that collapse."""
+def coarsen(
+    vertices: FloatArray, faces: IntArray, grid: float = GRID
+) -> tuple[FloatArray, IntArray]:
+    """Merge vertices that share a cell of a grid [m] and drop triangles that collapse."""
     cells, inverse = np.unique(
-        np.round(vertices / GRID).astype(np.int64), axis=0, return_inverse=True
+        np.round(vertices / grid).astype(np.int64), axis=0, return_inverse=True
     )
     inverse = inverse.reshape(-1)
     counts = np.bincount(inverse, minlength=len(cells))[:, None]

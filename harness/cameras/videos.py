@@ -42,7 +42,7 @@ def record_videos(
     """
     if not rates:
         return (), {}, ()
-    scene = CameraScene(description, objects, run)
+    scene = CameraScene(description, objects, run.cameras)
     cameras = {camera.name: camera for camera in run.cameras}
     folders = camera_folders(run.cameras)
     videos: list[VideoRecord] = []
@@ -117,7 +117,7 @@ def _frames(
     for number in range(count):
         activity(f"recording the video of camera {camera.name}", number, count)
         sample = min(int(np.searchsorted(times, number / rate - 1e-9)), len(times) - 1)
-        view = scene.view(camera, scene.pose(sample))
+        view = scene.view(camera, scene.pose(run, sample))
         if view is not None:
             previous = as_delivered(renderer.render(view), camera, run.seed, sample)
         if previous is not None:

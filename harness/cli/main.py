@@ -63,7 +63,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parsed = _parser().parse_args(arguments)
     from harness.cli.output import OutputError, complain
 
-    if parsed.module in ("run", "search"):
+    if parsed.module in ("run", "search", "studio"):
         gc.enable()
     try:
         if not _load_plugins(getattr(parsed, "plugins", ())):
@@ -193,6 +193,7 @@ def _parser() -> argparse.ArgumentParser:
     options.for_explain(command("explain", "print the program that a scenario becomes"))
     options.for_list(command("list", "list what a scenario may name", module="listing"))
     options.for_view(command("view", "open the page of a run"))
+    options.for_studio(command("studio", "open a robot cell in the browser, and make a scenario"))
     options.for_judge(command("judge", "judge a saved run again"))
     options.for_grade(command("grade", "grade a recording of another program by a scenario"))
     options.for_bridge(command("bridge", "let ROS 2 nodes command a scenario's robot"))

@@ -11,6 +11,7 @@ from harness.cli.arguments import (
     names_of,
     object_topic,
     override_argument,
+    port_number,
     radians,
     rate,
     seconds,
@@ -447,6 +448,23 @@ def for_robot(robot: argparse.ArgumentParser) -> None:
                        help="write an SRDF with the pairs that need not be checked")  # fmt: skip
     check.add_argument("--force", action="store_true", help="overwrite that file")
     check.add_argument("--json", action="store_true", help="one JSON document on stdout")
+
+
+def for_studio(studio: argparse.ArgumentParser) -> None:
+    """Of `harness studio`."""
+    add = studio.add_argument
+    add("target", metavar="ROBOT|SCENARIO|RUN", nargs="?", default="open_manipulator_x",
+        help=f"{ROBOT}; a scenario; a run's folder (default: open_manipulator_x)")  # fmt: skip
+    add("--at", metavar="SECONDS", type=seconds, default=None,
+        help="of a run's folder: the time to go on from by hand (default: 0)")  # fmt: skip
+    add("--world", metavar="WORLD", default="", help="a bundled world or its file, for a robot")
+    add("--gripper", metavar="NAME", default="", help="a bundled gripper to be mounted on a robot")
+    add("--port", metavar="N", type=port_number, default=8011,
+        help="the port; 0 for any that is free (default: 8011)")  # fmt: skip
+    add("--host", metavar="ADDRESS", default="",
+        help="listen there, not on this machine alone; the address then has a token")  # fmt: skip
+    add("--no-open", action="store_true", help="print the address, open no browser")
+    _plugin_option(studio)
 
 
 def for_schema(schema: argparse.ArgumentParser) -> None:

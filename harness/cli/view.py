@@ -23,7 +23,7 @@ def _run(arguments: argparse.Namespace) -> int:
     if arguments.no_open:
         return 0
     address = f"{page.resolve().as_uri()}{mark}{place}"
-    if not _has_browser() or not webbrowser.open(address):
+    if not has_browser() or not webbrowser.open(address):
         complain(f"no browser could be opened here; open {address}")
     return 0
 
@@ -48,7 +48,7 @@ def _page(path: Path, *, is_rebuilt: bool) -> Path:
     return page
 
 
-def _has_browser() -> bool:
+def has_browser() -> bool:
     """Whether a browser has a screen to open on; one in the terminal would take it over."""
     screens = ("BROWSER", "DISPLAY", "WAYLAND_DISPLAY", "WSL_DISTRO_NAME")
     return os.name == "nt" or os.uname().sysname == "Darwin" or any(map(os.environ.get, screens))

@@ -105,6 +105,88 @@ class _Runner:
         return None
 
 
+class ProgramExecution:
+    """A program on adapters that stand at its start state; steps are run one after the other.
+
+    Attributes:
+        program: What is executed; one that differs only in steps and expectations may replace it.
+        cell: What the steps work with.
+        records: What became of the steps so far, in the order of execution.
+        ended_early: The failure that ended the execution; empty while there is none.
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        scene: PlanningScene,
+        kinematics: Kinematics,
+        planner: MotionPlanner,
+        simulator: Simulator,
+        on_step: OnStep,
+        *,
+        keep_going: bool = False,
+        external: ExternalControl | None = None,
+    ) -> None:
+        """Put the world's objects into the scene.
+
+        Args:
+            program: What to do.
+            scene: Empty; the world's objects are added here.
+            kinematics: The kinematics of the program's robot.
+            planner: Plans in `scene`.
+            simulator: At the start state, with every object of the program prepared and the world's
+                present.
+            on_step: Called before and after each step.
+            keep_going: Whether a failed step of the file lets the next one begin all the same; a
+                step made of others ends with the first of them that fails.
+            external: Programs to which a step may hand the robot over; None: such a step does
+                nothing.
+        """
+        self.program = program
+        self.ended_early = ""
+        self.cell = Cell(
+            description=program.description,
+            scene=scene,
+            kinematics=kinematics,
+            planner=planner,
+            simulator=simulator,
+            later_objects=program.later_objects,
+            seed=program.seed,
+            cameras=program.cameras,
+            external=external,
+        )
+        for obj in program.world.objects:
+            self.cell.presence[obj.name] = Presence(obj, obj.pose, [[0.0, float("inf")]])
+            self.cell.believe(obj.name, obj.pose)
+            if obj.in_planning:
+                scene.add_object(obj, obj.pose)
+        self._runner = _Runner(self.cell, on_step, keep_going)
+        self.cell.run_steps = self._runner.run
+
+    @property
+    def records(self) -> list[StepRecord]:
+        return self._runner.records
+
+    def run(self, steps: Sequence[ProgramStep]) -> None:
+        """Carry out steps in order; the first unexpected failure ends it, as `ended_early` says."""
+        try:
+            self._runner.run(steps)
+        except _RunEndedError as ended:
+            self.ended_early = str(ended.failure)
+
+    def finish(self) -> Execution:
+        """What the steps so far leave; those that were not run are not reached."""
+        cell = self.cell
+        presences = cell.presence.values()
+        return Execution(
+            steps=_with_unreached(self.program, self.records, cell.simulator),
+            objects=tuple(_object_record(presence, cell.simulator) for presence in presences),
+            attachments=tuple(cell.attachments),
+            beliefs=cell.beliefs,
+            ended_early=self.ended_early,
+        )
+
+
 def execute_program(
     program: Program,
     scene: PlanningScene,
@@ -116,51 +198,19 @@ def execute_program(
     keep_going: bool = False,
     external: ExternalControl | None = None,
 ) -> Execution:
-    """Run a program on adapters that stand at its start state.
-
-    Args:
-        program: What to do.
-        scene: Empty; the world's objects are added here.
-        kinematics: The kinematics of the program's robot.
-        planner: Plans in `scene`.
-        simulator: At the start state, with every object of the program prepared and the world's
-            present.
-        on_step: Called before and after each step.
-        keep_going: Whether a failed step of the file lets the next one begin all the same; a step
-            made of others ends with the first of them that fails.
-        external: Programs to which a step may hand the robot over; None: such a step does nothing.
-    """
-    cell = Cell(
-        description=program.description,
-        scene=scene,
-        kinematics=kinematics,
-        planner=planner,
-        simulator=simulator,
-        later_objects=program.later_objects,
-        seed=program.seed,
-        cameras=program.cameras,
+    """Run a whole program; the arguments are those of `ProgramExecution`."""
+    execution = ProgramExecution(
+        program,
+        scene,
+        kinematics,
+        planner,
+        simulator,
+        on_step,
+        keep_going=keep_going,
         external=external,
     )
-    for obj in program.world.objects:
-        cell.presence[obj.name] = Presence(obj, obj.pose, [[0.0, float("inf")]])
-        cell.believe(obj.name, obj.pose)
-        if obj.in_planning:
-            scene.add_object(obj, obj.pose)
-    runner = _Runner(cell, on_step, keep_going)
-    cell.run_steps = runner.run
-    ended_early = ""
-    try:
-        runner.run(program.steps)
-    except _RunEndedError as ended:
-        ended_early = str(ended.failure)
-    records = _with_unreached(program, runner.records, simulator)
-    return Execution(
-        steps=records,
-        objects=tuple(_object_record(presence, simulator) for presence in cell.presence.values()),
-        attachments=tuple(cell.attachments),
-        beliefs=cell.beliefs,
-        ended_early=ended_early,
-    )
+    execution.run(program.steps)
+    return execution.finish()
 
 
 def _own(failure: StepFailed | _RunEndedError | None) -> StepFailed | None:

@@ -52,7 +52,10 @@ def start_case(request: RunRequest, clock: Clock) -> Start:
 
 
 def start_physics(
-    prepared: Prepared, clock: Clock | None = None, frames: Sequence[str] = ()
+    prepared: Prepared,
+    clock: Clock | None = None,
+    frames: Sequence[str] = (),
+    kind: type[TimedSimulator] | None = None,
 ) -> TimedSimulator:
     """Build the physics and record its start state.
 
@@ -60,6 +63,7 @@ def start_physics(
         prepared: The scenario.
         clock: Takes the wall time of what moves; None where it is not reported.
         frames: Links whose poses are recorded besides the TCP's.
+        kind: The class of the simulator.
 
     Raises:
         SpecError: The physics cannot be built, at the object or the robot that prevents it.
@@ -71,7 +75,7 @@ def start_physics(
         with np.errstate(
             over="ignore", invalid="ignore"
         ):  # a start with infinite forces is refused
-            return TimedSimulator(
+            return (kind or TimedSimulator)(
                 clock or Clock(),
                 program.description,
                 [obj for obj in program.all_objects() if obj.in_simulation],

@@ -57,6 +57,11 @@ class ContactRecord:
         if rows > len(self._end):
             self._end = doubled(self._end, rows)
 
+    def rewind(self, rows: int) -> None:
+        """Forget the contacts of all samples after the first `rows`."""
+        self._resolve(self.count)
+        self.count = self._resolved = int(self._end[rows - 1]) if rows else 0
+
     def keep(self, data: mujoco.MjData, row: int) -> None:
         """Copy the contacts of the current physics state as those of one sample."""
         begin = self.count

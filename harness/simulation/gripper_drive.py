@@ -63,16 +63,16 @@ class GripperDrive:
         self._range = abs(gripper.closed_position - gripper.open_position)
         self._speed = joint_speed(simulator.description, gripper)
         simulator.limit_grip(self._actuator, gripper.grip_effort)
-        self._pending: SetPoints | None = None
+        self.pending: SetPoints | None = None
 
     def start(self, position: float, max_effort: float) -> None:
         """Start moving to a position; the set points join those of the arm's next motion."""
         self._simulator.limit_grip(self._actuator, max_effort)
-        self._pending = self._ramp(position)
+        self.pending = self._ramp(position)
 
     def join(self, whole: SetPoints) -> SetPoints:
         """Merge the set points of a started gripper into a motion; the shorter one is extended."""
-        points, self._pending = self._pending, None
+        points, self.pending = self.pending, None
         if points is None:
             return whole
         missing = max(0, len(points) - len(whole))

@@ -27,6 +27,12 @@ from harness.simulation.recording import Recording, refresh
 from harness.simulation.robot_mjcf import coupling
 from harness.simulation.servo import FeedForward
 from harness.simulation.set_points import SetPoints, sample_trajectory
+from harness.simulation.snapshot import (
+    PhysicsState,
+    SimulatorCommand,
+    load_state,
+    saved_state,
+)
 
 CHECK_EVERY = 100
 """Samples between checks of the path tolerance; the record shows which sample exceeded it."""
@@ -223,6 +229,25 @@ class MujocoSimulator:
     def finish(self) -> Signals:
         """All recorded signals, without clearances."""
         return self._recording.signals(self._objects.recorded_poses())
+
+    def snapshot(self) -> PhysicsState:
+        """Everything that decides how the run goes on from here."""
+        pending = None if self._gripper is None else self._gripper.pending
+        command = SimulatorCommand(self._command.copy(), self._control.copy(), self._grip, pending)
+        history, faults = self._objects.history, self.faults.state()
+        return saved_state(self._model, self._data, command, self.sample_count, history, faults)
+
+    def restore(self, state: PhysicsState) -> None:
+        """Go back to a snapshot of this simulator; later samples are forgotten."""
+        load_state(self._model, self._data, state)
+        command = state.command
+        self._command, self._control = command.positions.copy(), command.control.copy()
+        self._grip = command.grip
+        if self._gripper is not None:
+            self._gripper.pending = command.pending
+        self._objects.history = state.history
+        self.faults.restore(state.faults)
+        self._recording.rewind(state.samples)
 
     def command(self, positions: FloatArray) -> None:
         """Set the servos to hold actuated joints at positions, shape (m,)."""

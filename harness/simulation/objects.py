@@ -36,6 +36,15 @@ class Objects:
             for name, place in physics.objects.items()
         }
 
+    @property
+    def history(self) -> dict[str, list[tuple[int, FloatArray | None]]]:
+        """Since which samples each object stands where it was put; None: it is absent."""
+        return {name: list(entries) for name, entries in self._log.items()}
+
+    @history.setter
+    def history(self, history: dict[str, list[tuple[int, FloatArray | None]]]) -> None:
+        self._log = {name: list(entries) for name, entries in history.items()}
+
     def pose(self, name: str) -> SE3:
         """The current T_world_object."""
         return SE3.from_vector(self._pose(self._physics.objects[name]))

@@ -123,6 +123,19 @@ class Recording:
                 LengthFailure(MOST_BYTES, bytes=size),
             )
 
+    def rewind(self, count: int) -> None:
+        """Forget all samples after the first `count`; the physics stands at the last one kept."""
+        self.count = count
+        self._contacts.rewind(count)
+
+    def replace_last(self, command: FloatArray) -> None:
+        """Make the last sample the current state, after a change that was not recorded."""
+        row = self.count - 1
+        self._contacts.rewind(row)
+        self._qpos[row], self._qvel[row] = self._data.qpos, self._data.qvel
+        self._commands[row], self._command_velocities[row] = command, 0.0
+        self._record_forces_of_last_row()
+
     def _record_forces_of_last_row(self) -> None:
         """Record the forces of the current state without changing the physics state."""
         refresh(self._physics.model, self._data)

@@ -42,12 +42,12 @@ def depth_of(run, index=0):
 def test_a_known_point_is_at_the_predicted_pixel(place, backend):
     camera = eye(horizontal_fov=1.3962634, width=320, height=240)
     run, objects = run_with([camera], [ball("ball", place, 0.012)])
-    scene = CameraScene(robot(), objects, run)
+    scene = CameraScene(robot(), objects, run.cameras)
     try:
         renderer = make_renderer(scene.picture, camera.width, camera.height, backend)
     except RuntimeError as error:
         pytest.skip(str(error))
-    picture = renderer.render(scene.view(camera, scene.pose(0))).astype(int)
+    picture = renderer.render(scene.view(camera, scene.pose(run, 0))).astype(int)
     renderer.close()
     red = (picture[:, :, 0] > 90) & (picture[:, :, 0] > 2 * picture[:, :, 1:].max(axis=2))
     # a ball seen off the axis is an ellipse, its middle a little further out than its centre
@@ -243,12 +243,12 @@ def test_a_marker_is_drawn_so_that_opencv_reads_its_number(backend, dictionary, 
     pose = SE3.from_xyz_rpy((0.03, 0.02, 0.5), (0.3, -0.2, 0.6))
     marker = {"dictionary": dictionary, "id": number, "size": 0.2}
     run, objects = run_with([camera], [card("card", marker, pose)])
-    scene = CameraScene(robot(), objects, run)
+    scene = CameraScene(robot(), objects, run.cameras)
     try:
         renderer = make_renderer(scene.picture, camera.width, camera.height, backend)
     except RuntimeError as error:
         pytest.skip(str(error))
-    picture = renderer.render(scene.view(camera, scene.pose(0)))
+    picture = renderer.render(scene.view(camera, scene.pose(run, 0)))
     renderer.close()
     known = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, dictionary))
     corners, ids, _ = cv2.aruco.ArucoDetector(known, cv2.aruco.DetectorParameters()).detectMarkers(

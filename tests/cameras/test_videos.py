@@ -86,9 +86,9 @@ def test_a_video_shows_what_the_camera_delivered(noise):
     run = replace(run, cameras=(camera,))
     video, files, _ = recorded(run, objects)
     shown = next(decoded_film(files[video.file]))
-    scene = CameraScene(robot(), objects, run)
+    scene = CameraScene(robot(), objects, run.cameras)
     renderer = make_renderer(scene.picture, camera.width, camera.height, "rays")
-    drawn = renderer.render(scene.view(camera, scene.pose(0)))
+    drawn = renderer.render(scene.view(camera, scene.pose(run, 0)))
     renderer.close()
     assert cv2.PSNR(as_delivered(drawn, camera, run.seed, 0), np.ascontiguousarray(shown)) > 33
 

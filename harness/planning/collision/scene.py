@@ -50,6 +50,21 @@ class SceneObject:
 
 
 @dataclass(frozen=True, eq=False)
+class SceneState:
+    """A snapshot of a planning scene.
+
+    Attributes:
+        objects: The objects by name.
+        allowed: Pairs that the scene allows in addition to the robot's.
+        unpadded: Pairs that keep no padding.
+    """
+
+    objects: Mapping[str, SceneObject]
+    allowed: frozenset[tuple[str, str]]
+    unpadded: frozenset[tuple[str, str]]
+
+
+@dataclass(frozen=True, eq=False)
 class Payload:
     """What an attached object adds to the link that carries it; as in SceneObject."""
 
@@ -197,6 +212,16 @@ class CoalScene:
     def set_unpadded(self, pairs: Sequence[tuple[str, str]]) -> None:
         """Apply no padding to these pairs of a link and an object, and to no others."""
         self._unpadded = frozenset(_sorted(*pair) for pair in pairs)
+        self._model = None
+
+    def snapshot(self) -> SceneState:
+        """What is in the scene, and which pairs are allowed besides the robot's."""
+        return SceneState(dict(self._objects), frozenset(self._extra), self._unpadded)
+
+    def restore(self, state: SceneState) -> None:
+        """Go back to a snapshot of this scene."""
+        self._objects = dict(state.objects)
+        self._extra, self._unpadded = set(state.allowed), state.unpadded
         self._model = None
 
     # Questions -----------------------------------------------------------------------------

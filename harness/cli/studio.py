@@ -1,0 +1,133 @@
+"""`harness studio`: a robot cell in the browser, whose actions grow into a scenario."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import threading
+from pathlib import Path
+
+from harness.cli.output import complain, guarded, say
+from harness.suite.discovery import SUFFIX, UsageError
+
+EXTRA = "the studio needs packages that are not installed: pip install 'armharness[studio]'"
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Serve the studio until Ctrl-C."""
+    return guarded(lambda: _run(arguments), ticks=False)
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    try:
+        import django_static_ace_builds as _ace  # noqa: F401 - only whether it is there
+        import viser as _viser  # noqa: F401
+    except ImportError as error:
+        raise UsageError(f"{EXTRA} ({error})") from error
+    from harness.studio.files import StudioFiles
+    from harness.studio.guard import LOOPBACK, Guard
+    from harness.studio.server import page_assets, start_server
+    from harness.studio.studio import Studio
+
+    path, text, time = _start(arguments)
+    files = StudioFiles(Path.cwd(), path)
+    restored = files.restored()
+    is_restored = restored is not None and restored != text
+    notice = ""
+    if is_restored:
+        notice = (
+            f"This is unsaved work that was found in {files.unsaved.name}."
+            " Save keeps it; delete that file to begin again."
+        )
+    studio = Studio.opened(files, text, restored if is_restored else None, notice)
+    if time is not None:
+        say(f"going on to t={time:g} s, as the run did")
+        studio.cell.run_until(time)
+    host = arguments.host or LOOPBACK[0]
+    is_open = host not in ("127.0.0.1", "localhost", "::1")
+    guard = Guard.of(page_assets(), is_open=is_open)
+    server = start_server(host, arguments.port, guard, studio.session.handle)
+    studio.open(server)
+    shown = f"[{host}]" if ":" in host else host
+    address = f"http://{shown}:{server.get_port()}/"
+    say(f"{address}?token={guard.token}" if guard.token else address)
+    if is_open:
+        complain("harness: whoever has this address can move the robot and write its file")
+    if not arguments.no_open:
+        _open_browser(address)
+    try:
+        _wait()
+    finally:
+        studio.close()
+    return 0
+
+
+def _wait() -> None:
+    """Wait for Ctrl-C or SIGTERM, which end the session and are no failure."""
+    over = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: over.set())
+    over.wait()
+
+
+def _open_browser(address: str) -> None:
+    import webbrowser
+
+    from harness.cli.view import has_browser
+
+    if not has_browser() or not webbrowser.open(address):
+        complain(f"no browser could be opened here; open {address}")
+
+
+def _start(arguments: argparse.Namespace) -> tuple[Path, str, float | None]:
+    """The file that the studio saves to, the text with which it begins, and the time to go to."""
+    from harness.recording.store import RESOLVED, RUN
+
+    word: str = arguments.target
+    if (Path(word) / RUN).is_file():
+        text = (Path(word) / RESOLVED).read_text(encoding="utf-8")
+        return Path(word) / f"continued{SUFFIX}", text, arguments.at or 0.0
+    if arguments.at is not None:
+        raise UsageError(f"--at is for the folder of a run, which '{word}' is not")
+    return (*_text(word, arguments), None)
+
+
+def _text(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
+    if word.endswith((".yaml", ".yml")) or Path(word).is_dir():
+        return _scenario(word, arguments)
+    from harness.studio.document import new_text
+
+    robot = _robot_keys(word, arguments.gripper)
+    stem = Path(word).name.partition(".")[0] or "robot"
+    path = Path(f"{stem}_by_hand{SUFFIX}")
+    if path.exists():
+        return path, path.read_text(encoding="utf-8")
+    return path, new_text(f"{stem} by hand", robot, arguments.world or "empty")
+
+
+def _robot_keys(word: str, gripper: str) -> dict[str, str]:
+    from harness.robot.load import robot_names
+    from harness.robot_tools.robot_source import RobotSource
+
+    source = RobotSource(word)
+    if source.kind == "model" and word not in robot_names() and not Path(word).exists():
+        from harness.language.files.mistakes import did_you_mean
+
+        hint = did_you_mean(word, robot_names(), "robots")
+        raise UsageError(f"there is no robot and no scenario '{word}'; {hint}")
+    keys = {source.kind: word}
+    return {**keys, "gripper": gripper} if gripper else keys
+
+
+def _scenario(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
+    from harness.language.files.yaml_file import read_text
+    from harness.suite.discovery import discover
+
+    if arguments.gripper or arguments.world:
+        raise UsageError("--gripper and --world are for a robot; a scenario has its own")
+    [file, *more] = discover([word])
+    if more:
+        raise UsageError(f"'{word}' has several scenarios; the studio opens one of them")
+    text = read_text(file)
+    is_inside = file.resolve().is_relative_to(Path.cwd())
+    return (file if is_inside else Path(file.name)), text

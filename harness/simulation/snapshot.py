@@ -1,0 +1,101 @@
+"""Saves the state of a running simulation, and restores it to the bit."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.simulation.recording import refresh
+from harness.simulation.set_points import SetPoints
+
+STATE = mujoco.mjtState.mjSTATE_INTEGRATION
+"""All that MuJoCo integrates, and the warm start, without which a step differs in its last bits."""
+
+CHANGED_IN_PLACE = (
+    "geom_contype",
+    "geom_conaffinity",
+    "geom_friction",
+    "geom_priority",
+    "body_gravcomp",
+    "body_pos",
+    "body_quat",
+    "eq_obj1id",
+    "eq_data",
+    "actuator_forcerange",
+    "pair_friction",
+    "jnt_limited",
+    "jnt_range",
+    "jnt_solref",
+    "jnt_solimp",
+)
+"""Arrays of the model that objects, welds, grip limits and faults write to during a run."""
+
+History = Mapping[str, list[tuple[int, FloatArray | None]]]
+
+
+@dataclass(frozen=True, eq=False)
+class SimulatorCommand:
+    """What is commanded to the robot.
+
+    Attributes:
+        positions: Set points of the actuated joints, shape (m,).
+        control: Inputs of the servos, shape (m,).
+        grip: The actuator and the effort limit of the gripper.
+        pending: Set points of a gripper that sets out with the next motion.
+    """
+
+    positions: FloatArray
+    control: FloatArray
+    grip: tuple[int, float] | None
+    pending: SetPoints | None
+
+
+@dataclass(frozen=True, eq=False)
+class PhysicsState:
+    """A snapshot of a simulator.
+
+    Attributes:
+        integration: MuJoCo's integration state.
+        model: Arrays of the model that change during a run, by name.
+        command: What is commanded.
+        samples: The number of samples recorded so far.
+        history: Since when each object stands where it was put.
+        faults: The active faults.
+    """
+
+    integration: FloatArray
+    model: Mapping[str, Any]
+    command: SimulatorCommand
+    samples: int
+    history: History
+    faults: Mapping[str, Any]
+
+
+def saved_state(
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    command: SimulatorCommand,
+    samples: int,
+    history: History,
+    faults: Mapping[str, Any],
+) -> PhysicsState:
+    """The snapshot of a model, its data, and what the simulator keeps besides."""
+    integration = np.empty(mujoco.mj_stateSize(model, STATE))
+    mujoco.mj_getState(model, data, integration, STATE)
+    arrays = {name: getattr(model, name).copy() for name in CHANGED_IN_PLACE}
+    return PhysicsState(integration, arrays, command, samples, history, faults)
+
+
+def load_state(model: mujoco.MjModel, data: mujoco.MjData, state: PhysicsState) -> None:
+    """Set model and data to a snapshot, and update poses, contacts and forces."""
+    for name, values in state.model.items():
+        getattr(model, name)[...] = values
+    mujoco.mj_setState(model, data, state.integration, STATE)
+    refresh(model, data)

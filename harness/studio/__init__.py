@@ -1,0 +1,1 @@
+"""The studio: a robot cell in a browser, whose actions grow into a scenario."""

@@ -1,0 +1,175 @@
+"""Goals and plans: the handles, the ways to a pose, motions that are shown before they are made."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import viser
+
+from harness.core.printable import printable
+from harness.core.spatial import SE3
+from harness.studio.files import StudioFiles
+from harness.studio.live_studio import LiveStudio
+from harness.studio.messages import Message, failure_message
+from harness.studio.previews import preview
+from harness.studio.reach import Reach, ReachStudy
+from harness.studio.scene_view import GHOST, PLANNED, REFUSED
+from harness.studio.session import RefusedError
+from harness.studio.step_texts import MOTIONS, joint_keys, pose_keys, step_text
+
+MOST_GHOSTS = 4
+"""Ways that are drawn at once, nearest first."""
+
+
+class GoalActions(LiveStudio):
+    """What handles, goals by number and the buttons `Plan` do."""
+
+    def __init__(self, files: StudioFiles, text: str, notice: str = "") -> None:
+        super().__init__(files, text, notice)
+        self.follows = False
+        self._drag: tuple[str, SE3, str] | None = None
+        self._goal = self.cell.tcp_pose()
+
+    def on_drag(self, client: int, phase: str, pose: SE3, name: str) -> None:
+        """Keep the newest pose for the cell's thread; poses of spectators are put back."""
+        if not self._controls(client):
+            if self.view is not None and not name:
+                self.view.move_handle(self._goal if self.reach else self.cell.tcp_pose())
+            return
+        is_waiting = self._drag is not None
+        self._drag = (phase, pose, name)
+        if not is_waiting or phase == "end":
+            self.session.post(self._answer_drag)
+
+    def _controls(self, client: int) -> bool:
+        """Whether the page that shows a scene is the one that controls."""
+        server: viser.ViserServer | None = self.server
+        assert server is not None
+        live = server._websock_server._live_connections  # noqa: SLF001 - viser names no page
+        connection = next((each for key, each in live.items() if int(key) == client), None)
+        path = "" if connection is None or connection.request is None else connection.request.path
+        return path.rpartition("/")[2] == self.session.controller
+
+    def _answer_drag(self) -> None:
+        drag, self._drag = self._drag, None
+        if drag is None or self.busy:
+            return
+        phase, pose, name = drag
+        if not name:
+            self.answer_pose(pose, explain=phase == "end")
+        elif phase == "end":
+            self.put_object(name, pose)
+
+    def put_object(self, name: str, pose: SE3) -> None:
+        """An object's handle was let go."""
+        raise NotImplementedError
+
+    def do_follow(self, message: Message) -> Message:
+        """Let the arm follow the handle, or not."""
+        self.follows = bool(message["on"])
+        return {}
+
+    def answer_pose(self, pose: SE3, *, explain: bool = True) -> Reach:
+        """Find the ways to a TCP pose, and show them as ghosts."""
+        if self.study is None:
+            self.study = ReachStudy(self.cell, self.cell.description.default_group)
+        near = None if self.reach is None or self.reach.best is None else self.reach.best
+        reach = self.study.answer(pose, None if near is None else near.positions, explain=explain)
+        self.reach, self.chosen, self._goal = reach, None, pose
+        best = reach.best
+        if self.follows and best is not None:
+            self.target = best.positions
+        if self.view is not None:
+            shown = [
+                (way.positions, REFUSED if way.refusal else GHOST)
+                for way in reach.ways[:MOST_GHOSTS]
+            ]
+            self.view.show_ghosts(shown)
+            self.view.show_path(None)
+        self.session.broadcast(
+            {
+                "type": "reach",
+                "pose": [round(float(value), 5) for value in pose.as_vector()],
+                "refusal": printable(reach.refusal),
+                "ways": [
+                    {"name": way.name or f"way {number}", "refusal": printable(way.refusal)}
+                    for number, way in enumerate(reach.ways, 1)
+                ],
+                "best": -1 if best is None else reach.ways.index(best),
+            }
+        )
+        return reach
+
+    def do_goal(self, message: Message) -> Message:
+        """Put the handle on a pose that is given by numbers, in a frame."""
+        xyz = np.array([float(value) for value in message["xyz"]])
+        turn = np.array([float(value) for value in message["rpy"]])
+        if message.get("unit") == "deg":
+            turn = np.radians(turn)
+        if not (np.isfinite(xyz).all() and np.isfinite(turn).all()) or len(xyz) + len(turn) != 6:
+            raise RefusedError("a goal has three coordinates and three angles")
+        pose = self.cell.cell.frame(str(message.get("frame", "world"))) @ SE3.from_xyz_rpy(
+            xyz, turn
+        )
+        if self.view is not None:
+            self.view.move_handle(pose)
+        reach = self.answer_pose(pose)
+        return {"refusal": printable(reach.refusal), "ways": len(reach.ways)}
+
+    def do_choose(self, message: Message) -> Message:
+        """Choose one of the ways to the pose."""
+        if self.reach is None:
+            raise RefusedError("drag the handle first")
+        way = self.reach.ways[int(message["way"])]
+        self.chosen = way.positions
+        if self.view is not None:
+            self.view.show_ghosts([(way.positions, REFUSED if way.refusal else GHOST)])
+        return {"refusal": printable(way.refusal)}
+
+    # -- plans --------------------------------------------------------------------------------
+
+    def do_plan(self, message: Message) -> Message:
+        """Plan a motion without moving; its path and its end are shown as a ghost."""
+        text = self.motion_text(message)
+        found = preview(self.cell, text)
+        if found.record is not None:
+            return {"step": text, **failure_message(found.record)}
+        if self.view is not None and found.positions is not None:
+            self.view.show_ghosts([(found.positions[-1], PLANNED)])
+            self.view.show_path(found.tcp_path)
+        return {
+            "step": text,
+            "duration": round(found.duration, 3),
+            "length": round(found.length, 4),
+            "planner": found.planner,
+        }
+
+    def motion_text(self, message: Message) -> str:
+        """The step that a page's goal is."""
+        verb = str(message.get("verb", "move_to"))
+        if verb not in MOTIONS:
+            raise RefusedError(f"a motion is one of {', '.join(MOTIONS)}")
+        description = self.cell.description
+        group = description.default_group
+        keys: Any
+        if message.get("state"):
+            keys = {"named_target": str(message["state"])}
+        elif message.get("here"):
+            keys = joint_keys(description, group, self.cell.cell.planning_start())
+        elif self.chosen is not None:
+            keys = joint_keys(description, group, self.chosen)
+        elif self.reach is not None:
+            frame = str(message.get("frame", "world"))
+            pose = self.cell.cell.frame(frame).inverse() @ self._goal
+            keys = pose_keys(description, group, pose, frame)
+        else:
+            raise RefusedError("there is no goal: drag the handle, or choose a named state")
+        if verb == "circ":
+            keys["interim"] = {"xyz": [round(float(value), 5) for value in message["interim"]]}
+        if message.get("planner"):
+            planning = {"planner_id": str(message["planner"])}
+            return f"{step_text(verb, keys)}\n{step_text('planning', planning)}"
+        if set(keys) == {"named_target"}:
+            return step_text(verb, keys["named_target"])
+        return step_text(verb, keys)

@@ -1,0 +1,470 @@
+"""A live robot cell: the scenario's program on the engine, planner and physics of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from harness.assertions.judge import judge
+from harness.cell.cell import Belief, Cell, Presence
+from harness.cell.program import ProgramStep
+from harness.core.activity import unobserved
+from harness.core.errors import StepFailed
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.engine.execute import OnStep, ProgramExecution
+from harness.planning.collision.scene import CoalScene, SceneState
+from harness.ports import MotionPlan, Touch
+from harness.recording.digest import digest
+from harness.recording.run import AttachmentRecord, Run, StepRecord, Verdict
+from harness.robot.description import RobotDescription
+from harness.session.observe import observed_run, with_believed_poses
+from harness.session.pictures import Pictures
+from harness.session.prepare import Prepared, prepare
+from harness.session.record import executed_run
+from harness.session.run_request import RunRequest
+from harness.session.start import start_physics
+from harness.simulation.snapshot import PhysicsState
+from harness.studio.document import Document
+from harness.studio.live_simulator import LiveSimulator, Pace
+
+
+def _no_step(*_: object) -> None:
+    return
+
+
+@dataclass(frozen=True, eq=False)
+class CellState:
+    """A snapshot of the cell after some steps of the file.
+
+    Attributes:
+        steps: The number of steps of the file that were executed.
+        is_run: Whether a run of the file would be in the same state.
+    """
+
+    steps: int
+    is_run: bool
+    physics: PhysicsState
+    scene: SceneState
+    presence: Mapping[str, Presence]
+    attachments: tuple[AttachmentRecord, ...]
+    held: tuple[str, ...]
+    beliefs: Mapping[str, tuple[Belief, ...]]
+    records: tuple[StepRecord, ...]
+    ended_early: str
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """The verdicts on the steps executed so far.
+
+    Attributes:
+        digest: The digest of the run; empty while steps remain, or after motions by hand.
+        outcome: `passed` or `failed`.
+    """
+
+    run: Run
+    verdicts: tuple[Verdict, ...]
+    outcome: str
+    digest: str
+
+
+class LiveCell:
+    """The cell of a scenario, in any state between its start and its end, or moved by hand.
+
+    Not thread-safe: one thread does everything.
+
+    Attributes:
+        path: The scenario's file, whether it exists or not; relative paths begin in its folder.
+        document: The text that the cell was compiled from.
+        history: Snapshots: at the start, then after every step that was executed.
+        is_by_hand: Whether something was moved by hand since the last snapshot.
+    """
+
+    def __init__(self, path: Path, text: str, on_step: OnStep = _no_step) -> None:
+        """Build the cell at the scenario's start.
+
+        Raises:
+            SpecError: With every problem of the text.
+        """
+        self.path = path
+        self.on_step = on_step
+        self.pace: Pace | None = None
+        self.history: list[CellState] = []
+        self.is_by_hand = False
+        self._build(Document(text))
+
+    # -- the scenario -------------------------------------------------------------------------
+
+    def load(self, text: str) -> bool:
+        """Take a changed text; the state is kept as far as its steps are still those executed.
+
+        Returns:
+            Whether the cell was built again, at its start.
+
+        Raises:
+            SpecError: With every problem of the text; the cell is as it was.
+        """
+        document = Document(text)
+        prepared = self._prepared(document)
+        is_same = document.base_key() == self.document.base_key()
+        if not is_same or set(prepared.observed_links) - set(self.prepared.observed_links):
+            self._build(document, prepared)
+            return True
+        executed = self._keys[: self.steps_done]
+        keys = document.step_keys()
+        equal = 0
+        while equal < min(len(keys), len(executed)) and keys[equal] == executed[equal]:
+            equal += 1
+        self.document, self._keys = document, keys
+        observed = self.prepared.observed_links
+        # the planner, the scene and the kinematics go on; they know nothing of the steps
+        self.prepared = replace(
+            prepared,
+            scene=self.prepared.scene,
+            kinematics=self.prepared.kinematics,
+            planner=self.prepared.planner,
+        )
+        self._has_same_links = prepared.observed_links == observed
+        self.execution.program = prepared.program
+        self.cell.later_objects = prepared.program.later_objects
+        self.cell.seed = prepared.program.seed
+        if equal < self.steps_done:
+            self._forget_steps(equal)
+        return False
+
+    @property
+    def description(self) -> RobotDescription:
+        """The robot."""
+        return self.prepared.program.description
+
+    @property
+    def cell(self) -> Cell:
+        """What steps work with."""
+        return self.execution.cell
+
+    @property
+    def scene(self) -> CoalScene:
+        """The planning scene."""
+        scene = self.prepared.scene
+        assert isinstance(scene, CoalScene)
+        return scene
+
+    @property
+    def steps_done(self) -> int:
+        """The number of steps of the file that were executed."""
+        return self.history[-1].steps
+
+    @property
+    def is_run(self) -> bool:
+        """Whether a run of the file would have come to the same state."""
+        return self.history[-1].is_run and not self.is_by_hand
+
+    @property
+    def overlaps_at_start(self) -> tuple[Touch, ...]:
+        """Bodies that overlap at the start, deepest first."""
+        return self.simulator.overlaps_at_start
+
+    # -- executing steps ----------------------------------------------------------------------
+
+    def run_steps(self, end: int) -> None:
+        """Execute the steps of the file up to a number of them, or to the first that fails.
+
+        After motions by hand the steps go on from where the cell stands; otherwise every sample is
+        the one of a run.
+        """
+        steps = self.execution.program.steps
+        if not self.document.step_count:
+            return
+        while self.steps_done < min(end, len(steps)) and not self.execution.ended_early:
+            self._continue_record()
+            self.simulator.pace = self.pace
+            try:
+                self.execution.run([steps[self.steps_done]])
+            finally:
+                self.simulator.pace = None
+            self._keep(self.steps_done + 1)
+
+    def run_until(self, time: float) -> None:
+        """Execute the file's steps from the start up to a moment; a step is stopped in its middle.
+
+        Args:
+            time: Simulated time from the start [s].
+        """
+        self.reset()
+        self.simulator.stop_sample = round(time / self.timestep) + 1
+        try:
+            self.run_steps(self.document.step_count)
+        finally:
+            self.simulator.stop_sample = None
+        if self.execution.ended_early:
+            self.execution.ended_early = ""
+            self.history[-1] = replace(self.history[-1], is_run=False, ended_early="")
+
+    def go_to(self, count: int) -> None:
+        """Make the state the one after some steps: forwards by executing, backwards restored."""
+        if count < self.steps_done or self.is_by_hand or not self.is_run:
+            self.restore(min(count, self._last_of_run()))
+        self.run_steps(count)
+
+    def step_back(self) -> None:
+        """Undo motions by hand since the last step, else the last step; exact to the bit."""
+        self.restore(self.steps_done if self.is_by_hand else max(0, self.steps_done - 1))
+
+    def restore(self, count: int) -> None:
+        """Restore the state after some executed steps; later ones are forgotten."""
+        del self.history[count + 1 :]
+        self._restore(self.history[-1])
+
+    def reset(self) -> None:
+        """Go back to the start."""
+        self.restore(0)
+
+    def execute(self, text: str) -> StepRecord:
+        """Execute one step by hand, given as in a file; the scenario does not get it.
+
+        Raises:
+            SpecError: The step has a mistake.
+        """
+        step = self._step_by_hand(text)
+        self._continue_record()
+        self.is_by_hand = True
+        self.simulator.pace = self.pace
+        try:
+            return self._run_aside(step)
+        finally:
+            self.simulator.pace = None
+
+    def planned_only(self, text: str, keep: Callable[[MotionPlan], None]) -> StepRecord:
+        """Execute a step up to its first motion, which `keep` takes, and which it ends by raising.
+
+        Raises:
+            SpecError: The step has a mistake.
+        """
+        step = self._step_by_hand(text)
+        self._continue_record()
+        before, on_step = self._saved(self.steps_done), self.on_step
+        was_by_hand = self.is_by_hand
+        vars(self.cell)["carry_out"] = keep
+        self.on_step = _no_step
+        try:
+            return self._run_aside(step)
+        finally:
+            del vars(self.cell)["carry_out"]
+            self.on_step = on_step
+            self._restore(before)
+            self.is_by_hand = was_by_hand
+
+    def _step_by_hand(self, text: str) -> ProgramStep:
+        """A step as the scenario's next one would be, seed included."""
+        document = self.document.with_step(text, self.steps_done)
+        prepared = self._prepared(document)
+        if document.base_key() != self.document.base_key():
+            raise StepFailed("INVALID_OBJECT_NAME", "objects are added to the scenario's `objects`")
+        return prepared.program.steps[self.steps_done]
+
+    def _run_aside(self, step: ProgramStep) -> StepRecord:
+        """Run a step whose record is not the scenario's."""
+        first, ended = len(self.execution.records), self.execution.ended_early
+        try:
+            self.execution.run([step])
+        finally:
+            self.execution.ended_early = ended
+        record = self.execution.records[first]
+        del self.execution.records[first:]
+        return record
+
+    def record(self, text: str) -> tuple[str, StepRecord]:
+        """Put a step into the scenario after those executed, and execute it.
+
+        Returns:
+            The scenario's text, which has the step only where it succeeded; and what became of it.
+        """
+        before = self.document
+        was_by_hand = self.is_by_hand
+        document = before.with_step(text, self.steps_done)
+        self.load(document.text)
+        if was_by_hand:
+            self.history[-1] = replace(self.history[-1], is_run=False)
+        self.run_steps(self.steps_done + 1)
+        record = next(
+            r for r in self.execution.records if r.path == f"steps[{self.steps_done - 1}]"
+        )
+        if record.status == "failed":
+            self.restore(self.steps_done - 1)
+            self.load(before.text)
+            return before.text, record
+        return document.text, record
+
+    # -- the live physics ---------------------------------------------------------------------
+
+    def idle(self, seconds: float) -> None:
+        """Let physics go on without a record."""
+        self._is_idle = True
+        self.simulator.idle(max(1, round(seconds / self.timestep)))
+
+    def jog(self, target: FloatArray, share: float, seconds: float) -> None:
+        """Move set points towards a target for some simulated time.
+
+        Args:
+            target: Joint positions in description order.
+            share: Share of the velocity limits, (0, 1].
+            seconds: The simulated time.
+        """
+        actuated = self.simulator.physics.actuated
+        limits = np.array([joint.velocity for joint in self.description.movable_joints])
+        self.is_by_hand = True
+        self.simulator.jog(target[actuated], share * seconds * limits[actuated])
+        self.idle(seconds)
+
+    def move_object(self, name: str, pose: SE3) -> None:
+        """Put an object somewhere else, at rest."""
+        self.is_by_hand = True
+        self.cell.move_in_scene(name, pose)
+        self.simulator.idle(1)
+
+    @property
+    def timestep(self) -> float:
+        """The physics step [s]."""
+        return self.prepared.program.world.timestep
+
+    def joint_positions(self) -> FloatArray:
+        """Measured joint positions, description order."""
+        return self.simulator.joint_positions()
+
+    def tcp_pose(self) -> SE3:
+        """T_world_tcp of the measured positions."""
+        return self.prepared.kinematics.link_pose(self.joint_positions(), self.description.tcp_link)
+
+    def object_poses(self) -> dict[str, SE3]:
+        """T_world_object of every object that is there."""
+        positions = self.joint_positions()
+        poses: dict[str, SE3] = {}
+        for name, presence in self.cell.presence.items():
+            if not presence.is_there:
+                continue
+            if presence.obj.in_simulation:
+                poses[name] = self.simulator.object_pose(name)
+            elif name in self.scene.object_names():
+                poses[name] = self.scene.object_pose(name, positions)
+        return poses
+
+    def nearest_pair(self) -> Touch | None:
+        """The pair of bodies with the smallest clearance now, by the planner's scene."""
+        self.cell.sync_scene()
+        found = self.scene.distances(self.joint_positions())
+        return found[0][0] if found else None
+
+    # -- verdicts -----------------------------------------------------------------------------
+
+    def judged(self) -> Judged:
+        """Verdicts on the samples so far; the digest once a run would be at its end.
+
+        They are what a run measures and judges: the same functions, on the same samples.
+        """
+        return self._judged(self.prepared)
+
+    def judged_as(self, document: Document) -> Judged:
+        """Verdicts on the samples so far, as a text with other expectations has them."""
+        return self._judged(
+            replace(self.prepared, expectations=self._prepared(document).expectations)
+        )
+
+    def _judged(self, prepared: Prepared) -> Judged:
+        request = RunRequest(self.path, text=self.document.text)
+        execution = self.execution.finish()
+        signals = with_believed_poses(prepared, execution, self.simulator.finish())
+        run = executed_run(request, prepared, execution, signals, self.overlaps_at_start)
+        with Pictures(request, prepared, run) as pictures:
+            run = pictures.captured(observed_run(prepared, run), unobserved)
+        verdicts = judge(run, prepared.expectations)
+        is_over = self.steps_done >= self.document.step_count or bool(execution.ended_early)
+        is_good = not run.ended_early and all(each.status == "passed" for each in verdicts)
+        is_whole = is_over and self.is_run and self._has_same_links
+        return Judged(
+            run,
+            verdicts,
+            "passed" if is_good else "failed",
+            digest(run, verdicts) if is_whole else "",
+        )
+
+    # -- inside -------------------------------------------------------------------------------
+
+    def _prepared(self, document: Document) -> Prepared:
+        return prepare(self.path, text=document.compiled_text())
+
+    def _build(self, document: Document, prepared: Prepared | None = None) -> None:
+        prepared = prepared or self._prepared(document)
+        simulator = start_physics(prepared, frames=prepared.observed_links, kind=LiveSimulator)
+        assert isinstance(simulator, LiveSimulator)
+        self.document, self.prepared, self.simulator = document, prepared, simulator
+        self._keys = document.step_keys()
+        self._has_same_links = True
+        self.execution = ProgramExecution(
+            prepared.program,
+            prepared.scene,
+            prepared.kinematics,
+            prepared.planner,
+            simulator,
+            lambda *event: self.on_step(*event),
+        )
+        self.history = []
+        self._keep(0)
+
+    def _continue_record(self) -> None:
+        """Make the record end in the current state, or the state the one where it ends."""
+        if self.is_by_hand:
+            self.simulator.resume_record()
+            return
+        if self._is_idle:
+            self._restore(self.history[-1])
+
+    def _keep(self, steps: int) -> None:
+        """Keep a snapshot after a step."""
+        self.history.append(self._saved(steps))
+        self.is_by_hand = self._is_idle = False
+
+    def _saved(self, steps: int) -> CellState:
+        cell = self.cell
+        return CellState(
+            steps,
+            not self.history or self.is_run,
+            self.simulator.snapshot(),
+            self.scene.snapshot(),
+            _copied(cell.presence),
+            tuple(cell.attachments),
+            tuple(cell.held),
+            {name: tuple(beliefs) for name, beliefs in cell.beliefs.items()},
+            tuple(self.execution.records),
+            self.execution.ended_early,
+        )
+
+    def _restore(self, state: CellState) -> None:
+        cell = self.cell
+        self.simulator.restore(state.physics)
+        self.scene.restore(state.scene)
+        cell.presence = _copied(state.presence)
+        cell.attachments[:] = state.attachments
+        cell.held[:] = state.held
+        cell.beliefs = {name: list(beliefs) for name, beliefs in state.beliefs.items()}
+        self.execution.records[:] = state.records
+        self.execution.ended_early = state.ended_early
+        self.is_by_hand = self._is_idle = False
+
+    def _forget_steps(self, count: int) -> None:
+        """Go back to the last state that the changed text leaves as it was."""
+        self.restore(count)
+
+    def _last_of_run(self) -> int:
+        """The last executed step after which a run would be in the same state."""
+        return max(state.steps for state in self.history if state.is_run)
+
+
+def _copied(presence: Mapping[str, Presence]) -> dict[str, Presence]:
+    return {
+        name: replace(each, intervals=[list(interval) for interval in each.intervals])
+        for name, each in presence.items()
+    }

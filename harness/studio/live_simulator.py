@@ -1,0 +1,105 @@
+"""The physics of a run, paced by the wall clock, with motions that no file commands."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from harness.core.errors import StepFailed
+from harness.core.types import FloatArray
+from harness.ports import Touch
+from harness.session.timed_simulator import TimedSimulator
+from harness.simulation.objects import overlaps
+from harness.simulation.recording import refresh
+
+CHUNK = 16
+"""Samples between two calls of the pace; the results do not depend on it."""
+
+Pace = Callable[[int], bool]
+"""Called after some samples; waits as long as they last, and says whether to go on."""
+
+
+class LiveSimulator(TimedSimulator):
+    """The simulator of a run; its samples are the same, however fast they are shown.
+
+    Between steps of a program the physics may also go on without a record, while the set points of
+    joints are moved by hand.
+
+    Attributes:
+        pace: Called while a step of a program advances the physics; None: as fast as possible.
+        stop_sample: The number of samples at which a motion is stopped; None lets it go on.
+    """
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        self.pace: Pace | None = None
+        self.stop_sample: int | None = None
+        super().__init__(*arguments, **options)
+
+    def idle(self, samples: int) -> None:
+        """Step without a record; set points stay where they are."""
+        self._data.ctrl[:] = self._control
+        mujoco.mj_step(self._model, self._data, nstep=samples)
+        refresh(self._model, self._data)
+
+    def resume_record(self) -> None:
+        """Let the record go on from the current state, after motions without a record."""
+        self._recording.replace_last(self._command)
+
+    @property
+    def physics_time(self) -> float:
+        """Simulation time, that without a record included [s]."""
+        return float(self._data.time)
+
+    def set_points(self) -> FloatArray:
+        """Set points of the actuated joints, shape (m,)."""
+        return self._command.copy()
+
+    def jog(self, target: FloatArray, most: FloatArray) -> None:
+        """Move the set points of actuated joints towards a target.
+
+        Args:
+            target: Where they are meant to be, shape (m,).
+            most: Farthest that each may move now, shape (m,).
+        """
+        self.command(self._command + np.clip(target - self._command, -most, most))
+
+    def contact_forces(self) -> dict[tuple[str, str], float]:
+        """Normal forces of pairs of bodies in contact now [N], without supports at rest."""
+        names = self.physics.body_names
+        found: dict[tuple[str, str], float] = {}
+        force = np.zeros(6)
+        for index in range(self._data.ncon):
+            mujoco.mj_contactForce(self._model, self._data, index, force)
+            bodies = self._model.geom_bodyid[self._data.contact.geom[index]]
+            first, second = sorted(names[int(body)] for body in bodies)
+            if force[0] > 0:
+                found[first, second] = found.get((first, second), 0.0) + float(force[0])
+        return found
+
+    def current_overlaps(self) -> tuple[Touch, ...]:
+        """Pairs of an object and another body that overlap now, deepest first."""
+        refresh(self._model, self._data)
+        return overlaps(self.physics, self._data)
+
+    def _advance(
+        self, controls: FloatArray, commands: FloatArray, command_velocities: FloatArray
+    ) -> None:
+        count = len(controls) - 1
+        begin = 0
+        while begin < count:
+            left = count if self.stop_sample is None else self.stop_sample - self.sample_count
+            end = min(begin + (count if self.pace is None else CHUNK), count, begin + left)
+            if end > begin:
+                super()._advance(
+                    controls[begin : end + 1], commands[begin:end], command_velocities[begin:end]
+                )
+            goes_on = self.pace is None or self.pace(end - begin)
+            if end == begin or not goes_on:
+                self.command(commands[max(0, end - 1)])
+                raise StepFailed("PREEMPTED", "the motion was stopped by hand")
+            begin = end

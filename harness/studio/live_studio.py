@@ -1,0 +1,293 @@
+"""The live part of the studio: its thread, its physics, and what every page is shown."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import viser
+
+from harness.core.errors import Problem
+from harness.core.printable import printable
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.ports import Touch
+from harness.recording.run import StepRecord
+from harness.studio.files import StudioFiles
+from harness.studio.live_cell import Judged, LiveCell
+from harness.studio.messages import (
+    Message,
+    cell_message,
+    problem_message,
+    reach_of,
+    robot_message,
+    verdicts_message,
+)
+from harness.studio.reach import Reach, ReachStudy
+from harness.studio.scene_view import SceneView
+from harness.studio.session import FRAME, RefusedError, Session
+
+SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 0.0)
+"""Simulated seconds in a second of wall time; 0 is as fast as possible."""
+
+MEASURED_EVERY = 5
+"""Updates of the page between two measurements of the smallest clearance."""
+
+
+class LiveStudio:
+    """The cell's thread: physics that goes on, joints that are moved by hand, what pages see."""
+
+    def __init__(self, files: StudioFiles, text: str, notice: str = "") -> None:
+        """Build the cell.
+
+        Raises:
+            SpecError: The text has mistakes.
+        """
+        self.files = files
+        self.text = self.saved = text
+        self.notice = notice
+        self.problems: list[Problem] = []
+        self.cell = LiveCell(files.path, text, self._on_step)
+        self.cell.pace = self._pace
+        self.session = Session(
+            self.do,
+            self._frame,
+            self._greeting,
+            {"stop": self._stop, "play": self._play, "speed": self._set_speed},
+        )
+        self.view: SceneView | None = None
+        self.server: viser.ViserServer | None = None
+        self.is_playing, self.speed, self.share = True, 1.0, 0.3
+        self.stopping = threading.Event()
+        self.busy = ""
+        self.target: FloatArray | None = None
+        self.study: ReachStudy | None = None
+        self.reach: Reach | None = None
+        self.chosen: FloatArray | None = None
+        self.judged: Judged | None = None
+        self._last_tick = self._last_scene = time.monotonic()
+        self._due, self._frames = 0.0, 0
+        self.nearest: Touch | None = None
+        self.object_handle = ""
+        self._actions: dict[str, Callable[[Message], Message]] = {
+            name.removeprefix("do_"): getattr(self, name)
+            for name in dir(self)
+            if name.startswith("do_")
+        }
+
+    # -- the server and the thread ------------------------------------------------------------
+
+    def open(self, server: viser.ViserServer) -> None:
+        """Show the cell in a server's scene, and begin."""
+        self.server = server
+        self.view = SceneView(server, self.on_drag)
+        self.show_cell()
+        self.session.start()
+
+    def close(self) -> None:
+        """End; unsaved work stays in its file."""
+        self.stopping.set()
+        self.session.stop()
+
+    def show_cell(self) -> None:
+        if self.view is None:
+            return
+        self.object_handle = ""
+        cell = self.cell
+        program = cell.prepared.program
+        reach = reach_of(cell)
+        self.view.show_cell(program.description, cell.prepared.kinematics, cell.tcp_pose(), reach)
+        self.view.show_objects(program.all_objects())
+        self.view.move(cell.joint_positions(), cell.object_poses())
+        self.study = self.reach = self.chosen = self.target = None
+
+    def _pace(self, samples: int) -> bool:
+        """Wait as long as samples last, showing them; False where the motion is to stop."""
+        self.session.frame()
+        while not self.is_playing and not self.stopping.is_set():
+            time.sleep(FRAME)
+            self.session.frame()
+            self._due = time.monotonic()
+        if self.speed > 0:
+            now = time.monotonic()
+            self._due = max(self._due, now - 0.1) + samples * self.cell.timestep / self.speed
+            if self._due > now:
+                time.sleep(self._due - now)
+        return not self.stopping.is_set()
+
+    def _frame(self, is_due: bool) -> None:
+        now = time.monotonic()
+        elapsed, self._last_tick = min(0.1, now - self._last_tick), now
+        if not self.busy and self.is_playing and self.session.viewers:
+            self._go_on(elapsed * (self.speed or 1.0))
+        if self.view is not None and now - self._last_scene >= 0.9 * FRAME:
+            self._last_scene = now
+            self.view.move(self.cell.joint_positions(), self.cell.object_poses())
+        if is_due and self.session.viewers:
+            self._frames += 1
+            if self._frames % MEASURED_EVERY == 0 and not self.busy:
+                self.nearest = self.cell.nearest_pair()
+            self.session.broadcast(self.state_message())
+
+    def _go_on(self, seconds: float) -> None:
+        if self.target is not None:
+            self.cell.jog(self.target, self.share, seconds)
+            actuated = self.cell.simulator.physics.actuated
+            left = np.abs(self.cell.simulator.set_points() - self.target[actuated])
+            if left.max(initial=0.0) < 1e-9:
+                self.target = None
+        else:
+            self.cell.idle(seconds)
+
+    def _on_step(self, event: str, step: Any, record: StepRecord | None) -> None:
+        if event == "step_started":
+            self.busy = step.summary
+            self.session.frame()
+        elif record is not None and record.status == "failed":
+            self.say("failed", f"{record.summary}: {record.error_code}: {record.message}")
+
+    def working(self, what: str, action: Callable[[], None]) -> None:
+        """Do something that takes simulated time."""
+        self.busy, self.target = what, None
+        self.stopping.clear()
+        self._due = time.monotonic()
+        self.session.broadcast(self.state_message())
+        try:
+            action()
+        finally:
+            self.busy = ""
+            self.study = None
+            self._last_tick = time.monotonic()
+        self.clear_preview()
+        if self.view is not None:
+            self.view.move_handle(self.cell.tcp_pose())
+
+    # -- messages -----------------------------------------------------------------------------
+
+    def do(self, name: str, message: Message) -> Message:
+        """Carry out a request; its reply.
+
+        Raises:
+            HarnessError: It is refused.
+        """
+        if name not in self._actions:
+            raise RefusedError(f"the studio has no action '{printable(name)}'")
+        try:
+            return self._actions[name](message)
+        finally:
+            self.session.broadcast(self.state_message())
+
+    def say(self, kind: str, text: str) -> None:
+        self.session.broadcast({"type": "note", "kind": kind, "text": printable(text)})
+
+    def _greeting(self) -> list[Message]:
+        messages = [robot_message(self.cell), self.document_message(), self.state_message()]
+        if self.notice:
+            messages.append({"type": "note", "kind": "warning", "text": self.notice})
+        if self.judged is not None:
+            messages.append(verdicts_message(self.judged))
+        return messages
+
+    def document_message(self) -> Message:
+        return {
+            "type": "document",
+            "text": self.text,
+            "file": str(self.files.path.name),
+            "is_saved": self.text == self.saved,
+            "problems": [problem_message(problem) for problem in self.problems],
+            "step_lines": self.cell.document.step_lines(),
+        }
+
+    def state_message(self) -> Message:
+        """The numbers of the page."""
+        nearest = self.nearest
+        return {
+            **cell_message(self.cell),
+            "nearest": None
+            if nearest is None
+            else [nearest.first, nearest.second, round(nearest.distance, 5)],
+            "busy": self.busy,
+            "is_playing": self.is_playing,
+            "speed": self.speed,
+            "share": self.share,
+        }
+
+    def clear_preview(self) -> None:
+        """Take ghosts and the path away, and forget the goal."""
+        self.reach = self.chosen = None
+        if self.view is not None:
+            self.view.show_ghosts([])
+            self.view.show_path(None)
+        self.session.broadcast(
+            {"type": "reach", "pose": None, "refusal": "", "ways": [], "best": -1}
+        )
+
+    def on_drag(self, client: int, phase: str, pose: SE3, name: str) -> None:
+        """A handle was moved on a page; called in the server's thread."""
+        raise NotImplementedError
+
+    # -- at once ------------------------------------------------------------------------------
+
+    def _stop(self, _: Message) -> Message:
+        self.stopping.set()
+        self.target = None
+        return {}
+
+    def _play(self, message: Message) -> Message:
+        self.is_playing = bool(message["on"])
+        return {}
+
+    def _set_speed(self, message: Message) -> Message:
+        speed = float(message["value"])
+        if speed not in SPEEDS:
+            raise RefusedError(f"the speed is one of {', '.join(map(str, SPEEDS))}")
+        self.speed = speed
+        return {}
+
+    # -- moving by hand -----------------------------------------------------------------------
+
+    def do_jog(self, message: Message) -> Message:
+        """Move one joint to a position, under its limits."""
+        description = self.cell.description
+        joint = description.joint_by_name[str(message["joint"])]
+        value = float(message["value"])
+        if not joint.lower <= value <= joint.upper:
+            unit = "m" if joint.kind == "prismatic" else "rad"
+            raise RefusedError(
+                f"{joint.name} goes from {joint.lower:.4g} to {joint.upper:.4g} {unit},"
+                f" not to {value:.4g}"
+            )
+        target = self.target
+        if target is None:
+            target = self.cell.simulator.commanded_positions()
+        target = target.copy()
+        target[description.joint_index[joint.name]] = value
+        self.target = description.with_mimics(target)
+        self.study = None
+        return {}
+
+    def do_share(self, message: Message) -> Message:
+        """Set the share of the velocity limits with which joints follow sliders."""
+        self.share = float(np.clip(float(message["value"]), 0.01, 1.0))
+        return {}
+
+    def do_advance(self, message: Message) -> Message:
+        """Let some simulated time pass."""
+        self.cell.idle(float(np.clip(float(message["seconds"]), 0.001, 1.0)))
+        return {}
+
+    def do_reset(self, _: Message) -> Message:
+        """Go back to the scenario's start."""
+        self.target = None
+        self.cell.reset()
+        self.after_jump()
+        return {}
+
+    def after_jump(self) -> None:
+        self.study = self.judged = None
+        self.clear_preview()
+        if self.view is not None:
+            self.view.move_handle(self.cell.tcp_pose())

@@ -1,0 +1,169 @@
+"""What the page is sent, as plain data."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from harness.core.errors import Problem
+from harness.core.printable import printable
+from harness.language.step import STEPS
+from harness.recording.run import StepRecord
+from harness.reporting.explanation import explanation_lines
+from harness.studio.language_help import Names
+from harness.studio.live_cell import Judged, LiveCell
+from harness.studio.step_texts import MOTIONS
+
+Message = dict[str, Any]
+
+MOST_CONTACTS = 8
+"""Contacts that are listed, strongest first."""
+
+
+def robot_message(cell: LiveCell) -> Message:
+    """What does not change while the cell is the same."""
+    description = cell.description
+    gripper = description.gripper
+    actuated = set(cell.simulator.physics.actuated.tolist())
+    return {
+        "type": "robot",
+        "name": description.name,
+        "tcp": description.tcp_link,
+        "arm_joints": list(description.groups[description.arm_group].joint_names)
+        if description.arm_group
+        else [],
+        "joints": [
+            {
+                "name": joint.name,
+                "lower": max(joint.lower, -2 * np.pi),
+                "upper": min(joint.upper, 2 * np.pi),
+                "slides": joint.kind == "prismatic",
+            }
+            for index, joint in enumerate(description.movable_joints)
+            if index in actuated
+        ],
+        "states": list(description.states_of(description.arm_group)),
+        "gripper": None
+        if gripper is None
+        else {
+            "states": list(description.states_of(gripper.group)),
+            "widest": float(gripper.widths[:, 1].max()),
+        },
+        "frames": ["world", description.base_link, *cell.cell.presence],
+        "objects": cell.document.object_names(),
+        "bodies": list(cell.cell.presence),
+        "overlaps": [
+            f"{touch.first} and {touch.second} overlap by {-1e3 * touch.distance:.1f} mm"
+            for touch in cell.overlaps_at_start
+        ],
+        "verbs": list(MOTIONS),
+        "steps": [f"{verb}: " for verb in STEPS],
+        "cameras": list(cell.prepared.program.cameras),
+    }
+
+
+def cell_message(cell: LiveCell) -> Message:
+    """The numbers of the cell as it is now."""
+    positions = cell.joint_positions()
+    contacts = sorted(cell.simulator.contact_forces().items(), key=lambda item: -item[1])
+    return {
+        "type": "state",
+        "time": round(cell.simulator.physics_time, 3),
+        "positions": [
+            round(float(positions[index]), 5) for index in cell.simulator.physics.actuated
+        ],
+        "tcp": [round(float(value), 5) for value in cell.tcp_pose().as_vector()],
+        "contacts": [[*pair, round(force, 2)] for pair, force in contacts[:MOST_CONTACTS]],
+        "width": _width(cell),
+        "steps_done": cell.steps_done,
+        "step_count": cell.document.step_count,
+        "is_run": cell.is_run,
+    }
+
+
+def names_of(cell: LiveCell) -> Names:
+    """Names that exist in a cell, for completion."""
+    from harness.language.reading.load import bundled_worlds
+    from harness.robot.load import gripper_names, robot_names
+
+    description = cell.description
+    gripper = description.gripper
+    return Names(
+        states=list(description.states_of(description.arm_group)),
+        gripper_states=[] if gripper is None else list(description.states_of(gripper.group)),
+        joints=description.joint_names,
+        links=description.link_names,
+        objects=list(cell.cell.presence),
+        groups=list(description.groups),
+        worlds=bundled_worlds(),
+        robots=robot_names(),
+        grippers=gripper_names(),
+    )
+
+
+def failure_message(record: StepRecord) -> Message:
+    """Why a step failed, with the explanation of a run."""
+    return {
+        "status": "failed",
+        "error": printable(f"{record.error_code}: {record.message}"),
+        "explanation": [
+            printable(line) for line in explanation_lines(record.explanation, record.message)
+        ],
+    }
+
+
+def verdicts_message(judged: Judged) -> Message:
+    """The verdicts, and what became of the steps of the file."""
+    return {
+        "type": "verdicts",
+        "outcome": judged.outcome,
+        "digest": judged.digest,
+        "steps": [
+            {"summary": printable(s.summary), "status": s.status, "line": s.line}
+            for s in judged.run.steps
+            if s.path.count("[") == 1 and "." not in s.path
+        ],
+        "verdicts": [
+            {
+                "text": printable(v.expectation),
+                "status": v.status,
+                "margin": None if v.margin is None or not np.isfinite(v.margin) else v.margin,
+                "unit": v.unit,
+                "line": v.line,
+                "reason": printable(v.reason),
+            }
+            for v in judged.verdicts
+        ],
+    }
+
+
+def problem_message(problem: Problem) -> Message:
+    """A mistake with its place."""
+    return {
+        "line": problem.line,
+        "column": problem.column,
+        "length": problem.length,
+        "text": printable(problem.message),
+        "hint": printable(problem.hint),
+    }
+
+
+def _width(cell: LiveCell) -> float | None:
+    gripper = cell.description.gripper
+    if gripper is None:
+        return None
+    value = cell.joint_positions()[cell.description.joint_index[gripper.joint]]
+    rows = gripper.widths[np.argsort(gripper.widths[:, 0])]
+    return round(float(np.interp(value, rows[:, 0], rows[:, 1])), 5)
+
+
+def reach_of(cell: LiveCell) -> float:
+    """The length of the arm from its base to its TCP [m]: how far away the camera stands."""
+    description = cell.description
+    before = {joint.child: joint for joint in description.joints}
+    length, link = 0.0, description.tcp_link
+    while link in before and before[link].parent != "world":
+        length += float(np.linalg.norm(before[link].pose.translation))
+        link = before[link].parent
+    return max(0.2, length)

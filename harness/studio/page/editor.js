@@ -1,0 +1,122 @@
+// The scenario's text: marked mistakes, completion and descriptions, all of them from the program.
+
+import { ask, on } from "./connection.js";
+import { $, element } from "./dom.js";
+
+/* global ace */
+let editor = null, session = null, timer = 0, setting = false, sent = null, stepLines = [], done = 0;
+const SEVERITY = "error";
+
+export const text = () => editor.getValue();
+export const line = () => editor.getCursorPosition().row + 1;
+
+function theme() {
+  const dark = document.documentElement.dataset.theme === "dark" || matchMedia("(prefers-color-scheme: dark)").matches;
+  editor.setTheme(dark ? "ace/theme/tomorrow_night" : "ace/theme/textmate");
+}
+
+export function start() {
+  ace.config.set("basePath", "/ace");
+  ace.config.set("loadWorkerFromBlob", false);
+  editor = ace.edit("editor", { mode: "ace/mode/yaml", useWorker: false, tabSize: 2, useSoftTabs: true,
+    enableBasicAutocompletion: true, enableLiveAutocompletion: true, showPrintMargin: false, fontSize: 13 });
+  session = editor.session;
+  theme();
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", theme);
+  editor.textInput.getElement().setAttribute("aria-label", "Scenario text");
+  editor.completers = [{
+    identifierRegexps: [/[\w./-]/],
+    getCompletions: (_e, _s, at, _prefix, callback) =>
+      ask("complete", { text: text(), line: at.row, column: at.column }).then((reply) =>
+        callback(null, (reply.options ?? []).map((each, index) => ({
+          caption: each.text, value: each.kind === "key" ? `${each.text}: ` : each.text,
+          meta: each.kind, docText: each.help, score: 1000 - index }))))
+  }];
+  editor.commands.addCommand({ name: "leave", bindKey: "Escape", exec: () => $("run-all").focus() });
+  session.on("change", () => {
+    if (setting) return;
+    $("file").classList.add("unsaved");
+    clearTimeout(timer);
+    timer = setTimeout(check, 200);
+  });
+  editor.on("mousemove", hover);
+  editor.on("guttermousedown", (event) => {
+    const row = event.getDocumentPosition().row;
+    if (!event.domEvent.altKey) return;
+    toggleBreakpoint(row);
+    event.stop();
+  });
+  return editor;
+}
+
+export function toggleBreakpoint(row) {
+  if (session.getBreakpoints()[row]) session.clearBreakpoint(row);
+  else session.setBreakpoint(row);
+}
+
+/** The first line with a breakpoint that is in a step after those executed; 0 without one. */
+export function nextBreakpoint() {
+  const rows = Object.keys(session.getBreakpoints()).map((row) => Number(row) + 1).filter((n) => session.getBreakpoints()[n - 1]);
+  return rows.sort((a, b) => a - b).find((n) => stepLines.filter((first) => first <= n).length > done) ?? 0;
+}
+
+async function check() {
+  sent = text();
+  const began = performance.now();
+  const reply = await ask("edit", { text: sent });
+  window.lintMilliseconds = performance.now() - began;
+  if (reply.document && text() === sent) show(reply.document);
+  else if (reply.error) $("problems").textContent = reply.error;
+}
+
+/** Sends a change that the page has not sent yet. */
+export async function flush() {
+  if (sent !== text()) { clearTimeout(timer); await check(); }
+}
+
+function show(message) {
+  stepLines = message.step_lines;
+  $("file").classList.toggle("unsaved", !message.is_saved);
+  session.setAnnotations(message.problems.map((p) => ({ row: Math.max(0, p.line - 1), column: p.column,
+    text: p.hint ? `${p.text}\n${p.hint}` : p.text, type: SEVERITY })));
+  for (const id of Object.keys(session.getMarkers())) if (session.getMarkers()[id].clazz === "mistake") session.removeMarker(id);
+  const Range = ace.require("ace/range").Range;
+  for (const p of message.problems) {
+    if (p.line) session.addMarker(new Range(p.line - 1, p.column - 1, p.line - 1, p.column - 1 + p.length), "mistake", "text");
+  }
+  $("problems").replaceChildren(...message.problems.map((p) => element("button", { class: "mistake-line",
+    onclick: () => { editor.gotoLine(p.line, p.column - 1); editor.focus(); } },
+  `${p.line}:${p.column}: ${p.text}${p.hint ? ` (${p.hint})` : ""}`)));
+}
+
+let hovering = 0;
+function hover(event) {
+  clearTimeout(hovering);
+  const at = event.getDocumentPosition();
+  hovering = setTimeout(async () => {
+    const reply = await ask("hover", { text: text(), line: at.row, column: at.column });
+    editor.container.title = reply.text ?? "";
+  }, 250);
+}
+
+export function showDone(count) {
+  done = count;
+  stepLines.forEach((first, index) => session[index < count ? "addGutterDecoration" : "removeGutterDecoration"](first - 1, "done"));
+  for (let row = 0; row < session.getLength(); row++) {
+    if (!stepLines.slice(0, count).includes(row + 1)) session.removeGutterDecoration(row, "done");
+  }
+}
+
+on("document", (message) => {
+  if (!editor) return;
+  if (text() !== message.text) {
+    setting = true;
+    const at = editor.getCursorPosition();
+    session.setValue(message.text);
+    editor.moveCursorToPosition(at);
+    setting = false;
+  }
+  sent = message.text;
+  if (document.activeElement !== $("file")) $("file").value = message.file;
+  show(message);
+});

@@ -1,0 +1,71 @@
+"""A planned motion that is shown before anything moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.core.errors import StepFailed
+from harness.core.types import FloatArray
+from harness.ports import MotionPlan
+from harness.recording.run import StepRecord
+from harness.studio.live_cell import LiveCell
+
+MOST_POINTS = 120
+"""Points of a drawn path."""
+
+
+@dataclass(frozen=True, eq=False)
+class Preview:
+    """A motion as it would be executed, or why there is none.
+
+    Attributes:
+        positions: Joint positions along it, description order, shape (N, n); None without one.
+        tcp_path: Positions of the TCP along it, shape (N, 3).
+        duration: The time it takes [s].
+        length: The length of the path of the TCP [m].
+        planner: The name of the planner.
+        record: The failed step; None where there is a motion.
+    """
+
+    positions: FloatArray | None
+    tcp_path: FloatArray | None
+    duration: float = 0.0
+    length: float = 0.0
+    planner: str = ""
+    record: StepRecord | None = None
+
+
+def preview(cell: LiveCell, text: str) -> Preview:
+    """Plan the motion of a step with the options and the seed that its execution has.
+
+    Raises:
+        SpecError: The step has a mistake.
+    """
+    plans: list[MotionPlan] = []
+
+    def keep(plan: MotionPlan) -> None:
+        plans.append(plan)
+        raise StepFailed("PREEMPTED", "it is only planned")
+
+    record = cell.planned_only(text, keep)
+    if not plans:
+        return Preview(None, None, record=record)
+    plan = plans[0]
+    positions = _whole_positions(cell, plan)
+    rows = np.unique(np.linspace(0, len(positions) - 1, MOST_POINTS).astype(int))
+    positions = positions[rows]
+    tcp = cell.description.tcp_link
+    path = cell.prepared.kinematics.link_poses(positions, [tcp])[:, 0, :3]
+    length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+    planner = str(plan.statistics.get("planner_id", ""))
+    return Preview(positions, path, plan.trajectory.duration, length, planner)
+
+
+def _whole_positions(cell: LiveCell, plan: MotionPlan) -> FloatArray:
+    description = cell.description
+    index = [description.joint_index[name] for name in plan.trajectory.joint_names]
+    rows = np.repeat(cell.cell.planning_start()[None], len(plan.trajectory.positions), axis=0)
+    rows[:, index] = plan.trajectory.positions
+    return np.array([description.with_mimics(row) for row in rows])

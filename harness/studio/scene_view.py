@@ -1,0 +1,257 @@
+"""The cell as viser draws it: links, objects, ghosts of goals and plans, the handle on the TCP."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import viser
+
+from harness.cameras.mesh_part import coarsen
+from harness.cameras.meshes import mesh_parts
+from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray, IntArray
+from harness.core.world import WorldObject
+from harness.ports import Kinematics
+from harness.robot.description import RobotDescription
+
+MOST_TRIANGLES = 20_000
+"""Triangles of the whole robot; its meshes are coarsened until they are no more."""
+
+GRID = 0.002
+"""The first cell size in which vertices are merged [m]."""
+
+GHOST, REFUSED, PLANNED = (70, 130, 220), (214, 60, 50), (40, 160, 90)
+PLANE_SIZE = 6.0  # [m]
+
+Color = tuple[int, int, int]
+OnDrag = Callable[[int, str, SE3, str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Triangles:
+    """A part of a body in one colour, in the body's frame."""
+
+    vertices: FloatArray
+    faces: IntArray
+    color: Color
+    opacity: float
+
+
+def triangles_of(shapes: Iterable[Shape], grid: float = GRID) -> list[Triangles]:
+    """The triangles of a body's shapes, one part for each colour of each shape."""
+    found: list[Triangles] = []
+    for shape in shapes:
+        for vertices, faces, rgba in _parts(shape, grid):
+            red, green, blue, alpha = rgba
+            color = (round(255 * red), round(255 * green), round(255 * blue))
+            found.append(Triangles(shape.pose.apply(vertices), faces, color, alpha))
+    return found
+
+
+def robot_triangles(description: RobotDescription) -> dict[str, list[Triangles]]:
+    """The triangles of every link that has a visual, at most MOST_TRIANGLES of them."""
+    grid = GRID
+    while True:
+        links = {
+            link.name: triangles_of(link.visuals or link.collisions, grid)
+            for link in description.links
+        }
+        count = sum(len(part.faces) for parts in links.values() for part in parts)
+        if count <= MOST_TRIANGLES or grid > 0.1:
+            return {name: parts for name, parts in links.items() if parts}
+        grid *= 1.3
+
+
+def _parts(shape: Shape, grid: float) -> Iterable[tuple[FloatArray, IntArray, Any]]:
+    import trimesh
+
+    made: Any = None
+    match shape.geometry:
+        case Mesh() as mesh:
+            for part in mesh_parts(mesh):
+                vertices, faces = part.vertices, part.faces
+                if grid > GRID:
+                    vertices, faces = coarsen(vertices, faces, grid)
+                yield vertices, faces, part.rgba or shape.rgba
+            return
+        case Box(size=size):
+            made = trimesh.creation.box(size)
+        case Cylinder(radius=radius, length=length):
+            made = trimesh.creation.cylinder(radius, length, sections=24)
+        case Sphere(radius=radius):
+            made = trimesh.creation.icosphere(subdivisions=2, radius=radius)
+        case Capsule(radius=radius, length=length):
+            made = trimesh.creation.capsule(length, radius, count=(12, 12))
+            made.apply_translation([0, 0, -0.5 * length])
+        case Plane():
+            made = trimesh.creation.box((PLANE_SIZE, PLANE_SIZE, 0.002))
+            made.apply_translation([0, 0, -0.001])
+    yield np.asarray(made.vertices), np.asarray(made.faces), shape.rgba
+
+
+@dataclass
+class _Body:
+    """A frame of the scene with the pose that was sent last."""
+
+    handle: Any
+    pose: FloatArray = field(default_factory=lambda: np.full(7, np.nan))
+
+    def move(self, pose: FloatArray) -> None:
+        if np.abs(pose - self.pose).max() > 1e-6 or np.isnan(self.pose[0]):
+            self.pose = pose
+            self.handle.position, self.handle.wxyz = tuple(pose[:3]), tuple(pose[3:])
+
+
+class SceneView:
+    """Everything that viser shows of one cell; it is cleared and drawn again for another one."""
+
+    def __init__(self, server: viser.ViserServer, on_drag: OnDrag) -> None:
+        self._server = server
+        self._on_drag = on_drag
+        self._links: dict[str, _Body] = {}
+        self._objects: dict[str, _Body] = {}
+        self._ghosts: list[dict[str, _Body]] = []
+        self.handle: Any = None
+        self._object_handle: Any = None
+        self._path: Any = None
+        self._shapes: dict[str, list[Triangles]] = {}
+
+    def show_cell(
+        self, description: RobotDescription, kinematics: Kinematics, tcp_pose: SE3, reach: float
+    ) -> None:
+        """Draw another robot, without objects, and put the handle on its TCP."""
+        scene = self._server.scene
+        scene.reset()
+        self._objects, self._ghosts, self._path, self._object_handle = {}, [], None, None
+        self._kinematics = kinematics
+        self._shapes = robot_triangles(description)
+        center = kinematics.link_pose(description.start_positions(), description.base_link)
+        look_at = center.translation + np.array([0.0, 0.0, 0.3 * reach])
+        self._server.initial_camera.look_at = tuple(look_at)
+        self._server.initial_camera.position = tuple(look_at + reach * np.array([1.1, -0.9, 0.6]))
+        self._server.scene.set_up_direction("+z")
+        scene.add_grid(
+            "/grid", width=4, height=4, cell_size=0.1, section_size=0.5, position=(0, 0, 5e-4)
+        )
+        self._links = {
+            name: self._body(f"/robot/{name}", parts) for name, parts in self._shapes.items()
+        }
+        self._scale = 0.25 * reach
+        self.handle = scene.add_transform_controls(
+            "/tcp", scale=self._scale, depth_test=False, line_width=3.0
+        )
+        self.move_handle(tcp_pose)
+
+        @self.handle.on_update
+        async def _(event: Any) -> None:
+            pose = SE3.from_xyz_quat(event.target.position, event.target.wxyz)
+            self._on_drag(event.client_id, event.phase, pose, "")
+
+    def show_objects(self, objects: Sequence[WorldObject]) -> None:
+        """Draw these objects in place of those shown."""
+        for body in self._objects.values():
+            body.handle.remove()
+        self._objects = {
+            obj.name: self._body(f"/objects/{obj.name}", triangles_of(obj.visuals or obj.shapes))
+            for obj in objects
+        }
+
+    def move(self, joint_positions: FloatArray, objects: Mapping[str, SE3]) -> None:
+        """Show the robot at joint positions and the objects at their poses; others are hidden."""
+        names = list(self._links)
+        poses = self._kinematics.link_poses(joint_positions[None], names)[0]
+        with self._server.atomic():
+            for name, pose in zip(names, poses, strict=True):
+                self._links[name].move(pose)
+            for name, body in self._objects.items():
+                if body.handle.visible != (name in objects):
+                    body.handle.visible = name in objects
+                if name in objects:
+                    body.move(objects[name].as_vector())
+
+    def show_ghosts(self, ways: Sequence[tuple[FloatArray, Color]]) -> None:
+        """Show the robot a second time at each of some joint positions."""
+        names = list(self._links)
+        with self._server.atomic():
+            while len(self._ghosts) < len(ways):
+                number = len(self._ghosts)
+                self._ghosts.append(
+                    {
+                        name: self._body(
+                            f"/ghost/{number}/{name}", self._shapes[name], opacity=0.25
+                        )
+                        for name in names
+                    }
+                )
+            for number, ghost in enumerate(self._ghosts):
+                is_shown = number < len(ways)
+                poses = (
+                    self._kinematics.link_poses(ways[number][0][None], names)[0] if is_shown else []
+                )
+                for row, name in enumerate(names):
+                    body = ghost[name]
+                    if body.handle.visible != is_shown:
+                        body.handle.visible = is_shown
+                    if is_shown:
+                        body.move(poses[row])
+                        for child in body.handle.parts:
+                            if tuple(child.color) != ways[number][1]:
+                                child.color = ways[number][1]
+
+    def show_path(self, points: FloatArray | None) -> None:
+        """Show the path of the TCP, shape (N, 3); None removes it."""
+        if self._path is not None:
+            self._path.remove()
+            self._path = None
+        if points is not None and len(points) > 1:
+            segments = np.stack([points[:-1], points[1:]], axis=1)
+            self._path = self._server.scene.add_line_segments(
+                "/path", segments, PLANNED, thickness=0.006
+            )
+
+    def show_object_handle(self, name: str, pose: SE3 | None) -> None:
+        """Put a second handle on an object; None takes it away."""
+        if self._object_handle is not None:
+            self._object_handle.remove()
+            self._object_handle = None
+        if pose is None:
+            return
+        vector = pose.as_vector()
+        self._object_handle = self._server.scene.add_transform_controls(
+            "/object_handle",
+            scale=self._scale,
+            depth_test=False,
+            position=tuple(vector[:3]),
+            wxyz=tuple(vector[3:]),
+        )
+
+        @self._object_handle.on_update
+        async def _(event: Any) -> None:
+            pose = SE3.from_xyz_quat(event.target.position, event.target.wxyz)
+            self._on_drag(event.client_id, event.phase, pose, name)
+
+    def move_handle(self, pose: SE3) -> None:
+        """Put the handle on a pose T_world_tcp."""
+        vector = pose.as_vector()
+        self.handle.position, self.handle.wxyz = tuple(vector[:3]), tuple(vector[3:])
+
+    def _body(self, name: str, parts: Sequence[Triangles], opacity: float | None = None) -> _Body:
+        scene = self._server.scene
+        frame: Any = scene.add_frame(name, show_axes=False)
+        frame.parts = [
+            scene.add_mesh_simple(
+                f"{name}/{number}",
+                part.vertices.astype(np.float32),
+                part.faces.astype(np.uint32),
+                color=part.color,
+                flat_shading=True,
+                opacity=opacity or (part.opacity if part.opacity < 1 else None),
+                cast_shadow=False,
+            )
+            for number, part in enumerate(parts)
+        ]
+        return _Body(frame)

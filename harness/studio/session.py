@@ -1,0 +1,232 @@
+"""The session behind the page: one cell, one controller, any number of spectators."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import queue
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from websockets.asyncio.server import ServerConnection
+from websockets.exceptions import ConnectionClosed
+
+from harness.core.errors import HarnessError, SpecError
+
+FRAME = 1 / 30
+"""Time between two pictures of the scene [s]."""
+
+PANEL_PERIOD = 0.1
+"""Time between two updates of the numbers on the page [s]."""
+
+MOST_MESSAGES = 500
+"""Messages that wait for a slow page; older ones of the state are dropped."""
+
+Message = dict[str, Any]
+
+
+class RefusedError(HarnessError):
+    """An action that the studio refuses; the message says why."""
+
+
+@dataclass(eq=False)
+class Viewer:
+    """An open page.
+
+    Attributes:
+        name: The name by which the page comes back after a lost connection.
+        outbox: Messages to be sent.
+        loop: The event loop that sends them.
+    """
+
+    name: str
+    outbox: asyncio.Queue[str]
+    loop: asyncio.AbstractEventLoop
+
+    def send(self, message: Message) -> None:
+        """Send a message, from any thread."""
+        text = json.dumps(message, default=float)
+
+        def put() -> None:
+            if self.outbox.qsize() < MOST_MESSAGES or message["type"] != "state":
+                self.outbox.put_nowait(text)
+
+        self.loop.call_soon_threadsafe(put)
+
+
+@dataclass(eq=False)
+class Session:
+    """Viewers, who of them controls, and the thread that owns the cell.
+
+    Attributes:
+        on_request: Carries out a request of a page, in the cell's thread; returns the reply.
+        on_frame: Called in the cell's thread for every picture; its argument says whether the
+            numbers are due too.
+        greeting: What a page that connects is sent, in the cell's thread.
+        at_once: Requests that are answered while a step is being executed.
+    """
+
+    on_request: Callable[[str, Message], Message]
+    on_frame: Callable[[bool], None]
+    greeting: Callable[[], list[Message]]
+    at_once: dict[str, Callable[[Message], Message]]
+    viewers: list[Viewer] = field(default_factory=list[Viewer])
+    controller: str = ""
+    _jobs: queue.SimpleQueue[Callable[[], None] | None] = field(
+        default_factory=queue.SimpleQueue[Callable[[], None] | None]
+    )
+    _last_panel: float = 0.0
+    _thread: threading.Thread | None = None
+
+    def start(self) -> None:
+        """Start the thread that owns the cell."""
+        self._thread = threading.Thread(target=self._run, name="studio-cell", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End the thread after the job it is at."""
+        self._jobs.put(None)
+        if self._thread is not None:
+            self._thread.join(timeout=5.0)
+
+    def post(self, job: Callable[[], None]) -> None:
+        """Let the cell's thread do something."""
+        self._jobs.put(job)
+
+    def broadcast(self, message: Message) -> None:
+        """Send a message to every page."""
+        for viewer in tuple(self.viewers):
+            viewer.send(message)
+
+    def frame(self) -> None:
+        """Show the cell as it is now; called often, also while a step is executed."""
+        now = time.monotonic()
+        is_due = now - self._last_panel >= PANEL_PERIOD
+        if is_due:
+            self._last_panel = now
+        self.on_frame(is_due)
+
+    def announce_control(self) -> None:
+        """Tell every page who controls."""
+        for viewer in tuple(self.viewers):
+            viewer.send(
+                {
+                    "type": "control",
+                    "is_mine": viewer.name == self.controller,
+                    "is_free": not self.controller,
+                    "pages": len(self.viewers),
+                }
+            )
+
+    async def handle(self, connection: ServerConnection) -> None:
+        """Speak with one page until it leaves."""
+        viewer: Viewer | None = None
+        sender: asyncio.Task[None] | None = None
+        try:
+            async for text in connection:
+                message = _parsed(text)
+                if message is None:
+                    continue
+                if viewer is None:
+                    viewer = Viewer(
+                        str(message.get("page", ""))[:64],
+                        asyncio.Queue(),
+                        asyncio.get_running_loop(),
+                    )
+                    sender = asyncio.create_task(_send_all(connection, viewer.outbox))
+                    self._enter(viewer)
+                    continue
+                self._receive(viewer, message)
+        except ConnectionClosed:
+            pass
+        finally:
+            if viewer is not None:
+                self.viewers.remove(viewer)
+                self.announce_control()
+            if sender is not None:
+                sender.cancel()
+
+    def _enter(self, viewer: Viewer) -> None:
+        self.viewers.append(viewer)
+        present = {each.name for each in self.viewers}
+        if not self.controller or self.controller not in present:
+            self.controller = viewer.name
+        self.announce_control()
+
+        def greet() -> None:
+            for message in self.greeting():
+                viewer.send(message)
+
+        self.post(greet)
+
+    def _receive(self, viewer: Viewer, message: Message) -> None:
+        name, number = str(message.get("do", "")), message.get("number")
+
+        def reply(answer: Message) -> None:
+            viewer.send({"type": "reply", "number": number, **answer})
+
+        if name == "control":
+            self._control(viewer, str(message.get("word", "")))
+            return reply({})
+        if viewer.name != self.controller and name not in ("complete", "hover", "check"):
+            return reply({"error": "another page controls the cell; ask for control first"})
+        if name in self.at_once:
+            return reply(guarded(lambda: self.at_once[name](message)))
+        self.post(lambda: reply(guarded(lambda: self.on_request(name, message))))
+        return None
+
+    def _control(self, viewer: Viewer, word: str) -> None:
+        """Ask for control, pass it on, or take it where nobody has it."""
+        present = {each.name for each in self.viewers}
+        if word == "request":
+            if not self.controller or self.controller not in present:
+                self.controller = viewer.name
+            else:
+                self.broadcast({"type": "request", "page": viewer.name, "of": self.controller})
+        elif word == "release" and viewer.name == self.controller:
+            self.controller = next((n for n in present if n != viewer.name), viewer.name)
+        elif viewer.name == self.controller and word in present:
+            self.controller = word
+        self.announce_control()
+
+    def _run(self) -> None:
+        while True:
+            try:
+                job = self._jobs.get(timeout=FRAME)
+            except queue.Empty:
+                self.frame()
+                continue
+            if job is None:
+                return
+            job()
+            self.frame()
+
+
+def guarded(action: Callable[[], Message]) -> Message:
+    """What an action replies, or its mistake as a reply."""
+    try:
+        return action()
+    except SpecError as error:
+        return {"error": "; ".join(problem.message for problem in error.problems)}
+    except (HarnessError, ValueError, KeyError, TypeError) as error:
+        text = str(error) if isinstance(error, HarnessError) else f"a bad request: {error!r}"
+        return {"error": text}
+
+
+def _parsed(text: str | bytes) -> Message | None:
+    try:
+        message: object = json.loads(text)
+    except ValueError:
+        return None
+    return message if isinstance(message, dict) else None
+
+
+async def _send_all(connection: ServerConnection, outbox: asyncio.Queue[str]) -> None:
+    try:
+        while True:
+            await connection.send(await outbox.get())
+    except ConnectionClosed:
+        return

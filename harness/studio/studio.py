@@ -1,0 +1,250 @@
+"""The studio: what a page's requests do with the scenario."""
+
+from __future__ import annotations
+
+import base64
+
+import cv2
+import numpy as np
+
+from harness.core.errors import SpecError
+from harness.core.printable import printable
+from harness.core.spatial import SE3
+from harness.recording.run import StepRecord
+from harness.studio.document import Document
+from harness.studio.files import StudioFiles
+from harness.studio.goal_actions import GoalActions
+from harness.studio.language_help import complete, hover
+from harness.studio.messages import (
+    Message,
+    failure_message,
+    names_of,
+    robot_message,
+    verdicts_message,
+)
+from harness.studio.proposals import holding, proposals
+from harness.studio.session import RefusedError
+from harness.studio.step_texts import object_spec
+
+
+class Studio(GoalActions):
+    """A cell, the scenario that grows from it, and the pages that show both."""
+
+    @classmethod
+    def opened(cls, files: StudioFiles, text: str, unsaved: str | None, notice: str) -> Studio:
+        """A studio on a file's text, in which unsaved work is shown as changes.
+
+        Raises:
+            SpecError: The file's text has mistakes.
+        """
+        files.refuse_outside(Document(text))
+        studio = cls(files, text, notice)
+        if unsaved is not None:
+            studio.do_edit({"text": unsaved})
+        return studio
+
+    def do_execute(self, message: Message) -> Message:
+        """Execute a step; recorded, it becomes the scenario's next one."""
+        text = str(message.get("step") or self.motion_text(message))
+        is_recorded = bool(message.get("record", True))
+        results: list[StepRecord] = []
+
+        def action() -> None:
+            if not is_recorded:
+                results.append(self.cell.execute(text))
+                return
+            self._refuse_mistakes()
+            document = self.cell.document.with_step(text, self.cell.steps_done)
+            self.files.refuse_outside(document)
+            new_text, record = self.cell.record(text)
+            results.append(record)
+            self._take_text(new_text)
+
+        self.working(text, action)
+        record = results[0]
+        if record.status == "failed":
+            return {"step": text, **failure_message(record)}
+        return {"step": text, "status": record.status, "message": printable(record.message)}
+
+    # -- objects ------------------------------------------------------------------------------
+
+    def do_add_object(self, message: Message) -> Message:
+        """Put an object into the scenario, or in the place of one; the cell begins again."""
+        size = [float(value) for value in message["size"]]
+        xyz = [float(value) for value in message["xyz"]]
+        self._refuse_mistakes()
+        spec = object_spec(str(message["name"]), str(message["kind"]), size, xyz)
+        self._take_text(self.cell.document.with_object(spec).text)
+        return {}
+
+    def do_delete_object(self, message: Message) -> Message:
+        """Take an object out of the scenario."""
+        name = str(message["name"])
+        self._refuse_mistakes()
+        if name not in self.cell.document.object_names():
+            raise RefusedError(f"'{name}' belongs to the world, not to the scenario's `objects`")
+        self._take_text(self.cell.document.without_object(name).text)
+        return {}
+
+    def do_handle(self, message: Message) -> Message:
+        """Put a second handle on an object; an empty name takes it away."""
+        name = str(message["name"])
+        self.object_handle = name if name in self.cell.object_poses() else ""
+        if self.view is not None:
+            pose = self.cell.object_poses()[name] if self.object_handle else None
+            self.view.show_object_handle(self.object_handle, pose)
+        return {}
+
+    def put_object(self, name: str, pose: SE3) -> None:
+        """Move an object: at the start in the scenario, later in the live cell alone."""
+        document = self.cell.document
+        if self.cell.steps_done or name not in document.object_names() or self.problems:
+            self.cell.move_object(name, pose)
+            self.after_jump()
+            return
+        spec = document.object_spec(name)
+        vector = pose.as_vector()
+        place = {"xyz": [round(float(value), 4) for value in vector[:3]]}
+        if abs(vector[3]) < 1 - 1e-6:
+            place["quat_wxyz"] = [round(float(value), 5) for value in vector[3:]]
+        try:
+            self._take_text(document.with_object({**spec, "pose": place}).text)
+        except SpecError as error:
+            self.say("failed", str(error))
+        self.do_handle({"name": name})
+
+    def do_camera(self, message: Message) -> Message:
+        """The picture of a camera of the scenario, as it sees the cell now."""
+        from harness.cameras.camera_scene import CameraScene
+        from harness.cameras.ray_renderer import RayRenderer
+        from harness.robot.forward_kinematics import robot_poses
+
+        program = self.cell.prepared.program
+        camera = program.cameras[str(message["name"])]
+        scene = CameraScene(program.description, program.all_objects(), [camera])
+        poses = robot_poses(program.description, self.cell.joint_positions())
+        poses |= self.cell.object_poses()
+        scene.picture.pose(poses)
+        view = scene.view(camera, poses)
+        if view is None:
+            raise RefusedError(f"'{camera.frame}', which carries the camera, is not there")
+        picture = RayRenderer(scene.picture, camera.width, camera.height).render(view)
+        _, encoded = cv2.imencode(".jpg", np.ascontiguousarray(picture[:, :, ::-1]))
+        return {"image": base64.b64encode(encoded.tobytes()).decode()}
+
+    # -- the scenario -------------------------------------------------------------------------
+
+    def do_edit(self, message: Message) -> Message:
+        """Take the editor's text; its mistakes are returned with their places."""
+        text = str(message["text"])
+        self.text = text
+        self.problems = []
+        try:
+            self.files.refuse_outside(Document(text))
+            is_new = self.cell.load(text)
+        except SpecError as error:
+            self.problems = list(error.problems)
+        else:
+            if is_new:
+                self.judged = None
+                self.show_cell()
+                self.session.broadcast(robot_message(self.cell))
+        if text != self.saved:
+            self.files.keep_unsaved(text)
+        return {"document": self.document_message()}
+
+    def do_complete(self, message: Message) -> Message:
+        """What may be written at a place of the text."""
+        line, column = int(message["line"]), int(message["column"])
+        found = complete(str(message["text"]), line, column, names_of(self.cell))
+        return {"options": [{"text": o.text, "kind": o.kind, "help": o.help} for o in found]}
+
+    def do_hover(self, message: Message) -> Message:
+        """The description of the key at a place of the text."""
+        text = str(message["text"])
+        return {"text": hover(text, int(message["line"]), int(message["column"]))}
+
+    def do_run(self, message: Message) -> Message:
+        """Run to a line of the text, one step more, or from the start to the end."""
+        self._refuse_mistakes()
+        cell, until = self.cell, message.get("until", "end")
+        count = cell.document.step_count
+        if not count:
+            raise RefusedError("the scenario has no steps yet")
+        if until == "line":
+            count = cell.document.step_at(int(message["line"])) + 1
+        elif until == "next":
+            if cell.steps_done >= count:
+                raise RefusedError("every step was executed; go back, or reset")
+            count = cell.steps_done + 1
+
+        def action() -> None:
+            if until == "end":
+                cell.reset()
+            if until == "next":
+                cell.run_steps(count)
+            else:
+                cell.go_to(count)
+            self.busy = "judging"
+            self.session.broadcast(self.state_message())
+            self.judged = cell.judged()
+
+        self.working("running", action)
+        assert self.judged is not None
+        self.session.broadcast(verdicts_message(self.judged))
+        failed = next((r for r in cell.execution.records if r.status == "failed"), None)
+        return {} if failed is None else failure_message(failed)
+
+    def do_back(self, _: Message) -> Message:
+        """Undo motions by hand, or the last step."""
+        self.target = None
+        self.cell.step_back()
+        self.after_jump()
+        return {}
+
+    def do_expect_seen(self, _: Message) -> Message:
+        """Propose expectations of what is seen now, for the last step executed."""
+        self._refuse_mistakes()
+        if not self.cell.steps_done:
+            raise RefusedError("execute a step first: an expectation is about a step")
+        if self.cell.is_by_hand:
+            raise RefusedError("the cell was moved by hand since the last step: record that first")
+        found = holding(self.cell, proposals(self.cell))
+        return {"proposals": [{"text": each.text, "why": each.why} for each in found]}
+
+    def do_expect(self, message: Message) -> Message:
+        """Put expectations at the last step executed."""
+        self._refuse_mistakes()
+        texts = [str(text) for text in message["texts"]]
+        step = self.cell.steps_done - 1
+        done = self.cell.steps_done
+        self._take_text(self.cell.document.with_expectations(texts, step).text)
+        if self.cell.steps_done != done:
+            self.say("warning", "the step is executed again, because its text has changed")
+        return {}
+
+    def do_save(self, message: Message) -> Message:
+        """Write the file; the digest is that of the last whole run of this text."""
+        self._refuse_mistakes()
+        path = self.files.save(str(message.get("name") or self.files.path.name), self.text)
+        self.saved = self.text
+        self.session.broadcast(self.document_message())
+        judged = self.judged
+        is_current = judged is not None and judged.digest and judged.run.source == self.text
+        return {"file": path.name, "digest": judged.digest if judged and is_current else ""}
+
+    def _refuse_mistakes(self) -> None:
+        if self.problems or self.text != self.cell.document.text:
+            raise RefusedError("the scenario has mistakes; mend the marked lines first")
+
+    def _take_text(self, text: str) -> None:
+        """Make a text the scenario's, and show it on every page."""
+        self.files.refuse_outside(Document(text))
+        is_new = self.cell.load(text)
+        self.text, self.problems = text, []
+        self.files.keep_unsaved(text)
+        if is_new:
+            self.judged = None
+            self.show_cell()
+        self.session.broadcast(robot_message(self.cell))
+        self.session.broadcast(self.document_message())

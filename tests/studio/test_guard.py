@@ -1,0 +1,121 @@
+"""Who may use a studio: strangers, other sites and other hosts are refused."""
+
+import asyncio
+import http.client
+
+import pytest
+import websockets
+from websockets.exceptions import InvalidStatus
+
+pytest.importorskip("viser")
+
+
+def status(served, path="/", **headers):
+    connection = http.client.HTTPConnection("127.0.0.1", served.port, timeout=20)
+    named = {name.replace("_", "-"): value for name, value in headers.items()}
+    connection.request("GET", path, headers=named)
+    response = connection.getresponse()
+    response.read()
+    connection.close()
+    return response.status, response.headers
+
+
+def socket_status(served, path="/studio/ws", origin=None, **headers):
+    async def attempt():
+        address = f"ws://127.0.0.1:{served.port}{path}"
+        try:
+            async with websockets.connect(address, origin=origin, additional_headers=headers):
+                return 101
+        except InvalidStatus as refused:
+            return refused.response.status_code
+
+    return asyncio.run(attempt())
+
+
+@pytest.fixture(scope="module")
+def served(serve):
+    return serve()
+
+
+@pytest.fixture(scope="module")
+def shared(serve):
+    return serve(is_open=True)
+
+
+def test_the_page_has_a_strict_policy_and_is_not_kept(served):
+    code, headers = status(served)
+    assert code == 200
+    policy = headers["Content-Security-Policy"]
+    assert "script-src 'self';" in policy
+    assert "default-src 'none'" in policy
+    assert headers["Cache-Control"] == "no-store"
+
+
+@pytest.mark.parametrize("path", ["/studio/ws", "/scene/1"])
+def test_another_sites_page_cannot_open_a_socket(served, path):
+    own = f"http://127.0.0.1:{served.port}"
+    assert socket_status(served, path, origin="http://evil.example") == 403
+    assert socket_status(served, path, origin=f"http://127.0.0.1:{served.port + 1}") == 403
+    assert socket_status(served, "/studio/ws", origin=own) == 101
+
+
+def test_a_name_that_was_bound_to_this_machine_is_refused(served):
+    assert status(served, Host=f"evil.example:{served.port}")[0] == 403
+    assert status(served, Host="127.0.0.1:1")[0] == 403
+    assert status(served, Host=f"localhost:{served.port}")[0] == 200
+
+
+@pytest.mark.parametrize(
+    "path", ["/../pyproject.toml", "/studio/../../studio.py", "/%2e%2e/x", "/studio/main.py", "/x"]
+)
+def test_nothing_but_the_page_is_served(served, path):
+    assert status(served, path)[0] == 404
+
+
+def test_other_machines_need_the_token(shared):
+    token = shared.guard.token
+    assert len(token) > 20
+    assert status(shared)[0] == 403
+    assert status(shared, "/?token=wrong")[0] == 403
+    code, headers = status(shared, f"/?token={token}")
+    assert code == 200
+    cookie = headers["Set-Cookie"]
+    assert "HttpOnly; SameSite=Strict" in cookie
+    assert status(shared, Cookie=cookie.partition(";")[0])[0] == 200
+    assert socket_status(shared) == 403
+    assert socket_status(shared, Cookie=f"harness_studio={token}x") == 403
+    assert socket_status(shared, Cookie=cookie.partition(";")[0]) == 101
+
+
+def test_files_outside_the_folder_are_neither_read_nor_written(served):
+    reply = served.asked("save", name="../other.scenario.yaml")
+    assert "outside the folder" in reply["error"]
+    assert "ends in .scenario.yaml" in served.asked("save", name="x.py")["error"]
+    text = served.studio.text.replace("robot: open_manipulator_x", "robot: {urdf: /etc/passwd}")
+    [problem] = served.asked("edit", text=text)["document"]["problems"]
+    assert "`/etc/passwd` is outside" in problem["text"]
+    text = served.studio.saved.replace("world: empty", "world: ../../secret.yaml")
+    [problem] = served.asked("edit", text=text)["document"]["problems"]
+    assert (problem["line"], "is outside" in problem["text"]) == (3, True)
+    served.asked("edit", text=served.studio.saved)
+
+
+def test_a_bad_request_is_answered_and_harms_nothing(served):
+    assert "no action" in served.asked("shutdown")["error"]
+    assert "bad request" in served.asked("jog", joint="joint1")["error"]
+    assert "bad request" in served.asked("goal", xyz=["a"], rpy=[])["error"]
+    assert served.asked("reset") == {}
+
+
+def test_unsaved_work_survives_a_crash(serve):
+    from harness.studio.studio import Studio
+
+    first = serve()
+    text = first.studio.text.replace("steps: []", "steps:\n  - wait: 1 s")
+    first.asked("edit", text=text)
+    assert first.files.restored() == text  # the process may end here
+    again = Studio.opened(first.files, first.studio.saved, first.files.restored(), "found")
+    assert again.text == text
+    assert again.cell.document.step_count == 1
+    first.asked("save")
+    assert first.files.restored() is None

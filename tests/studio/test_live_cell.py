@@ -1,0 +1,147 @@
+"""The live cell: the steps of a scenario, undone to the bit, and judged as a run judges them."""
+
+import numpy as np
+import pytest
+
+from harness.core.errors import SpecError
+from harness.session.run_case import run_case
+from harness.session.run_request import RunRequest
+from harness.studio.live_cell import LiveCell
+
+TEXT = """\
+# picked by hand
+scenario: "a box by hand"
+robot: open_manipulator_x
+objects:
+  - {name: box, box: {size: [0.03, 0.03, 0.03]}, pose: {xyz: [0.2, 0, 0.015]}}
+steps:
+  - move_to: home
+  - gripper: open
+    expect:
+      - gripper: open
+  - wait: 50 ms
+expect:
+  - never: collision
+"""
+
+
+@pytest.fixture
+def cell(tmp_path):
+    return LiveCell(tmp_path / "by_hand.scenario.yaml", TEXT)
+
+
+def full_state(cell):
+    snapshot = cell.simulator.snapshot()
+    return snapshot.integration, snapshot.samples
+
+
+def test_the_digest_of_the_studio_is_that_of_a_run_of_the_saved_file(cell):
+    cell.idle(0.2)  # physics that goes on while a person thinks is no part of the run
+    cell.go_to(3)
+    judged = cell.judged()
+    cell.path.write_text(cell.document.text)
+    result = run_case(RunRequest(cell.path))
+    assert result.outcome == judged.outcome == "passed"
+    assert judged.digest == result.digest
+    assert [each.margin for each in judged.verdicts] == [each.margin for each in result.verdicts]
+
+
+def test_a_step_back_restores_the_state_to_the_bit(cell):
+    cell.run_steps(1)
+    before, samples = full_state(cell)
+    cell.run_steps(2)
+    after, _ = full_state(cell)
+    cell.step_back()
+    assert np.array_equal(full_state(cell)[0], before)
+    assert full_state(cell)[1] == samples
+    cell.run_steps(2)
+    assert np.array_equal(full_state(cell)[0], after)
+
+
+def test_motions_by_hand_are_undone_before_the_last_step(cell):
+    cell.run_steps(1)
+    before, _ = full_state(cell)
+    cell.jog(cell.joint_positions() + 0.3, 1.0, 0.2)
+    assert not cell.is_run
+    assert not np.array_equal(full_state(cell)[0], before)
+    cell.step_back()
+    assert np.array_equal(full_state(cell)[0], before)
+    assert (cell.steps_done, cell.is_run) == (1, True)
+
+
+def test_what_was_moved_by_hand_has_no_digest_until_it_is_run(cell):
+    cell.jog(cell.joint_positions() + 0.1, 1.0, 0.1)
+    cell.run_steps(3)
+    assert cell.judged().digest == ""
+    cell.go_to(3)
+    assert cell.judged().digest
+
+
+def test_an_edit_keeps_the_steps_before_it(cell):
+    cell.run_steps(3)
+    assert not cell.load(TEXT.replace("50 ms", "60 ms"))
+    assert cell.steps_done == 2
+    assert cell.load(TEXT.replace("0.2, 0, 0.015", "0.21, 0, 0.015"))
+    assert cell.steps_done == 0
+
+
+def test_a_text_with_mistakes_leaves_the_cell_as_it_was(cell):
+    cell.run_steps(1)
+    with pytest.raises(SpecError, match="opne"):
+        cell.load(TEXT.replace("- gripper: open", "- gripper: opne"))
+    assert (cell.steps_done, cell.document.text) == (1, TEXT)
+
+
+def test_a_recorded_step_is_in_the_text_and_was_executed(cell):
+    cell.run_steps(2)
+    text, record = cell.record("gripper: close")
+    assert record.status == "passed"
+    assert text.splitlines()[10:12] == ["  - gripper: close", "  - wait: 50 ms"]
+    assert text.startswith("# picked by hand")
+    cell.go_to(4)
+    cell.path.write_text(text)
+    assert cell.judged().digest == run_case(RunRequest(cell.path)).digest
+
+
+def test_a_step_that_fails_is_not_recorded_and_changes_nothing(cell):
+    cell.run_steps(1)
+    before, _ = full_state(cell)
+    text, record = cell.record("lin: {position: {xyz: [2, 0, 0.1]}}")
+    assert (text, record.status, record.error_code) == (TEXT, "failed", "NO_IK_SOLUTION")
+    assert "nearest point" in record.message
+    assert np.array_equal(full_state(cell)[0], before)
+
+
+def test_planning_moves_nothing(cell):
+    from harness.studio.previews import preview
+
+    cell.run_steps(1)
+    before, _ = full_state(cell)
+    found = preview(cell, "move_to: {position: {xyz: [0.2, 0.05, 0.15]}, pitch: 0}")
+    assert found.record is None
+    assert found.duration > 0.1
+    assert np.array_equal(full_state(cell)[0], before)
+    text, _ = cell.record("move_to: {position: {xyz: [0.2, 0.05, 0.15]}, pitch: 0}")
+    executed = cell.execution.records[1].trajectory
+    assert executed["times"][-1] == pytest.approx(found.duration)
+    assert "xyz: [0.2, 0.05, 0.15]" in text
+
+
+def test_a_run_opens_in_the_middle_of_a_step_exactly_as_it_was(cell):
+    cell.run_steps(3)
+    recorded = cell.judged().run.signals
+    middle = len(recorded.times) // 3
+    cell.run_until(recorded.times[middle])
+    assert cell.simulator.sample_count == middle + 1
+    assert np.array_equal(cell.joint_positions(), recorded.joint_positions[middle])
+    assert not cell.is_run
+    cell.execute("gripper: close")  # and goes on by hand from there
+    assert cell.simulator.joint_positions()[-1] != recorded.joint_positions[middle][-1]
+
+
+def test_a_motion_that_is_stopped_by_hand_fails_and_leaves_the_arm_where_it_is(cell):
+    cell.pace = lambda _: cell.simulator.time < 0.3
+    cell.run_steps(3)
+    [record, *_] = cell.execution.records
+    assert (record.status, record.error_code) == ("failed", "PREEMPTED")
+    assert 0.3 <= cell.simulator.time < 0.35

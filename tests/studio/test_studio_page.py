@@ -1,0 +1,210 @@
+"""The studio in a real browser: one robot, from the first slider to a saved scenario."""
+
+import re
+
+import numpy as np
+import pytest
+
+from harness.session.run_case import run_case
+from harness.session.run_request import RunRequest
+from tests.reporting.browser import wait_for
+from tests.studio.conftest import pixel_of
+
+pytest.importorskip("viser")
+
+EXPECTED_NOISE = "THREE.Clock|WebGL|GPU stall|Detected chrome"
+
+
+COMPLETE = """
+const editor = ace.edit("editor");
+editor.find("move_to: ");
+editor.clearSelection();
+editor.focus();
+editor.execCommand("startAutocomplete");
+"""
+
+
+class Page:
+    """A page of the studio, with what went wrong in it."""
+
+    def __init__(self, context, address, *, has_scene=False):
+        self.page = context.new_page()
+        if not has_scene:  # drawn in software, it takes longer than all the rest
+            self.page.route("**/scene/*", lambda route: route.fulfill(body=""))
+        self.complaints = []
+        self.page.on("console", self._hear)
+        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.goto(address)
+        self.wait("document.querySelectorAll('.joint').length > 0")
+
+    def _hear(self, message):
+        if message.type == "error" and not re.search(EXPECTED_NOISE, message.text):
+            self.complaints.append(message.text)
+
+    def wait(self, expression):
+        wait_for(self.page, expression)
+
+    def wait_text(self, selector, text):
+        self.wait(f"document.querySelector({selector!r}).innerText.includes({text!r})")
+
+    def editor(self):
+        return self.page.evaluate("ace.edit('editor').getValue()")
+
+    def type_scenario(self, text):
+        self.page.evaluate("text => ace.edit('editor').setValue(text, -1)", text)
+
+
+@pytest.fixture(scope="module")
+def served(serve):
+    return serve()
+
+
+@pytest.fixture(scope="module")
+def opened(browser, served):
+    context = browser.new_context(viewport={"width": 1400, "height": 900})
+    page = Page(context, served.address)
+    page.page.select_option("#speed", "0")
+    yield page
+    assert page.complaints == []
+    context.close()
+
+
+def test_a_slider_moves_the_joint(opened, served):
+    opened.page.fill('input[aria-label="joint1 number"]', "0.4")
+    opened.page.press('input[aria-label="joint1 number"]', "Enter")
+    opened.wait(
+        "Math.abs(parseFloat(document.querySelector('.joint output').innerText) - 22.9) < 0.5"
+    )
+    assert served.studio.cell.joint_positions()[0] == pytest.approx(0.4, abs=0.01)
+    opened.wait_text("#status", "moved by hand")
+    opened.page.click("#reset")
+    opened.wait("Math.abs(parseFloat(document.querySelector('.joint output').innerText)) < 0.5")
+
+
+def test_a_value_beyond_the_limit_is_refused(opened):
+    opened.page.fill('input[aria-label="joint1 number"]', "9")
+    opened.page.press('input[aria-label="joint1 number"]', "Enter")
+    opened.wait_text("#log", "joint1 goes from -3.142 to 3.142 rad, not to 9")
+
+
+def test_the_handle_is_dragged_and_says_what_cannot_be_reached(browser, serve):
+    served = serve()
+    context = browser.new_context(viewport={"width": 1010, "height": 520})
+    opened = Page(context, served.address, has_scene=True)
+    client = wait_for_client(opened, served)
+    box = opened.page.locator("#scene").bounding_box()
+    view = served.studio.view
+    # the arrow along z, at half its length
+    tip = np.add(view.handle.position, [0, 0, 0.5 * view.handle.scale])
+    x, y = pixel_of(client.camera, (box["width"], box["height"]), tip)
+    mouse = opened.page.mouse
+    mouse.move(box["x"] + x, box["y"] + y)
+    mouse.down()
+    mouse.move(box["x"] + x, box["y"] + y - 15, steps=3)
+    opened.wait_text("#reach", "to the handle")
+    mouse.move(box["x"] + x, box["y"] + 4, steps=3)
+    mouse.up()
+    opened.wait("document.querySelector('#reach').innerText.includes('the nearest p')")
+    assert "refused" in opened.page.get_attribute("#reach", "class")
+    assert opened.complaints == []
+    context.close()
+
+
+def wait_for_client(opened, served):
+    for _ in range(1000):
+        for client in served.server.get_clients().values():
+            opened.page.wait_for_timeout(200)
+            return client
+        opened.page.wait_for_timeout(20)
+    raise AssertionError("viser's page does not connect")
+
+
+def test_a_pick_by_hand_becomes_a_scenario_with_the_same_digest(opened, served):
+    page = opened.page
+    page.click("summary:has-text('Objects')")
+    page.fill("#object-size", "0.03 0.03 0.03")
+    page.fill("#object-xyz", "0.2 0 0.015")
+    page.click("#object-add")
+    opened.wait("ace.edit('editor').getValue().includes('name: box')")
+    page.select_option("#goal-kind", "home")
+    page.click("#plan")
+    opened.wait_text("#plan-result", "takes")
+    page.click("#execute")
+    opened.wait_text("#plan-result", "executed: move_to: home")
+    page.fill("#step-text", "pick: {object: box, lift: {distance: 5 cm}}")
+    page.click("#step-run")
+    opened.wait_text("#status", "2 of 2 steps executed")
+    page.click("#expect-seen")
+    opened.wait_text("#proposals", "grasped: box")
+    page.click("#proposals button:has-text('Add')")
+    opened.wait("ace.edit('editor').getValue().includes('- grasped: box')")
+    page.click("#run-all")
+    opened.wait_text("#verdicts", "digest")
+    assert "passed" in page.inner_text(".outcome")
+    shown = page.get_attribute(".outcome", "data-digest")
+    page.keyboard.press("Control+s")
+    opened.wait_text("#log", "saved by_hand.scenario.yaml")
+    assert served.files.path.read_text() == opened.editor()
+    result = run_case(RunRequest(served.files.path))
+    assert (result.outcome, result.digest) == ("passed", shown)
+
+
+def test_one_step_back_and_to_the_cursor(opened, served):
+    opened.page.click("#back")
+    opened.wait_text("#status", "1 of 2 steps executed")
+    opened.page.evaluate("ace.edit('editor').gotoLine(1000)")
+    opened.page.click("#run-line")
+    opened.wait_text("#status", "2 of 2 steps executed")
+    assert served.studio.cell.is_run
+
+
+def test_a_mistake_is_marked_at_its_place_with_advice(opened):
+    good = opened.editor()
+    opened.type_scenario(good.replace("move_to: home", "move_to: hom"))
+    opened.wait("document.querySelectorAll('#problems button').length === 1")
+    problem = opened.page.inner_text("#problems")
+    assert re.match(r"\d+:\d+: there is no named state of arm called 'hom'", problem)
+    assert "did you mean 'home'" in problem
+    [annotation] = opened.page.evaluate("ace.edit('editor').session.getAnnotations()")
+    assert "hom'" in annotation["text"]
+    opened.page.click("#run-all")
+    opened.wait_text("#log", "has mistakes")
+    opened.type_scenario(good)
+    opened.wait("document.querySelectorAll('#problems button').length === 0")
+
+
+def test_completion_offers_what_the_robot_has(opened):
+    page = opened.page
+    good = opened.editor()
+    opened.type_scenario(good.replace("move_to: home", "move_to: "))
+    page.evaluate(COMPLETE)
+    opened.wait("document.querySelector('.ace_autocomplete')?.innerText.includes('home')")
+    page.keyboard.press("Escape")
+    opened.type_scenario(good)
+    opened.wait("document.querySelectorAll('#problems button').length === 0")
+
+
+def test_a_second_page_watches_until_it_is_given_control(browser, opened, served):
+    context = browser.new_context()
+    second = Page(context, served.address)
+    second.wait_text("#control-state", "you watch")
+    second.page.fill('input[aria-label="joint1 number"]', "0.2")
+    second.page.press('input[aria-label="joint1 number"]', "Enter")
+    second.wait_text("#log", "another page controls the cell")
+    second.page.click("#control")
+    opened.wait_text("#log", "Another page asks for control")
+    opened.page.click("#log button:has-text('Hand over')")
+    second.wait_text("#control-state", "you control")
+    opened.wait_text("#control-state", "you watch")
+    context.close()
+    opened.page.click("#control")
+    opened.wait("document.getElementById('control').hidden")
+
+
+def test_a_page_that_comes_back_finds_everything_as_it_was(opened):
+    before = opened.editor()
+    opened.page.reload()
+    opened.wait("document.querySelectorAll('.joint').length > 0")
+    opened.wait("document.getElementById('status').innerText.includes('steps executed')")
+    assert opened.editor() == before
+    opened.wait("document.getElementById('control').hidden")
