@@ -13,6 +13,7 @@ import numpy as np
 
 from harness.ports import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
+from harness.ros.camera_topics import CameraTopics
 from harness.ros.graph import Graph
 from harness.ros.handover import HandOver
 from harness.ros.launch import Allowed, Program
@@ -49,6 +50,14 @@ class LiveControl(HandOver):
         self._graph, self._options = graph, options
         self._states = StateTopics(graph, self.robot)
         self._wiring = Wiring(graph, self.cell, self._note)
+        program = self.prepared.program
+        self._cameras = CameraTopics(
+            graph,
+            tuple(program.cameras.values()),
+            program.description,
+            program.all_objects(),
+            program.seed,
+        )
         self._program: Program | None = None
         self._is_stopped = False
         self._said: set[str] = set()
@@ -64,6 +73,7 @@ class LiveControl(HandOver):
                 return self.drive(request, self._feed, self._after)
         finally:
             self._wiring.is_open = False
+            self._cameras.close()
             if self._program is not None:
                 self.output = self._program.output()
                 self._program.stop()
@@ -96,6 +106,8 @@ class LiveControl(HandOver):
         efforts[simulator.physics.actuated] = simulator.efforts()
         self._wiring.after_tick()
         self._states.publish(simulator.time, positions[-1], velocities[-1], efforts)
+        sample = simulator.sample_count - 1
+        self._cameras.publish(simulator.time, sample, positions[-1], simulator.objects_now)
 
     def _note(self, record: CommandRecord) -> None:
         """A command took effect; say it, where it did not."""

@@ -134,6 +134,10 @@ class MujocoSimulator:
         """The current T_world_object of a simulated object."""
         return self._objects.pose(name)
 
+    def objects_now(self) -> dict[str, FloatArray]:
+        """T_world_object of the objects in the scene (xyz, quat wxyz), shape (7,) each."""
+        return self._objects.present_poses()
+
     def track(self, trajectory: JointTrajectory) -> None:
         """Follow a trajectory, then hold its end until every joint is within the goal tolerance.
 

@@ -1,5 +1,6 @@
 """The bridge and a node over RTPS, in one process, with the real physics."""
 
+import cv2
 import numpy as np
 import pytest
 
@@ -7,17 +8,8 @@ from harness.ros.action_server import Status
 from harness.ros.control.goals import Code
 from harness.ros.interfaces import TRAJECTORY
 from harness.ros.replay import replay
-from tests.ros.nodes import (
-    ARM,
-    bridge,
-    duration,
-    follow,
-    grip,
-    point,
-    scenario,
-    tolerance,
-    trajectory,
-)
+from tests.ros.bridging import bridge, scenario
+from tests.ros.nodes import ARM, duration, follow, grip, point, tolerance, trajectory
 
 HOLD = "- external: {}\n  timeout: %g s"
 END = [0.2, 0, 0, 0]
@@ -115,6 +107,21 @@ def test_the_command_topic_moves_the_arm_and_what_it_cannot_follow_is_ignored(tm
     assert results[0].commands == 4
     [note] = said
     assert "this controller has no joint 'nobody'" in note
+
+
+def test_cameras_send_pictures_while_someone_watches(tmp_path):
+    with bridge(scenario(tmp_path)) as (node, _):
+        images = node.listen("/gripper_camera/image", "sensor_msgs/msg/Image")
+        small = node.listen("/gripper_camera/image/compressed", "sensor_msgs/msg/CompressedImage")
+        info = node.listen("/gripper_camera/image/camera_info", "sensor_msgs/msg/CameraInfo")
+        node.wait(lambda: images and small and info, 60)
+        node.send(follow(point(0.1, END)))
+    picture = images[0].data.reshape(480, 640, 3)
+    assert (images[0].encoding, images[0].step) == ("rgb8", 640 * 3)
+    assert images[0].header.frame_id == "gripper_camera_link_optical"
+    decoded = cv2.imdecode(small[0].data, cv2.IMREAD_COLOR_RGB)
+    assert np.abs(decoded.astype(int) - picture).mean() < 12
+    assert info[0].k[2] == 320
 
 
 def test_a_gripper_stalls_on_an_object(tmp_path):
