@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,31 +35,13 @@ def one_scenario(name: str) -> Path:
     return found[0]
 
 
-def named_commands(given: Sequence[str]) -> dict[str, str]:
-    """Commands by name, from `NAME=COMMAND` or `COMMAND`.
-
-    Raises:
-        UsageError: A command is empty, or two have the same name.
-    """
-    commands: dict[str, str] = {}
-    for text in given:
-        name, equals, command = text.partition("=")
-        if not (equals and name.isidentifier()):
-            name, command = "node", text
-        if not command.strip():
-            raise UsageError(f"--node '{text}' has no command")
-        if name in commands:
-            raise UsageError(f"--node: two commands are called '{name}'; write NAME=COMMAND")
-        commands[name] = command
-    return commands
-
-
 def bridge_request(
     arguments: argparse.Namespace, domain: int, timeout: float | None
 ) -> BridgeRequest:
     """What the arguments request; the steps are replaced where none hands the robot over."""
     from harness.language.reading.load import read_scenario
     from harness.ros.bridge import BridgeRequest, handed_over
+    from harness.ros.launch import named_commands
     from harness.session.run_request import RunRequest
     from harness.steps.external import External
     from harness.suite.folders import report_folders

@@ -141,6 +141,8 @@ def for_run(run: argparse.ArgumentParser) -> None:
         default=None,
         help="wall time after which a scenario ends as an error (default: 600)",
     )
+    run.add_argument("--node", metavar="[NAME=]COMMAND", dest="nodes", action="append", default=[],
+                     help="a command that the step `external` may start; repeatable")  # fmt: skip
     run.add_argument("--in-process", action="store_true",
                      help="no process for each scenario: for debuggers")  # fmt: skip
 

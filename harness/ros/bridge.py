@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from harness.ports import LONGEST_RUN
 from harness.reporting.result import CaseResult
+from harness.ros.domain import free_domain
 from harness.ros.graph import Graph
 from harness.ros.launch import Allowed
 from harness.ros.live import LiveControl, LiveOptions, Say
@@ -97,6 +98,16 @@ def run_bridge(request: BridgeRequest, notify: Notify = lambda _: None) -> Bridg
     if not made:
         return BridgeResult(case)
     return BridgeResult(case, made[0].pace.text(), made[0].output, len(made[0].commands))
+
+
+def run_with_nodes(request: RunRequest, notify: Notify) -> CaseResult:
+    """Run a case whose steps may start the request's nodes, in a domain of its own."""
+    with free_domain() as domain:
+        result = run_bridge(BridgeRequest(request, domain, nodes=request.nodes), notify)
+    said = [result.pace] if result.pace else []
+    if result.output and result.case.outcome != "passed":
+        said.append(f"the launched program printed: {result.output}")
+    return replace(result.case, notes=(*result.case.notes, *said))
 
 
 def handed_over(request: RunRequest, timeout: float = LONGEST_RUN) -> RunRequest:
