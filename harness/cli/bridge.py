@@ -126,20 +126,21 @@ def _replay(arguments: argparse.Namespace) -> int:
     recorded = read_run(folder)
     case = replay(folder, target)
     is_equal = case.digest == recorded.digest
+    count = sum(command.kind != "end" for command in recorded.run.commands)
     if arguments.json:
         with only_json_on_stdout() as write_json:
             write_json(
                 {
                     "format": "armharness-replay/1",
                     "outcome": case.outcome,
-                    "commands": len(recorded.run.commands),
+                    "commands": count,
                     "digest": case.digest,
                     "recorded_digest": recorded.digest,
                     "is_equal": is_equal,
                 }
             )
     else:
-        say(f"{len(recorded.run.commands)} commands replayed; {case.outcome}")
+        say(f"{count} commands replayed; {case.outcome}")
         if case.outcome not in ("passed", "failed"):
             say(case.message)
         same = "equal to the recorded one" if is_equal else f"recorded: {recorded.digest[:12]}"

@@ -36,6 +36,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run(arguments: argparse.Namespace) -> int:
     files = discover(arguments.paths)
+    if arguments.robot == "ros2":
+        from harness.cli.remote import run_on_ros2
+
+        return run_on_ros2(arguments, files)
     start = time.monotonic()
     with WarmServer() as server:
         if not arguments.in_process:

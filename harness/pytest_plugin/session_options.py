@@ -32,7 +32,7 @@ def hard_cap(config: pytest.Config) -> float | None:
 
 def nodes_of(config: pytest.Config) -> dict[str, str]:
     """Commands by name that scenarios may start as ROS 2 nodes."""
-    given = [*config.getini("harness_nodes"), *config.getoption("--harness-node")]
+    given = [*config.getini("harness_nodes"), *(config.getoption("--harness-node") or ())]
     if not given:
         return {}
     from harness.ros.launch import named_commands

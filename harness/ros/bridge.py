@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 from harness.ports import LONGEST_RUN
@@ -31,6 +31,7 @@ class BridgeRequest:
         factor: Simulated seconds in a wall second.
         is_interactive: Whether Ctrl-C ends the session in order.
         say: Receives notes for the user while it runs.
+        should_end: Looked at a hundred times a second; whether the session ends now.
     """
 
     run: RunRequest
@@ -41,6 +42,7 @@ class BridgeRequest:
     factor: float = 1.0
     is_interactive: bool = False
     say: Say = lambda _: None
+    should_end: Callable[[], bool] = lambda: False
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,11 @@ def run_bridge(request: BridgeRequest, notify: Notify = lambda _: None) -> Bridg
     """
     graph = open_graph(request.adapter, request.domain, node=NODE, is_local=request.is_local)
     options = LiveOptions(
-        Allowed(request.nodes, request.domain), request.factor, request.say, request.is_interactive
+        Allowed(request.nodes, request.domain),
+        request.factor,
+        request.say,
+        request.is_interactive,
+        request.should_end,
     )
     made: list[LiveControl] = []
 
@@ -97,7 +103,8 @@ def run_bridge(request: BridgeRequest, notify: Notify = lambda _: None) -> Bridg
         graph.close()
     if not made:
         return BridgeResult(case)
-    return BridgeResult(case, made[0].pace.text(), made[0].output, len(made[0].commands))
+    commands = sum(command.kind != "end" for command in made[0].commands)
+    return BridgeResult(case, made[0].pace.text(), made[0].output, commands)
 
 
 def run_with_nodes(request: RunRequest, notify: Notify) -> CaseResult:

@@ -33,12 +33,14 @@ class LiveOptions:
         factor: Simulated seconds in a wall second.
         say: Receives notes for the user while it runs.
         is_interactive: Whether Ctrl-C ends the session and not the command.
+        should_end: Looked at before each tick; whether the session ends now.
     """
 
     allowed: Allowed
     factor: float = 1.0
     say: Say = lambda _: None
     is_interactive: bool = False
+    should_end: Callable[[], bool] = lambda: False
 
 
 class LiveControl(HandOver):
@@ -89,7 +91,7 @@ class LiveControl(HandOver):
         """Receive until the next tick is due."""
         self._graph.spin(self.pace.next())
         self.pace.tick()
-        if self._is_stopped:
+        if self._is_stopped or self._options.should_end():
             self._is_stopped = False
             self.cell.receive("end", content={"reason": "stopped"})
         program = self._program

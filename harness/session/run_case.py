@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -30,6 +30,7 @@ def run_case(
     request: RunRequest,
     notify: Notify = lambda _: None,
     make_session: MakeSession = no_programs,
+    start: Callable[[RunRequest, Clock], Start] = start_case,
 ) -> CaseResult:
     """Load, compile, execute, observe, judge and report one case.
 
@@ -37,22 +38,23 @@ def run_case(
         request: The case, and what is written of it.
         notify: Called with the case's progress.
         make_session: Makes the session of the programs to which a step hands the robot over.
+        start: Prepares the case, with the simulator or a robot in its place.
     """
     clock = Clock()
     try:
         with clock.part("compile"):
-            start = start_case(request, clock)
+            begun = start(request, clock)
     except SpecError as error:
         return _invalid(request, error)
-    prepared, overlaps, draw = start.prepared, start.simulator.overlaps_at_start, start.draw
+    prepared, overlaps, draw = begun.prepared, begun.simulator.overlaps_at_start, begun.draw
     progress = Progress(notify, prepared.program)
     progress.compiled()
     folder, notes = request.report_dir, ()
     try:
-        session = make_session(prepared, start.simulator)
-        executed = _executed(request, start, clock, progress, session)
+        session = make_session(prepared, begun.simulator)
+        executed = _executed(request, begun, clock, progress, session)
         refusal = session.refusal()
-        del start, session  # the simulator is the largest object, and the run holds its recording
+        del begun, session  # the simulator is the largest object, and the run holds its recording
         observe = partial(observed_run, request, prepared, executed, clock, progress.activity)
         run = observe(is_kept=folder is not None and not request.only_failed)
         judged = _judged(request, run, prepared, clock, progress)
@@ -118,7 +120,12 @@ def _executed(
     executed = clock.seconds.pop("execute")
     clock.seconds["plan"] = max(0.0, executed - clock.seconds.get("simulate", 0.0))
     run = executed_run(request, prepared, execution, signals, simulator.overlaps_at_start)
-    return replace(run, commands=session.commands)
+    return replace(
+        run,
+        commands=session.commands,
+        timestep=simulator.timestep,
+        unrecorded=simulator.unrecorded,
+    )
 
 
 def _judged(

@@ -46,7 +46,10 @@ class MujocoSimulator:
 
     Attributes:
         overlaps_at_start: Pairs of bodies that overlap at the start, deepest first.
+        unrecorded: Signals that are not recorded: none.
     """
+
+    unrecorded: tuple[str, ...] = ()
 
     def __init__(
         self,

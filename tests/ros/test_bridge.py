@@ -11,12 +11,15 @@ from harness.ros.replay import replay
 from tests.ros.bridging import bridge, scenario
 from tests.ros.nodes import ARM, duration, follow, grip, point, tolerance, trajectory
 
-HOLD = "- external: {}\n  timeout: %g s"
+HOLD = "- external: {}"
 END = [0.2, 0, 0, 0]
 
 
 def test_a_node_moves_the_arm_and_the_recording_replays_to_the_same_digest(tmp_path):
-    with bridge(scenario(tmp_path), run={"report_dir": tmp_path / "run"}) as (node, results):
+    with bridge(scenario(tmp_path), waits=True, run={"report_dir": tmp_path / "run"}) as (
+        node,
+        results,
+    ):
         states = node.listen("/joint_states", "sensor_msgs/msg/JointState")
         node.ready()
         goal = node.send(follow(point(0.4, END)))
@@ -35,7 +38,7 @@ def test_a_node_moves_the_arm_and_the_recording_replays_to_the_same_digest(tmp_p
 
 
 def test_goals_end_with_the_error_codes_of_their_messages(tmp_path):
-    with bridge(scenario(tmp_path, HOLD % 1.5)) as (node, results):
+    with bridge(scenario(tmp_path, HOLD)) as (node, results):
         node.ready()
         codes = {
             "no such joint": follow(point(0.1, END), joints=("joint1", "joint2", "elbow", "wrist")),
@@ -69,7 +72,7 @@ def test_goals_end_with_the_error_codes_of_their_messages(tmp_path):
 
 
 def test_tolerances_cancel_and_preemption(tmp_path):
-    with bridge(scenario(tmp_path, HOLD % 3)) as (node, _):
+    with bridge(scenario(tmp_path, HOLD)) as (node, _):
         node.ready()
         tight = [tolerance("joint1", 1e-6)]
         strayed = node.send(follow(point(0.2, [0.5, 0, 0, 0]), path_tolerance=tight))
@@ -96,7 +99,7 @@ def test_tolerances_cancel_and_preemption(tmp_path):
 
 def test_the_command_topic_moves_the_arm_and_what_it_cannot_follow_is_ignored(tmp_path):
     said = []
-    with bridge(scenario(tmp_path), say=said.append) as (node, results):
+    with bridge(scenario(tmp_path), waits=True, say=said.append) as (node, results):
         publisher = node.graph.advertise("/arm_controller/joint_trajectory", TRAJECTORY)
         node.ready()
         node.wait(lambda: publisher.subscribers)
@@ -125,7 +128,7 @@ def test_cameras_send_pictures_while_someone_watches(tmp_path):
 
 
 def test_a_gripper_stalls_on_an_object(tmp_path):
-    steps = HOLD % 2
+    steps = HOLD
     box = """objects:
   - name: block
     box: {size: [0.02, 0.04, 0.04]}

@@ -22,9 +22,8 @@ node.send(follow(point(0.3, [0.2, 0, 0, 0])))
 def test_a_scenario_is_graded_with_the_command_of_the_ini_file(pytester, monkeypatch, is_allowed):
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
     pytester.makepyfile(student=NODE)
-    scenario(
-        pytester.path, "- external: {launch: student, until: {joints: {positions: {joint1: 0.2}}}}"
-    )
+    until = "{joints: {positions: {joint1: 0.2}}}"
+    scenario(pytester.path, f"- external: {{launch: student, until: {until}}}")
     name = "student" if is_allowed else "teacher"
     pytester.makeini(f"[pytest]\nharness_nodes =\n    {name}={sys.executable} student.py\n")
     result = pytester.runpytest_subprocess("--harness-no-report", "-p", "no:randomly")

@@ -81,8 +81,8 @@ class Reader:
         proxy = self.writers.setdefault(guid, _Writer(address, qos))
         proxy.address = address
         if self.qos.is_reliable and qos.is_reliable:
-            # what was sent before this moment comes again: Fast DDS answers a base of 0 at once, and
-            # one of 1 with its next heartbeat, three seconds later
+            # what was sent before comes again: Fast DDS answers a base of 0 at once, and one of 1
+            # with its next heartbeat, three seconds later
             self._acknowledge(guid, proxy, 0 if guid.startswith(FAST_DDS) else 1, [])
 
     def take(self, guid: bytes, sample: wire.Sample) -> None:
