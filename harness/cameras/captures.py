@@ -125,7 +125,7 @@ class _Shot:
         if "color" in kinds:
             ideal = self._renderer.render(self._view)
             picture = as_delivered(ideal, camera, self._seed, self._look.sample)
-            content["color"] = _png(picture) if self._look.step else _jpeg(picture, camera)
+            content["color"] = _png(picture) if self._look.step else jpeg(picture, camera)
         if "depth" in kinds:
             depth, _ = self._measured
             content["depth"] = _npz(depth)
@@ -172,7 +172,7 @@ def _png(picture: np.ndarray) -> bytes:
     return _encoded(".png", picture, [cv2.IMWRITE_PNG_COMPRESSION, 3])
 
 
-def _jpeg(picture: np.ndarray, camera: Camera) -> bytes:
+def jpeg(picture: np.ndarray, camera: Camera) -> bytes:
     """A picture of one or three (RGB) channels as a JPEG file of the camera's quality."""
     return _encoded(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, camera.jpeg_quality])
 

@@ -89,6 +89,14 @@ def factor(text: str) -> float:
     return _positive(text, "simulated seconds in a second")
 
 
+def share(text: str) -> float:
+    """A share above 0, at most 1."""
+    number = _positive(text, "a share")
+    if number > 1:
+        raise argparse.ArgumentTypeError(f"'{text}' is more than 1")
+    return number
+
+
 def rate(text: str) -> float:
     """Messages a second, above 0."""
     return _positive(text, "messages a second")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,31 +35,13 @@ def one_scenario(name: str) -> Path:
     return found[0]
 
 
-def named_commands(given: Sequence[str]) -> dict[str, str]:
-    """Commands by name, from `NAME=COMMAND` or `COMMAND`.
-
-    Raises:
-        UsageError: A command is empty, or two have the same name.
-    """
-    commands: dict[str, str] = {}
-    for text in given:
-        name, equals, command = text.partition("=")
-        if not (equals and name.isidentifier()):
-            name, command = "node", text
-        if not command.strip():
-            raise UsageError(f"--node '{text}' has no command")
-        if name in commands:
-            raise UsageError(f"--node: two commands are called '{name}'; write NAME=COMMAND")
-        commands[name] = command
-    return commands
-
-
 def bridge_request(
     arguments: argparse.Namespace, domain: int, timeout: float | None
 ) -> BridgeRequest:
     """What the arguments request; the steps are replaced where none hands the robot over."""
     from harness.language.reading.load import read_scenario
     from harness.ros.bridge import BridgeRequest, handed_over
+    from harness.ros.launch import named_commands
     from harness.session.run_request import RunRequest
     from harness.steps.external import External
     from harness.suite.folders import report_folders
@@ -145,20 +126,21 @@ def _replay(arguments: argparse.Namespace) -> int:
     recorded = read_run(folder)
     case = replay(folder, target)
     is_equal = case.digest == recorded.digest
+    count = sum(command.kind != "end" for command in recorded.run.commands)
     if arguments.json:
         with only_json_on_stdout() as write_json:
             write_json(
                 {
                     "format": "armharness-replay/1",
                     "outcome": case.outcome,
-                    "commands": len(recorded.run.commands),
+                    "commands": count,
                     "digest": case.digest,
                     "recorded_digest": recorded.digest,
                     "is_equal": is_equal,
                 }
             )
     else:
-        say(f"{len(recorded.run.commands)} commands replayed; {case.outcome}")
+        say(f"{count} commands replayed; {case.outcome}")
         if case.outcome not in ("passed", "failed"):
             say(case.message)
         same = "equal to the recorded one" if is_equal else f"recorded: {recorded.digest[:12]}"

@@ -15,6 +15,7 @@ from harness.cli.arguments import (
     radians,
     rate,
     seconds,
+    share,
     whole_number,
 )
 from harness.cli.robot_options import ROBOT, add_robot_options
@@ -142,6 +143,15 @@ def for_run(run: argparse.ArgumentParser) -> None:
         default=None,
         help="wall time after which a scenario ends as an error (default: 600)",
     )
+    run.add_argument("--node", metavar="[NAME=]COMMAND", dest="nodes", action="append", default=[],
+                     help="a command that the step `external` may start; repeatable")  # fmt: skip
+    run.add_argument("--robot", choices=("simulated", "ros2"), default="simulated",
+                     help="ros2: plan here, and let the controllers of a ROS 2 robot execute;"
+                     " prints the plan and asks before the first motion")  # fmt: skip
+    run.add_argument("--yes", action="store_true", help="with --robot ros2: do not ask")
+    run.add_argument("--velocity-scaling", metavar="SHARE", type=share, default=1.0,
+                     help="with --robot ros2: share of the planned speed (default: 1)")  # fmt: skip
+    _domain_options(run)
     run.add_argument("--in-process", action="store_true",
                      help="no process for each scenario: for debuggers")  # fmt: skip
 
@@ -334,17 +344,23 @@ def _node_options(command: argparse.ArgumentParser) -> None:
     add = command.add_argument
     add("--node", metavar="[NAME=]COMMAND", dest="nodes", action="append", default=[],
         help="a command that the scenario may start: 'python student.py'; repeatable")  # fmt: skip
-    add("--domain", metavar="N", type=int, default=None,
-        help="ROS domain (default: ROS_DOMAIN_ID or 0; of `grade` a free one)")  # fmt: skip
-    add("--network", action="store_true", help="let nodes of other machines in too")
-    add("--adapter", choices=("rtps", "rclpy"), default="rtps",
-        help="who speaks ROS 2: the program itself, or the rclpy that is installed")  # fmt: skip
+    _domain_options(command)
     add("--pace", metavar="FACTOR", type=factor, default=1.0,
         help="simulated seconds in a wall second (default: 1)")  # fmt: skip
     add("--seed", metavar="N", type=int, default=None, help="in place of the file's")
     add("--report-dir", metavar="DIR", default="reports",
         help="where reports go (default: reports)")  # fmt: skip
     add("--no-report", action="store_true", help="write no report")
+
+
+def _domain_options(command: argparse.ArgumentParser) -> None:
+    """Of commands that join a ROS domain."""
+    add = command.add_argument
+    add("--domain", metavar="N", type=int, default=None,
+        help="ROS domain (default: ROS_DOMAIN_ID or 0; of --node a free one)")  # fmt: skip
+    add("--network", action="store_true", help="talk to nodes of other machines too")
+    add("--adapter", choices=("rtps", "rclpy"), default="rtps",
+        help="who speaks ROS 2: the program itself, or the rclpy that is installed")  # fmt: skip
 
 
 def for_compare(compare: argparse.ArgumentParser) -> None:

@@ -36,6 +36,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run(arguments: argparse.Namespace) -> int:
     files = discover(arguments.paths)
+    if arguments.robot == "ros2":
+        from harness.cli.remote import run_on_ros2
+
+        return run_on_ros2(arguments, files)
     start = time.monotonic()
     with WarmServer() as server:
         if not arguments.in_process:
@@ -75,6 +79,7 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
+    from harness.ros.launch import named_commands
     from harness.suite.plan import SuiteRequest, planned_cases, record_of
     from harness.suite.shards import shard_of, write_shard_record
     from harness.suite.suite_run import SuiteOptions, SuiteRun
@@ -103,6 +108,7 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
         shard=shard,
         strict=arguments.strict,
         reporters=arguments.reporters,
+        nodes=named_commands(arguments.nodes) if arguments.nodes else {},
     )
     plan = planned_cases(files, request)
     if shard is not None and root is not None:
@@ -267,6 +273,8 @@ def _command(arguments: argparse.Namespace, job: RunRequest) -> str:
         words += ["--seed", str(arguments.seed)]
     if arguments.samples is not None:
         words += ["--samples", str(arguments.samples)]
+    for node in arguments.nodes:
+        words += ["--node", node]
     words += ["--strict"] if arguments.strict else []
     words += ["--bag"] if arguments.bag else []
     for name in arguments.reporters:

@@ -60,6 +60,16 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         default=[],
         help="load the plug-ins of a Python module (a module name or a .py file)",
     )
+    group.addoption(
+        "--harness-node",
+        metavar="[NAME=]COMMAND",
+        action="append",
+        default=[],
+        help="a command that scenarios may start as a ROS 2 node (see the ini key harness_nodes)",
+    )
+    parser.addini(
+        "harness_nodes", "commands that scenarios may start as ROS 2 nodes", type="linelist"
+    )
     parser.addini("harness_plugins", "modules that provide plug-ins for scenarios", type="args")
     parser.addini(
         "harness_files",

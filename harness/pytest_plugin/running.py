@@ -12,6 +12,7 @@ from harness.pytest_plugin.session_files import ItemRecord, as_plain
 from harness.pytest_plugin.session_options import (
     RECORD,
     hard_cap,
+    nodes_of,
     report_root,
     server_of,
     shown,
@@ -77,7 +78,11 @@ def run_item(item: pytest.Item, header: ScenarioHeader, case: str, number: int) 
     if root is not None and not item.config.stash.get(CLEANED, False):
         item.config.stash[CLEANED] = True
         clean_report_folder(root)
-    request = SuiteRequest(report_root=root, strict=bool(item.config.getoption("--harness-strict")))
+    request = SuiteRequest(
+        report_root=root,
+        strict=bool(item.config.getoption("--harness-strict")),
+        nodes=nodes_of(item.config),
+    )
     plan = [
         each
         for each in planned_cases([shown(item.path)], request)

@@ -30,6 +30,16 @@ def hard_cap(config: pytest.Config) -> float | None:
     return float(cap) if cap else None
 
 
+def nodes_of(config: pytest.Config) -> dict[str, str]:
+    """Commands by name that scenarios may start as ROS 2 nodes."""
+    given = [*config.getini("harness_nodes"), *(config.getoption("--harness-node") or ())]
+    if not given:
+        return {}
+    from harness.ros.launch import named_commands
+
+    return named_commands(given)
+
+
 def server_of(config: pytest.Config) -> WarmServer:
     """The fork server of this pytest process, which ends together with pytest."""
     if SERVER not in config.stash:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 from harness.ports import LONGEST_RUN
 from harness.reporting.result import CaseResult
+from harness.ros.domain import free_domain
 from harness.ros.graph import Graph
 from harness.ros.launch import Allowed
 from harness.ros.live import LiveControl, LiveOptions, Say
@@ -30,6 +31,7 @@ class BridgeRequest:
         factor: Simulated seconds in a wall second.
         is_interactive: Whether Ctrl-C ends the session in order.
         say: Receives notes for the user while it runs.
+        should_end: Looked at a hundred times a second; whether the session ends now.
     """
 
     run: RunRequest
@@ -40,6 +42,7 @@ class BridgeRequest:
     factor: float = 1.0
     is_interactive: bool = False
     say: Say = lambda _: None
+    should_end: Callable[[], bool] = lambda: False
 
 
 @dataclass(frozen=True)
@@ -82,7 +85,11 @@ def run_bridge(request: BridgeRequest, notify: Notify = lambda _: None) -> Bridg
     """
     graph = open_graph(request.adapter, request.domain, node=NODE, is_local=request.is_local)
     options = LiveOptions(
-        Allowed(request.nodes, request.domain), request.factor, request.say, request.is_interactive
+        Allowed(request.nodes, request.domain),
+        request.factor,
+        request.say,
+        request.is_interactive,
+        request.should_end,
     )
     made: list[LiveControl] = []
 
@@ -96,7 +103,18 @@ def run_bridge(request: BridgeRequest, notify: Notify = lambda _: None) -> Bridg
         graph.close()
     if not made:
         return BridgeResult(case)
-    return BridgeResult(case, made[0].pace.text(), made[0].output, len(made[0].commands))
+    commands = sum(command.kind != "end" for command in made[0].commands)
+    return BridgeResult(case, made[0].pace.text(), made[0].output, commands)
+
+
+def run_with_nodes(request: RunRequest, notify: Notify) -> CaseResult:
+    """Run a case whose steps may start the request's nodes, in a domain of its own."""
+    with free_domain() as domain:
+        result = run_bridge(BridgeRequest(request, domain, nodes=request.nodes), notify)
+    said = [result.pace] if result.pace else []
+    if result.output and result.case.outcome != "passed":
+        said.append(f"the launched program printed: {result.output}")
+    return replace(result.case, notes=(*result.case.notes, *said))
 
 
 def handed_over(request: RunRequest, timeout: float = LONGEST_RUN) -> RunRequest:

@@ -67,11 +67,11 @@ class HandOver:
             feed()
             end = _end_of(cell.commands[before:])
             if end is not None and end.content.get("reason") == "stopped":
-                ended = ExternalResult("stopped", len(cell.commands) - before)
+                ended = ExternalResult("stopped", _count(cell.commands[before:]))
                 break
             cell.tick()
             after()
-            received = len(cell.commands) - before
+            received = _count(cell.commands[before:])
             if end is not None and (ended_at is None or not cell.is_idle):
                 ended_at = cell.time
             if watch.holds():
@@ -79,7 +79,7 @@ class HandOver:
             elif watch.elapsed >= request.timeout - 1e-9:
                 ended = ExternalResult("timeout", received, _said(end))
             elif end is not None and ended_at is not None and cell.time >= ended_at + GRACE:
-                ended = ExternalResult("exit", received - 1, _said(end))
+                ended = ExternalResult("exit", received, _said(end))
         cell.finish()
         after()
         return ended
@@ -87,6 +87,11 @@ class HandOver:
 
 def _end_of(commands: list[CommandRecord]) -> CommandRecord | None:
     return next((each for each in reversed(commands) if each.kind == "end"), None)
+
+
+def _count(commands: list[CommandRecord]) -> int:
+    """Number of commands; the end of a program is none."""
+    return sum(command.kind != "end" for command in commands)
 
 
 def _said(end: CommandRecord | None) -> str:

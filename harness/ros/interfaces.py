@@ -116,6 +116,12 @@ def stamp(seconds: float) -> Any:
     return message("builtin_interfaces/msg/Time", sec=whole, nanosec=rest)
 
 
+def span(seconds: float) -> Any:
+    """A length of time as a Duration."""
+    whole, rest = divmod(round(seconds * 1e9), 10**9)
+    return message("builtin_interfaces/msg/Duration", sec=whole, nanosec=rest)
+
+
 def seconds(moment: Any) -> float:
     """A stamp or a duration in seconds."""
     return moment.sec + moment.nanosec * 1e-9

@@ -8,13 +8,33 @@ import shlex
 import signal
 import subprocess
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from harness.core.errors import StepFailed
+from harness.core.errors import Problem, SpecError, StepFailed
 
 TAIL = 2000
 """Characters of a program's last output that are shown."""
+
+
+def named_commands(given: Iterable[str]) -> dict[str, str]:
+    """Commands by name, from `NAME=COMMAND` or `COMMAND`.
+
+    Raises:
+        SpecError: A command is empty, or two have the same name.
+    """
+    commands: dict[str, str] = {}
+    for text in given:
+        name, equals, command = text.partition("=")
+        if not (equals and name.isidentifier()):
+            name, command = "node", text
+        reason = "" if command.strip() else "it has no command"
+        if name in commands:
+            reason = f"two commands are called '{name}'; write NAME=COMMAND"
+        if reason:
+            raise SpecError([Problem(f"the node '{text}'", 0, 0, reason)])
+        commands[name] = command
+    return commands
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ import numpy as np
 
 from harness.ports import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
+from harness.ros.camera_topics import CameraTopics
 from harness.ros.graph import Graph
 from harness.ros.handover import HandOver
 from harness.ros.launch import Allowed, Program
@@ -32,12 +33,14 @@ class LiveOptions:
         factor: Simulated seconds in a wall second.
         say: Receives notes for the user while it runs.
         is_interactive: Whether Ctrl-C ends the session and not the command.
+        should_end: Looked at before each tick; whether the session ends now.
     """
 
     allowed: Allowed
     factor: float = 1.0
     say: Say = lambda _: None
     is_interactive: bool = False
+    should_end: Callable[[], bool] = lambda: False
 
 
 class LiveControl(HandOver):
@@ -49,6 +52,14 @@ class LiveControl(HandOver):
         self._graph, self._options = graph, options
         self._states = StateTopics(graph, self.robot)
         self._wiring = Wiring(graph, self.cell, self._note)
+        program = self.prepared.program
+        self._cameras = CameraTopics(
+            graph,
+            tuple(program.cameras.values()),
+            program.description,
+            program.all_objects(),
+            program.seed,
+        )
         self._program: Program | None = None
         self._is_stopped = False
         self._said: set[str] = set()
@@ -64,6 +75,7 @@ class LiveControl(HandOver):
                 return self.drive(request, self._feed, self._after)
         finally:
             self._wiring.is_open = False
+            self._cameras.close()
             if self._program is not None:
                 self.output = self._program.output()
                 self._program.stop()
@@ -79,7 +91,7 @@ class LiveControl(HandOver):
         """Receive until the next tick is due."""
         self._graph.spin(self.pace.next())
         self.pace.tick()
-        if self._is_stopped:
+        if self._is_stopped or self._options.should_end():
             self._is_stopped = False
             self.cell.receive("end", content={"reason": "stopped"})
         program = self._program
@@ -96,6 +108,8 @@ class LiveControl(HandOver):
         efforts[simulator.physics.actuated] = simulator.efforts()
         self._wiring.after_tick()
         self._states.publish(simulator.time, positions[-1], velocities[-1], efforts)
+        sample = simulator.sample_count - 1
+        self._cameras.publish(simulator.time, sample, positions[-1], simulator.objects_now)
 
     def _note(self, record: CommandRecord) -> None:
         """A command took effect; say it, where it did not."""

@@ -46,7 +46,8 @@ class NoPrograms:
         raise StepFailed(
             "COMMUNICATION_FAILURE",
             "this step hands the arm to ROS 2 nodes; run the scenario with"
-            " `harness grade SCENARIO --node COMMAND`, or with `harness bridge SCENARIO`",
+            " `harness grade SCENARIO --node COMMAND`, with `harness bridge SCENARIO`, or with"
+            " `harness run SCENARIO --node COMMAND`",
         )
 
     def refusal(self) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import gc
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -33,6 +33,7 @@ def run_case(
     request: RunRequest,
     notify: Notify = lambda _: None,
     make_session: MakeSession = no_programs,
+    start: Callable[[RunRequest, Clock], Start] = start_case,
 ) -> CaseResult:
     """Load, compile, execute, observe, judge and report one case.
 
@@ -40,21 +41,22 @@ def run_case(
         request: The case, and what is written of it.
         notify: Called with the case's progress.
         make_session: Makes the session of the programs to which a step hands the robot over.
+        start: Prepares the case, with the simulator or a robot in its place.
     """
     clock = Clock()
     try:
         with clock.part("compile"):
-            start = start_case(request, clock)
+            begun = start(request, clock)
     except SpecError as error:
         return _invalid(request, error)
-    prepared, overlaps, draw = start.prepared, start.simulator.overlaps_at_start, start.draw
+    prepared, overlaps, draw = begun.prepared, begun.simulator.overlaps_at_start, begun.draw
     progress = Progress(notify, prepared.program)
     progress.compiled()
     try:
-        session = make_session(prepared, start.simulator)
-        executed = _executed(request, start, clock, progress, session)
+        session = make_session(prepared, begun.simulator)
+        executed = _executed(request, begun, clock, progress, session)
         refusal = session.refusal()
-        del start, session  # the simulator is the largest object, and the run holds its recording
+        del begun, session  # the simulator is the largest object, and the run holds its recording
         gc.collect()  # parts of the simulator refer to each other
         with Pictures(request, prepared, executed) as pictures:
             judged = _judged(request, executed, prepared, pictures, clock, progress)
@@ -90,7 +92,12 @@ def _executed(
     clock.seconds["plan"] = max(0.0, executed - clock.seconds.get("simulate", 0.0))
     signals = with_believed_poses(prepared, execution, simulator.finish())
     run = executed_run(request, prepared, execution, signals, simulator.overlaps_at_start)
-    return replace(run, commands=session.commands)
+    return replace(
+        run,
+        commands=session.commands,
+        timestep=simulator.timestep,
+        unrecorded=simulator.unrecorded,
+    )
 
 
 def _judged(

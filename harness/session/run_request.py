@@ -53,6 +53,7 @@ class RunRequest:
         text: Content that is read in place of the file's; None reads the file.
         redraw: Draws the sample again while objects overlap at the start; None draws it once.
         strict: Whether a warning of a verdict fails the case.
+        nodes: Commands by name that steps may start as ROS 2 nodes.
     """
 
     file: Path
@@ -68,3 +69,4 @@ class RunRequest:
     text: str | None = None
     redraw: Redraw | None = None
     strict: bool = False
+    nodes: Mapping[str, str] = field(default_factory=dict[str, str])

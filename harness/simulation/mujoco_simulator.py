@@ -52,7 +52,10 @@ class MujocoSimulator:
 
     Attributes:
         overlaps_at_start: Pairs of bodies that overlap at the start, deepest first.
+        unrecorded: Signals that are not recorded: none.
     """
+
+    unrecorded: tuple[str, ...] = ()
 
     def __init__(
         self,
@@ -139,6 +142,10 @@ class MujocoSimulator:
     def object_pose(self, name: str) -> SE3:
         """The current T_world_object of a simulated object."""
         return self._objects.pose(name)
+
+    def objects_now(self) -> dict[str, FloatArray]:
+        """T_world_object of the objects in the scene (xyz, quat wxyz), shape (7,) each."""
+        return self._objects.present_poses()
 
     def track(self, trajectory: JointTrajectory) -> None:
         """Follow a trajectory, then hold its end until every joint is within the goal tolerance.

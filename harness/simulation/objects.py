@@ -101,6 +101,14 @@ class Objects:
             poses[name] = rows
         return poses
 
+    def present_poses(self) -> dict[str, FloatArray]:
+        """T_world_object of the objects in the scene now, shape (7,) each."""
+        return {
+            name: self._pose(place)
+            for name, place in self._physics.objects.items()
+            if self._log[name][-1][1] is not None
+        }
+
     def _pose(self, place: ObjectPlace) -> FloatArray:
         if place.qpos >= 0:
             return self._data.qpos[place.qpos : place.qpos + 7].copy()

@@ -46,6 +46,10 @@ def run_job(job: RunRequest, notify: Callable[[ProgressEvent], None]) -> CaseRes
     prepare_process()
     from harness.session import run_case as session  # imports planners and physics
 
+    if job.nodes:
+        from harness.ros.bridge import run_with_nodes
+
+        return run_with_nodes(job, notify)
     return session.run_case(job, notify)
 
 

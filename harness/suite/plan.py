@@ -36,6 +36,7 @@ class SuiteRequest:
         shard: The part of the suite to run; None runs the whole suite.
         strict: Whether a warning of a verdict fails a case.
         reporters: Names of other reporters that write into the reports.
+        nodes: Commands by name that steps may start as ROS 2 nodes.
     """
 
     expression: str = ""
@@ -50,6 +51,7 @@ class SuiteRequest:
     shard: Shard | None = None
     strict: bool = False
     reporters: Sequence[str] = ()
+    nodes: Mapping[str, str] = field(default_factory=dict[str, str])
 
 
 @dataclass(frozen=True)
@@ -173,6 +175,7 @@ def _job(file: Path, case: Case, folder: Path | None, request: SuiteRequest) -> 
         only_failed=keep == "failed",
         redraw=fixed.redraw,
         strict=request.strict,
+        nodes=request.nodes,
     )
 
 

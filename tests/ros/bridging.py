@@ -2,7 +2,7 @@
 
 from contextlib import contextmanager
 from pathlib import Path
-from threading import Thread
+from threading import Event, Thread
 
 from harness.ros.bridge import BridgeRequest, run_bridge
 from harness.ros.domain import free_domain
@@ -22,17 +22,23 @@ def scenario(folder, steps=STEPS, rest="expect: [{always: within_limits}]", robo
 
 
 @contextmanager
-def bridge(file, **options):
-    """A bridge in a thread; yields a node in its domain and, at the end, the result."""
+def bridge(file, *, waits=False, **options):
+    """A bridge in a thread; yields a node in its domain and, at the end, the result.
+
+    With the block the session ends, or, where it `waits`, with its steps.
+    """
+    ended = Event()
     with free_domain() as domain:
         run = RunRequest(Path(file), page=False, stills=False, **options.pop("run", {}))
         results = []
-        request = BridgeRequest(run, domain, **options)
+        request = BridgeRequest(run, domain, should_end=ended.is_set, **options)
         thread = Thread(target=lambda: results.append(run_bridge(request)))
         thread.start()
         node = Node(domain)
         try:
             yield node, results
         finally:
+            if not waits:
+                ended.set()
             thread.join(120)
             node.graph.close()

@@ -1,5 +1,6 @@
 """The bridge and a node over RTPS, in one process, with the real physics."""
 
+import cv2
 import numpy as np
 import pytest
 
@@ -7,24 +8,18 @@ from harness.ros.action_server import Status
 from harness.ros.control.goals import Code
 from harness.ros.interfaces import TRAJECTORY
 from harness.ros.replay import replay
-from tests.ros.nodes import (
-    ARM,
-    bridge,
-    duration,
-    follow,
-    grip,
-    point,
-    scenario,
-    tolerance,
-    trajectory,
-)
+from tests.ros.bridging import bridge, scenario
+from tests.ros.nodes import ARM, duration, follow, grip, point, tolerance, trajectory
 
-HOLD = "- external: {}\n  timeout: %g s"
+HOLD = "- external: {}"
 END = [0.2, 0, 0, 0]
 
 
 def test_a_node_moves_the_arm_and_the_recording_replays_to_the_same_digest(tmp_path):
-    with bridge(scenario(tmp_path), run={"report_dir": tmp_path / "run"}) as (node, results):
+    with bridge(scenario(tmp_path), waits=True, run={"report_dir": tmp_path / "run"}) as (
+        node,
+        results,
+    ):
         states = node.listen("/joint_states", "sensor_msgs/msg/JointState")
         node.ready()
         goal = node.send(follow(point(0.4, END)))
@@ -43,7 +38,7 @@ def test_a_node_moves_the_arm_and_the_recording_replays_to_the_same_digest(tmp_p
 
 
 def test_goals_end_with_the_error_codes_of_their_messages(tmp_path):
-    with bridge(scenario(tmp_path, HOLD % 1.5)) as (node, results):
+    with bridge(scenario(tmp_path, HOLD)) as (node, results):
         node.ready()
         codes = {
             "no such joint": follow(point(0.1, END), joints=("joint1", "joint2", "elbow", "wrist")),
@@ -77,7 +72,7 @@ def test_goals_end_with_the_error_codes_of_their_messages(tmp_path):
 
 
 def test_tolerances_cancel_and_preemption(tmp_path):
-    with bridge(scenario(tmp_path, HOLD % 3)) as (node, _):
+    with bridge(scenario(tmp_path, HOLD)) as (node, _):
         node.ready()
         tight = [tolerance("joint1", 1e-6)]
         strayed = node.send(follow(point(0.2, [0.5, 0, 0, 0]), path_tolerance=tight))
@@ -104,7 +99,7 @@ def test_tolerances_cancel_and_preemption(tmp_path):
 
 def test_the_command_topic_moves_the_arm_and_what_it_cannot_follow_is_ignored(tmp_path):
     said = []
-    with bridge(scenario(tmp_path), say=said.append) as (node, results):
+    with bridge(scenario(tmp_path), waits=True, say=said.append) as (node, results):
         publisher = node.graph.advertise("/arm_controller/joint_trajectory", TRAJECTORY)
         node.ready()
         node.wait(lambda: publisher.subscribers)
@@ -117,8 +112,23 @@ def test_the_command_topic_moves_the_arm_and_what_it_cannot_follow_is_ignored(tm
     assert "this controller has no joint 'nobody'" in note
 
 
+def test_cameras_send_pictures_while_someone_watches(tmp_path):
+    with bridge(scenario(tmp_path)) as (node, _):
+        images = node.listen("/gripper_camera/image", "sensor_msgs/msg/Image")
+        small = node.listen("/gripper_camera/image/compressed", "sensor_msgs/msg/CompressedImage")
+        info = node.listen("/gripper_camera/image/camera_info", "sensor_msgs/msg/CameraInfo")
+        node.wait(lambda: images and small and info, 60)
+        node.send(follow(point(0.1, END)))
+    picture = images[0].data.reshape(480, 640, 3)
+    assert (images[0].encoding, images[0].step) == ("rgb8", 640 * 3)
+    assert images[0].header.frame_id == "gripper_camera_link_optical"
+    decoded = cv2.imdecode(small[0].data, cv2.IMREAD_COLOR_RGB)
+    assert np.abs(decoded.astype(int) - picture).mean() < 12
+    assert info[0].k[2] == 320
+
+
 def test_a_gripper_stalls_on_an_object(tmp_path):
-    steps = HOLD % 2
+    steps = HOLD
     box = """objects:
   - name: block
     box: {size: [0.02, 0.04, 0.04]}

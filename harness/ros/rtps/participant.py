@@ -23,7 +23,7 @@ MOST_PARTICIPANTS = 120
 MOST_DOMAINS = 232
 ANNOUNCE_EVERY = 1.0
 REMIND_EVERY = 0.1
-LEASE = 10.0
+LEASE = 100.0
 """Seconds of silence after which peers forget this participant."""
 
 BUILTIN = 0x3F
@@ -44,6 +44,7 @@ class _Peer:
     user: Address
     lease: float
     seen: float
+    knows_us: bool = False
     endpoints: dict[bytes, tuple[str, str, Qos, Address]] = field(
         default_factory=dict[bytes, tuple[str, str, Qos, Address]]
     )
@@ -168,7 +169,8 @@ class Participant:
             for prefix, peer in list(self._peers.items()):
                 if now - peer.seen > peer.lease:
                     self._forget(prefix)
-            self._announce((GROUP, self._base))
+            for address in ((GROUP, self._base), *{peer.meta for peer in self._peers.values()}):
+                self._announce(address)
 
     # -- sockets ------------------------------------------------------------------------------
 
@@ -252,6 +254,8 @@ class Participant:
         if sample.writer == wire.SPDP_WRITER:
             self._take_participant(source, sample)
             return
+        if source in self._peers:
+            self._peers[source].knows_us = True
         for reader in self._addressed(sample.reader, source + sample.writer):
             reader.take(source + sample.writer, sample)
 
@@ -298,8 +302,9 @@ class Participant:
         is_new = source not in self._peers
         peer = self._peers.setdefault(source, _Peer(meta, user, 20.0, time.monotonic()))
         peer.lease = float(seconds)
-        if is_new:
+        if not peer.knows_us:  # it may not have listened yet when the last announcement came
             self._announce(meta)
+        if is_new:
             latched = Qos(is_latched=True)
             for writer, reader in (
                 (wire.PUBLICATIONS_WRITER, wire.PUBLICATIONS_READER),

@@ -1,0 +1,85 @@
+"""`harness run --robot ros2`: a robot's own controllers execute what is planned here."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from harness.cli.output import complain, output, say
+from harness.suite.discovery import UsageError
+from harness.suite.outcome import EXIT_CODES
+
+if TYPE_CHECKING:
+    from harness.core.trajectory import JointTrajectory
+    from harness.reporting.result import ProgressEvent
+
+AGREED = ("y", "yes")
+
+
+def run_on_ros2(arguments: argparse.Namespace, files: Sequence[Path]) -> int:
+    """Run one scenario on a ROS 2 robot, once the user has seen the plan and agreed.
+
+    Raises:
+        UsageError: There is more than one scenario, or nobody can be asked.
+    """
+    from harness.cli.bridge import show_case
+    from harness.ros.bridge import open_graph
+    from harness.ros.domain import domain_of_user
+    from harness.ros.remote import RemoteOptions
+    from harness.ros.remote_run import run_on_robot
+    from harness.session.run_request import RunRequest
+    from harness.suite.folders import report_folders
+
+    if len(files) != 1:
+        raise UsageError(f"--robot ros2 runs one scenario at a time, not {len(files)}")
+    if not arguments.yes and not sys.stdin.isatty():
+        raise UsageError("--robot ros2 moves a robot: confirm at a terminal, or say --yes")
+    folder = None if arguments.no_report else report_folders(files, Path(arguments.report_dir))[0]
+    request = RunRequest(
+        files[0],
+        overrides=dict(arguments.overrides),
+        seed=arguments.seed,
+        report_dir=folder,
+        page=not arguments.no_page,
+        bag=arguments.bag,
+    )
+    asked = _Confirmation(arguments.yes, arguments.velocity_scaling)
+    domain = domain_of_user(arguments.domain)
+    graph = open_graph(arguments.adapter, domain, node="armharness", is_local=not arguments.network)
+    try:
+        options = RemoteOptions(arguments.velocity_scaling, asked)
+        case = run_on_robot(request, graph, options, asked.note)
+    finally:
+        graph.close()
+    show_case(case, request)
+    return EXIT_CODES[case.outcome]
+
+
+class _Confirmation:
+    """Prints the plan of each motion, and asks before the first one."""
+
+    def __init__(self, is_agreed: bool, velocity_scaling: float) -> None:
+        self._is_agreed, self._share = is_agreed, velocity_scaling
+        self._step = ""
+
+    def note(self, event: ProgressEvent) -> None:
+        """Take note of the step that is on."""
+        if event.kind == "step_started":
+            self._step = event.step
+
+    def __call__(self, trajectory: JointTrajectory) -> bool:
+        seconds = trajectory.duration / self._share
+        say(f"{self._step}: {len(trajectory.times)} points in {seconds:.2f} s")
+        ends = zip(
+            trajectory.joint_names, trajectory.positions[0], trajectory.positions[-1], strict=True
+        )
+        for name, begin, end in ends:
+            say(f"  {name}: {begin:.4f} to {end:.4f}")
+        if not self._is_agreed:
+            output().clear()
+            complain("Move the robot along this plan, and along those of the steps after it? [y/N]")
+            self._is_agreed = sys.stdin.readline().strip().lower() in AGREED
+        return self._is_agreed

@@ -1,0 +1,67 @@
+"""`harness run --robot ros2`: planned here, executed by our own bridge as by a robot's driver."""
+
+import io
+import json
+import sys
+
+import pytest
+
+from harness.cli.main import main
+from tests.ros.bridging import bridge, scenario
+
+STEPS = """- ptp: {joints: {joint1: 0.2, joint2: 0.1}}
+  id: there
+- ptp: {joints: {joint1: 0.0, joint2: 0.0}}
+"""
+EXPECT = """expect:
+  - joints: {positions: {joint1: 0.0}, tolerance: 1 deg}
+  - always: {within_limits: {effort: false}}
+  - never: collision
+"""
+HOLD = "- external: {}"
+
+
+@pytest.fixture
+def plan(tmp_path):
+    (tmp_path / "plan").mkdir()
+    return scenario(tmp_path / "plan", STEPS, EXPECT)
+
+
+def remote(plan, node, *arguments):
+    return main(
+        [
+            *["run", str(plan), "--robot", "ros2", "--domain", str(node.graph.participant.domain)],
+            *["--no-page", "--report-dir", str(plan.parent / "r"), *arguments],
+        ]
+    )
+
+
+def test_a_planned_scenario_moves_a_robot_and_is_judged_from_its_topics(tmp_path, plan, capsys):
+    with bridge(scenario(tmp_path, HOLD)) as (node, results):
+        node.ready()
+        code = remote(plan, node, "--yes", "--velocity-scaling", "0.5")
+    said = capsys.readouterr().out
+    [record] = (plan.parent / "r").rglob("run.json")
+    run = json.loads(record.read_text())
+    statuses = [verdict["status"] for verdict in run["verdicts"]]
+    assert statuses == ["passed", "passed", "not observable"]
+    assert [step["status"] for step in run["steps"]] == ["passed", "passed"]
+    assert code == 1  # what cannot be observed has not passed
+    assert "joint1: 0.0000 to 0.2000" in said
+    assert results[0].commands == 2
+
+
+def test_nothing_moves_before_the_user_agrees(tmp_path, plan, capsys, monkeypatch):
+    answer = io.StringIO("no\n")
+    answer.isatty = lambda: True
+    monkeypatch.setattr(sys, "stdin", answer)
+    with bridge(scenario(tmp_path, HOLD)) as (node, results):
+        node.ready()
+        assert remote(plan, node) == 1
+    assert "PREEMPTED: the motion was not confirmed" in capsys.readouterr().out
+    assert results[0].commands == 0
+
+
+def test_without_a_terminal_the_user_has_to_agree_in_advance(plan, capsys):
+    assert main(["run", str(plan), "--robot", "ros2"]) == 2
+    assert "say --yes" in capsys.readouterr().err

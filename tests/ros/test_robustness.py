@@ -1,0 +1,134 @@
+"""Garbage, clients that die, many points, several bridges: nothing of it ends the bridge."""
+
+import os
+import socket
+import struct
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import rosless
+
+from harness.ros.action_server import Status
+from harness.ros.rtps import wire
+from harness.ros.rtps.writer import Qos
+from tests.ros.bridging import bridge, scenario
+from tests.ros.nodes import ARM, Node, follow, point
+
+HOLD = "- external: {}"
+END = [0.2, 0, 0, 0]
+DYING = """
+import os
+from tests.ros.nodes import Node, follow, point
+node = Node(int(os.environ["ROS_DOMAIN_ID"]))
+node.ready()
+goal = node.arm.send(follow(point(1.0, [0.2, 0, 0, 0])))
+node.wait(lambda: goal.is_accepted)
+os._exit(9)
+"""
+
+
+def test_garbage_on_the_ports_and_topics_is_ignored(tmp_path):
+    rng = np.random.default_rng(0)
+    with bridge(scenario(tmp_path, HOLD)) as (node, _):
+        trajectory = node.graph.participant.writer(
+            "rt/arm_controller/joint_trajectory",
+            "trajectory_msgs::msg::dds_::JointTrajectory_",
+            Qos(),
+        )
+        node.ready()
+        node.wait(lambda: trajectory.readers)
+        [address] = {reader.address for reader in trajectory.readers.values()}
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
+            for size in range(0, 400, 2):
+                head = wire.header(node.graph.participant.prefix) if size % 4 else b""
+                out.sendto(head + rng.bytes(size), address)
+        for size in range(0, 60, 3):
+            trajectory.write(b"\0\1\0\0" + rng.bytes(size))
+            trajectory.write(b"\0\1\0\0" + struct.pack("<I", 2**31) * 5)
+        assert node.send(follow(point(0.1, END))).status is Status.SUCCEEDED
+
+
+def test_ten_thousand_points_are_followed(tmp_path):
+    times = np.linspace(1e-4, 0.5, 10_000)
+    points = [point(t, [0.4 * t, 0, 0, 0], [0.4 * (t < 0.5), 0, 0, 0]) for t in times]
+    with bridge(scenario(tmp_path, HOLD)) as (node, _):
+        node.ready()
+        assert node.send(follow(*points)).status is Status.SUCCEEDED
+
+
+def test_a_goal_goes_on_when_its_client_dies(tmp_path):
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    with bridge(scenario(tmp_path, HOLD)) as (node, _):
+        states = node.listen("/joint_states", "sensor_msgs/msg/JointState")
+        environment["ROS_DOMAIN_ID"] = str(node.graph.participant.domain)
+        died = subprocess.run([sys.executable, "-c", DYING], env=environment, check=False)
+        assert died.returncode == 9
+        node.wait(lambda: states and abs(states[-1].position[0] - 0.2) < 0.01)
+
+
+def test_two_bridges_side_by_side_do_not_hear_each_other(tmp_path):
+    (tmp_path / "b").mkdir()
+    with (
+        bridge(scenario(tmp_path, HOLD)) as (first, one),
+        bridge(scenario(tmp_path / "b", HOLD)) as (second, two),
+    ):
+        first.ready()
+        second.ready()
+        assert first.graph.participant.domain != second.graph.participant.domain
+        assert first.send(follow(point(0.1, END))).status is Status.SUCCEEDED
+    assert (one[0].commands, two[0].commands) == (1, 0)
+
+
+def test_another_implementation_of_the_protocol_reads_the_joints(tmp_path):
+    """rosless is written in Rust on RustDDS; like rclpy, it is not of this program."""
+    with bridge(scenario(tmp_path, HOLD)) as (node, _):
+        other = rosless.Node(node.graph.participant.domain)
+        topic = other.subscribe("/joint_states", "sensor_msgs/msg/JointState")
+        message, end = None, time.monotonic() + 20
+        while message is None and time.monotonic() < end:
+            node.sleep(0.05)
+            message = topic.read(timeout=0.2)
+        topic.close()
+    assert message.name[:4] == list(ARM)
+    assert len(message.position) == len(message.velocity) == len(message.name)
+
+
+def test_moveit_s_controller_manager_executes_a_trajectory(tmp_path):
+    """What MoveItSimpleControllerManager does with a controller: it waits for the action server,
+    sends the trajectory without tolerances, awaits the goal's response, then the result; a
+    trajectory that is stopped is canceled and its result awaited."""
+    with bridge(scenario(tmp_path, HOLD)) as (node, _):
+        states = node.listen("/joint_states", "sensor_msgs/msg/JointState")
+        node.wait(lambda: node.arm.is_ready)
+        node.wait(lambda: states)
+        start = list(states[-1].position[:4])
+        goal = node.arm.send(follow(point(0.0, start), point(0.1, END), point(0.3, END)))
+        node.wait(lambda: goal.is_accepted is not None)
+        node.wait(lambda: goal.is_over)
+        assert (goal.status, goal.result.error_code) == (Status.SUCCEEDED, 0)
+        stopped = node.arm.send(follow(point(0.0, END), point(5.0, start)))
+        node.wait(lambda: stopped.is_accepted)
+        node.arm.cancel(stopped)
+        node.wait(lambda: stopped.is_over)
+        assert (stopped.cancel_code, stopped.status) == (0, Status.CANCELED)
+        held = states[-1].position[0]
+        node.sleep(0.3)
+        assert abs(states[-1].position[0] - held) < 0.01
+
+
+def test_a_node_that_comes_later_gets_what_is_latched(tmp_path):
+    with bridge(scenario(tmp_path, HOLD)) as (node, _):
+        node.ready()
+        late = Node(node.graph.participant.domain)
+        description = late.listen("/robot_description", "std_msgs/msg/String", latched=True)
+        static = late.listen("/tf_static", "tf2_msgs/msg/TFMessage", latched=True)
+        moving = late.listen("/tf", "tf2_msgs/msg/TFMessage")
+        late.wait(lambda: description and static and moving)
+        late.graph.close()
+    assert description[0].data.startswith("<?xml")
+    edges = {each.child_frame_id: each.header.frame_id for each in moving[0].transforms}
+    assert edges["link2"] == "link1"
+    assert static[0].transforms[0].header.frame_id == "world"
