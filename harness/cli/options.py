@@ -118,6 +118,14 @@ def for_run(run: argparse.ArgumentParser) -> None:
         help="run part N of COUNT of the suite, or with 'auto' the part that SLURM, Kubernetes or"
         " GitLab names; `harness merge` joins the parts",
     )
+    run.add_argument(
+        "--on",
+        metavar="CLUSTER",
+        dest="cluster",
+        default="",
+        help="run the cases on Ray: 'ray' for processes of this machine (-j) or the cluster of"
+        " RAY_ADDRESS, 'ray://HOST:PORT' for another cluster; needs the extra `cluster`",
+    )
     run.add_argument("--no-report", action="store_true", help="write no report")
     run.add_argument("--no-page", action="store_true", help="write the report without its page")
     run.add_argument("--bag", action="store_true", help="write a rosbag2 into the report too")

@@ -42,7 +42,7 @@ def _run(arguments: argparse.Namespace) -> int:
         return run_on_ros2(arguments, files)
     start = time.monotonic()
     with WarmServer() as server:
-        if not arguments.in_process:
+        if not arguments.in_process and not arguments.cluster:
             server.open()  # it imports for as long as this process takes to get ready
         suite = _suite(arguments, files)
         if arguments.format == "json":
@@ -91,6 +91,12 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
             registry("reporter").find(name)
         except LookupError as error:
             raise UsageError(f"--reporter: {error.args[0]}") from None
+    if arguments.cluster:
+        from harness.suite.ray_cluster import check_cluster
+
+        check_cluster(arguments.cluster)
+        if arguments.in_process:
+            raise UsageError("--on and --in-process exclude each other")
     root = None if arguments.no_report else Path(arguments.report_dir)
     if root is not None:
         clean_report_folder(root)
@@ -122,6 +128,7 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
         stream=root if arguments.resume or is_whole else None,
         resume=arguments.resume,
         is_part=shard is not None,
+        cluster=arguments.cluster,
     )
     return SuiteRun(plan, how, files)
 
@@ -201,6 +208,11 @@ def show_results(
         say(f"report: {one}" if len(written) == 1 else f"reports: {arguments.report_dir}")
     for line in annotations_for_action(suite.record):
         output().command(line)
+    if len(suite.processors) > 1:
+        say(
+            f"the cases ran on {len(suite.processors)} processor families"
+            f" ({'; '.join(sorted(suite.processors))}): compare their verdicts, not their digests"
+        )
     _show_interruption(arguments, suite, seconds)
 
 

@@ -49,7 +49,7 @@ def _clean(parent: Path, only: str | None = None) -> None:
         return
     for sibling in siblings:
         match = _TEMPORARY.fullmatch(sibling.name)
-        if match is None or only not in (None, match["name"]) or _is_alive(int(match["pid"])):
+        if match is None or only not in (None, match["name"]) or is_alive(int(match["pid"])):
             continue
         older, folder = sibling / match["name"], parent / match["name"]
         if match["kind"] == "old" and older.is_dir() and not folder.exists():
@@ -57,7 +57,8 @@ def _clean(parent: Path, only: str | None = None) -> None:
         shutil.rmtree(sibling, ignore_errors=True)
 
 
-def _is_alive(pid: int) -> bool:
+def is_alive(pid: int) -> bool:
+    """Whether a process of this machine is there."""
     try:
         os.kill(pid, 0)
     except (ProcessLookupError, OverflowError):

@@ -151,11 +151,20 @@ def entry_of(line: bytes) -> StreamEntry | None:
         entry = cast("dict[str, Any]", json.loads(line))
         if entry["format"] != FORMAT:
             return None
-        result = _validator().validate_python(entry["result"])
+        result = result_of(entry["result"])
         tags = tuple(map(str, entry.get("tags", ())))
         return StreamEntry(str(entry["key"]), result, dict(entry.get("values", {})), tags)
     except (ValueError, KeyError, TypeError, RecursionError):
         return None
+
+
+def result_of(plain: Mapping[str, Any]) -> CaseResult:
+    """A result from its plain data.
+
+    Raises:
+        ValueError: It has another shape.
+    """
+    return _validator().validate_python(plain)
 
 
 @cache
@@ -182,12 +191,19 @@ def _sorted(overrides: Mapping[str, str]) -> list[str]:
 
 @cache
 def file_hash(file: Path) -> str:
-    """Hash of a scenario file and of the files that it names, and those that they name.
+    """Hash of a scenario file and of the files that it names, and those that they name."""
+    hasher = hashlib.sha256()
+    for _, content in input_files(file):
+        hasher.update(content)
+    return hasher.hexdigest()
+
+
+def input_files(file: Path) -> Iterator[tuple[Path, bytes]]:
+    """A scenario file and the files that it names, and those that they name, with their contents.
 
     A name is any word or quoted text with the ending of an input, from the folder of the file that
     says it: to read one too many does no harm. What packages hold is not followed.
     """
-    hasher = hashlib.sha256()
     waiting, seen = [file], set[Path]()
     while waiting:
         path = waiting.pop()
@@ -198,9 +214,8 @@ def file_hash(file: Path) -> str:
             data = path.read_bytes()
         except OSError:
             continue
-        hasher.update(data)
+        yield path, data
         if path.suffix.lower() not in MESHES:
             text = data.decode("utf-8", "replace")
             names = sorted({"".join(groups) for groups in _NAME.findall(text)})
             waiting += [path.parent / name for name in names if name.lower().endswith(INPUTS)]
-    return hasher.hexdigest()

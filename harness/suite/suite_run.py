@@ -35,6 +35,7 @@ class SuiteOptions:
         stream: Folder that results are written to as they come; None: nowhere.
         resume: Whether results that are there are taken instead of computed.
         is_part: Whether the plan is one part of a suite, whose rates are decided after a merge.
+        cluster: The cluster that runs the cases; empty for this machine.
     """
 
     workers: int = 1
@@ -44,6 +45,7 @@ class SuiteOptions:
     stream: Path | None = None
     resume: bool = False
     is_part: bool = False
+    cluster: str = ""
 
 
 class SuiteRun:
@@ -57,6 +59,7 @@ class SuiteRun:
         resumed: How many results are from an earlier run.
         is_interrupted: Whether Ctrl-C or SIGTERM ended it early.
         missing_parts: Why a suite that was merged from parts is incomplete, one sentence each.
+        processors: Processor families of the cluster's nodes; digests are comparable within one.
         unfinished: The last event of each run that has begun and not ended, by index into `jobs`.
     """
 
@@ -73,6 +76,7 @@ class SuiteRun:
         self.resumed = 0
         self.is_interrupted = False
         self.missing_parts: tuple[str, ...] = ()
+        self.processors: set[str] = set()
         self.unfinished: dict[int, ProgressEvent] = {}
         self._how = how
         self._sampling = Sampling(plan, is_part=how.is_part)
@@ -139,6 +143,12 @@ class SuiteRun:
         how = self._how
         if how.in_process:
             return run_here(self.jobs, watch=watch, is_needless=self.is_needless)
+        if how.cluster:
+            from harness.suite.ray_cluster import RayCluster  # the extra `cluster`
+
+            cluster = RayCluster(how.cluster, how.workers)
+            self.processors = cluster.processors
+            return cluster.run(self.jobs, hard_cap=how.hard_cap, is_needless=self.is_needless)
         return run_isolated(
             self.jobs,
             server,

@@ -15,7 +15,8 @@ from harness.reporting.html import bundle
 from harness.reporting.html.content_policy import content_policy
 from harness.reporting.margins import allowance_used, margin_share, worst
 from harness.reporting.result import CaseResult
-from harness.reporting.sampled import SampledRate, missed, rate_text, table_lines
+from harness.reporting.sampled import SampledRate, missed, rate_text, short_value, table_lines
+from harness.reporting.suite.campaign import campaign_html
 from harness.reporting.suite.cause import cause_of
 from harness.reporting.suite.history import Key
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
@@ -23,6 +24,7 @@ from harness.reporting.terminal import OUTCOMES, Style, failure_place
 
 FOLDER = Path(__file__).with_name("page")
 SIGNS = Style(has_signs=True)
+MOST_ROWS = 2000
 HISTORY_HEAD = '<th scope="col" class="history">Worst margin over runs</th>'
 SPARK_WIDTH, SPARK_HEIGHT = 90, 20  # [pixels]
 
@@ -41,8 +43,9 @@ def suite_html(
     """
     results = [case.result for case in record.cases]
     passed = sum(result.outcome == "passed" for result in results)
-    rows = [_row(i, case, folder, history) for i, case in enumerate(record.cases)]
-    skeleton, script = _read("suite.html"), _read("suite.js")
+    listed = listed_cases(record.cases)
+    rows = [_row(i, record.cases[i], folder, history) for i in listed]
+    skeleton, script = _read("suite.html"), _read("suite.js") + _read("campaign.js")
     style = bundle.theme() + _read("suite.css")
     return Template(skeleton).substitute(
         policy=content_policy(skeleton, script=script, style=style),
@@ -58,9 +61,37 @@ def suite_html(
         outcomes=_outcomes(results),
         causes=_causes(results),
         rates=_rates(record.rates),
+        campaign=campaign_html(record.cases, folder),
         table=_varied(record.cases),
+        unlisted=_unlisted(len(record.cases) - len(listed)),
         rows="\n".join(rows),
         history=HISTORY_HEAD if history else "",
+    )
+
+
+def listed_cases(cases: Sequence[SuiteCase]) -> list[int]:
+    """Indices of the cases that the page lists, in their order: failures first, then the nearest.
+
+    A page with a hundred thousand rows opens in no browser.
+    """
+
+    def urgency(index: int) -> tuple[bool, float]:
+        result = cases[index].result
+        nearest = worst(result.verdicts)
+        share = math.inf if nearest is None else margin_share(nearest)
+        return result.outcome == "passed", share
+
+    if len(cases) <= MOST_ROWS:
+        return list(range(len(cases)))
+    return sorted(sorted(range(len(cases)), key=urgency)[:MOST_ROWS])
+
+
+def _unlisted(count: int) -> str:
+    if not count:
+        return ""
+    return (
+        f'<p class="quiet unlisted">{count} more cases are not listed: failures come first, then'
+        " what is nearest to failing. <code>harness results DIR</code> queries all of them.</p>"
     )
 
 
@@ -162,13 +193,19 @@ def _row(
         f' data-name="{escape(result.title.lower())}" data-time="{result.sim_time:.3f}"'
         f' data-words="{escape(f"{words} {said}".lower())}">'
         f'<td><i class="sign {result.outcome}"></i><span class="quiet">{result.outcome}</span></td>'
-        f'<td>{title}{tags}<div class="quiet">{escape(result.file)}</div>'
+        f'<td>{title}{tags}<div class="quiet">{escape(result.file)}{_drawn(case)}</div>'
         f'<div class="why">{escape(said)}</div></td>'
         f"<td>{_margin(result)}</td>"
         f'{line}<td class="number">{result.sim_time:.1f} s</td>'
         f'<td class="number">{result.seed}</td>'
         f'<td class="number">{escape(result.digest[:12])}</td></tr>'
     )
+
+
+def _drawn(case: SuiteCase) -> str:
+    """What varies in a case, with the values that it has."""
+    values = ", ".join(f"{path} {short_value(value)}" for path, value in case.values.items())
+    return f' <span class="drawn">{escape(values)}</span>' if values else ""
 
 
 def _margin(result: CaseResult) -> str:

@@ -1,0 +1,234 @@
+"""Run cases on a Ray cluster: batches out, results back, a bounded number of both in memory."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from harness.core.errors import HarnessError
+from harness.core.registry import VARIABLE as PLUGINS
+from harness.reporting.result import CaseResult
+from harness.robot.packages import SEARCH_VARIABLE as PACKAGES
+from harness.session.run_request import RunRequest
+from harness.suite.batch import Batch, BatchResult, Files, installation, run_batch, unpack_report
+from harness.suite.cases import Chooser, error_result, never_needless
+from harness.suite.discovery import UsageError
+from harness.suite.stream import input_files
+
+LOCAL = "ray"
+CLIENT = "ray://"
+BATCH_SECONDS = 3.0
+"""Wall time that a batch is to take: long beside the millisecond that Ray adds."""
+
+MOST_CASES = 100
+"""Largest number of cases in a batch."""
+
+BATCHES_FOR_EACH_PROCESS = 2
+"""Batches that wait or run for each process of the cluster; more are not made yet."""
+
+RETRIES = 3
+"""How often Ray starts a batch again whose process or node ended."""
+
+PATIENCE = 1.0  # [s], then Ctrl-C is looked at again
+
+
+def check_cluster(name: str) -> None:
+    """See that `--on` names a cluster, and that Ray is installed.
+
+    Raises:
+        UsageError: It does not, or Ray is missing.
+    """
+    if name != LOCAL and not (name.startswith(CLIENT) and len(name) > len(CLIENT)):
+        raise UsageError(f"--on '{name}': write ray, or ray://HOST:PORT of a cluster")
+    try:
+        import ray  # noqa: F401  # pyright: ignore[reportMissingImports, reportUnusedImport]
+    except ImportError:
+        raise UsageError(
+            "--on ray needs Ray, which is no part of this installation: pip install"
+            " 'armharness[cluster]'"
+        ) from None
+
+
+class RayCluster:
+    """A connection to a Ray cluster, or a cluster on this machine, while cases run.
+
+    Attributes:
+        processors: The processor families of the nodes that have returned results.
+    """
+
+    def __init__(self, name: str, workers: int) -> None:
+        """Remember the cluster.
+
+        Args:
+            name: `ray` for processes on this machine, or for the cluster that RAY_ADDRESS names;
+                else `ray://HOST:PORT`.
+            workers: Processes on this machine.
+        """
+        self._name = name
+        self._workers = workers
+        self.processors: set[str] = set()
+
+    def run(
+        self,
+        jobs: Sequence[RunRequest],
+        *,
+        hard_cap: float | None = None,
+        is_needless: Chooser = never_needless,
+    ) -> Iterator[tuple[int, CaseResult]]:
+        """Run every case on some node; a process or node that ends costs time and no case.
+
+        Yields:
+            (index into `jobs`, result) in the order in which batches end. The reports are in their
+            folders on this machine.
+
+        Raises:
+            HarnessError: The cluster cannot be reached, or a node has another installation.
+        """
+        with _connected(self._name, self._workers) as ray:
+            yield from _Batches(ray, self, jobs, hard_cap, is_needless).run()
+
+
+class _Batches:
+    """Makes batches of about the same duration, and collects their results."""
+
+    def __init__(
+        self,
+        ray: Any,
+        cluster: RayCluster,
+        jobs: Sequence[RunRequest],
+        hard_cap: float | None,
+        is_needless: Chooser,
+    ) -> None:
+        self._ray = ray
+        self._cluster = cluster
+        self._jobs = jobs
+        self._hard_cap = hard_cap
+        self._is_needless = is_needless
+        self._task = ray.remote(num_cpus=1, max_retries=RETRIES)(run_batch)
+        self._files = ray.put(_files_of(jobs))
+        self._next = 0
+        self._alone: list[int] = []  # cases of batches that failed, which run alone
+        self._running: dict[Any, Batch] = {}
+        self._seconds, self._cases = 0.0, 0
+
+    def run(self) -> Iterator[tuple[int, CaseResult]]:
+        """Yield results until every needed case has one."""
+        processes = int(self._ray.cluster_resources().get("CPU", 1))
+        try:
+            while True:
+                while len(self._running) < BATCHES_FOR_EACH_PROCESS * processes:
+                    batch = self._batch()
+                    if batch is None:
+                        break
+                    self._running[self._task.remote(batch, self._files)] = batch
+                if not self._running:
+                    return
+                ready, _ = self._ray.wait(list(self._running), num_returns=1, timeout=PATIENCE)
+                for reference in ready:
+                    yield from self._results(reference, self._running.pop(reference))
+        finally:
+            for reference in self._running:
+                self._ray.cancel(reference, force=True)
+
+    def _batch(self) -> Batch | None:
+        """The next cases; None when all are under way."""
+        indices: list[int] = []
+        if self._alone:
+            indices.append(self._alone.pop(0))
+        while self._next < len(self._jobs) and len(indices) < self._size() and not self._alone:
+            if not self._is_needless(self._next):
+                indices.append(self._next)
+            self._next += 1
+        cases = tuple((index, self._jobs[index]) for index in indices)
+        return Batch(cases, installation(), self._hard_cap) if cases else None
+
+    def _size(self) -> int:
+        """As many cases as take `BATCH_SECONDS`, from what they took so far."""
+        if not self._cases:
+            return 1
+        return max(1, min(MOST_CASES, round(BATCH_SECONDS * self._cases / self._seconds)))
+
+    def _results(self, reference: Any, batch: Batch) -> Iterator[tuple[int, CaseResult]]:
+        try:
+            done: BatchResult = self._ray.get(reference)
+        except self._ray.exceptions.RayError as error:
+            if len(batch.cases) > 1:  # one of them may be to blame
+                self._alone += [index for index, _ in batch.cases]
+                return
+            index, job = next(iter(batch.cases))
+            yield index, error_result(job, f"the cluster lost the case: {error}")
+            return
+        if done.refusal:
+            raise HarnessError(
+                f"{done.refusal}; results of different installations are not mixed: install the"
+                " same version everywhere"
+            )
+        self._cluster.processors.add(done.processor)
+        self._seconds, self._cases = self._seconds + done.seconds, self._cases + len(batch.cases)
+        for index, result, packed in done.results:
+            yield index, self._reported(index, result, packed)
+
+    def _reported(self, index: int, result: CaseResult, packed: bytes) -> CaseResult:
+        folder = self._jobs[index].report_dir
+        if not packed or folder is None:
+            return result
+        try:
+            unpack_report(packed, folder)
+        except OSError as error:
+            why = f"the report cannot be written to '{folder}': {error.strerror or error}"
+            return replace(error_result(self._jobs[index], why), seed=result.seed)
+        return result
+
+
+def _files_of(jobs: Sequence[RunRequest]) -> Files:
+    """Every file that the cases and the plug-ins name."""
+    contents: dict[str, bytes] = {}
+    for file in dict.fromkeys(job.file for job in jobs if job.text is None):
+        for path, content in input_files(file):
+            contents[os.path.abspath(path)] = content  # noqa: PTH100 - links stay as they are
+    environment = {
+        name: value for name in (PLUGINS, PACKAGES) if (value := os.environ.get(name, ""))
+    }
+    for plugin in environment.get(PLUGINS, "").split(os.pathsep):
+        if plugin.endswith(".py"):
+            contents[plugin] = Path(plugin).read_bytes()
+    return Files(contents, str(Path.cwd()), environment)
+
+
+@contextmanager
+def _connected(name: str, workers: int) -> Iterator[Any]:
+    """Ray, connected; what Ray does with signals is undone."""
+    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
+    os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
+    import ray  # pyright: ignore[reportMissingImports]
+
+    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    handlers = {number: signal.getsignal(number) for number in numbers}
+    address = os.environ.get("RAY_ADDRESS") if name == LOCAL else name
+    is_local = address in (None, "", "local")
+    options: dict[str, Any] = {"log_to_driver": False, "configure_logging": False}
+    if is_local:
+        options |= {
+            "address": "local",
+            "num_cpus": workers,
+            "include_dashboard": False,
+            "_node_ip_address": "127.0.0.1",
+        }
+    else:
+        options |= {"address": address}
+    try:
+        ray.init(**options)
+    except (ConnectionError, ImportError, RuntimeError, ValueError) as error:
+        where = "on this machine" if is_local else f"at '{address}'"
+        raise HarnessError(f"the Ray cluster {where} cannot be reached: {error}") from error
+    try:
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+        yield ray
+    finally:
+        ray.shutdown()

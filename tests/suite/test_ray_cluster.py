@@ -1,0 +1,180 @@
+"""`--on ray`: the same results as locally, whatever is killed meanwhile."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+pytestmark = [pytest.mark.cluster, pytest.mark.timeout(600)]
+
+SCENARIO = """\
+scenario: A ball with a limit
+robot: open_manipulator_x
+params: {x: 0.0}
+objects:
+  - {name: ball, sphere: {radius: 2 cm}, pose: {xyz: ["${x}", 0.2, 0.5]}, static: true}
+steps:
+  - wait: 2 ms
+expect:
+  - formula: "always (x(ball) < 0.3)"
+randomize:
+  x: {uniform: [-20 cm, 40 cm]}
+samples: COUNT
+expect_rate: {at_least: 50 %, stop_early: EARLY}
+"""
+ENVIRONMENT = {**os.environ, "RAY_AUTH_MODE": "disabled", "RAY_USAGE_STATS_ENABLED": "0"}
+
+
+def command(*words):
+    return [sys.executable, "-m", "harness.cli", "run", "ball.scenario.yaml", "--no-page", *words]
+
+
+def harness(folder, *words, **environment):
+    return subprocess.run(
+        command(*words), cwd=folder, capture_output=True, text=True, check=False,
+        env={**ENVIRONMENT, **environment},
+    )  # fmt: skip
+
+
+def scenario(folder, count, early="false"):
+    text = SCENARIO.replace("COUNT", str(count)).replace("EARLY", early)
+    (folder / "ball.scenario.yaml").write_text(text)
+
+
+def journal(folder):
+    """Case -> outcome and digest; every case stands there once."""
+    lines = (folder / "results.jsonl").read_text().splitlines()
+    results = [json.loads(line)["result"] for line in lines]
+    assert max(Counter(each["case"] for each in results).values()) == 1
+    return {each["case"]: (each["outcome"], each["digest"]) for each in results}
+
+
+def document(folder):
+    found = json.loads((folder / "results.json").read_text())
+    return found["rates"], [case["worst_margin"] for case in found["cases"]]
+
+
+def wait_for(condition, seconds=120.0):
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "it did not happen"
+        time.sleep(0.05)
+
+
+def lines_in(folder):
+    file = folder / "results.jsonl"
+    return len(file.read_text().splitlines()) if file.exists() else 0
+
+
+def ray_workers():
+    """Ray's processes that run batches."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            if path.read_bytes().startswith(b"ray::run_batch"):
+                found.append(int(path.parent.name))
+        except OSError:
+            continue
+    return found
+
+
+@pytest.fixture(scope="module")
+def local(tmp_path_factory):
+    """200 cases on this machine."""
+    folder = tmp_path_factory.mktemp("local")
+    scenario(folder, 200)
+    done = harness(folder, "-j", "2", "--report-dir", "local")
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+def test_two_ray_processes_give_the_results_of_a_local_run(local):
+    done = harness(local, "-j", "2", "--on", "ray", "--report-dir", "ray")
+    assert done.returncode == 0, done.stderr
+    assert journal(local / "ray") == journal(local / "local")
+    assert document(local / "ray") == document(local / "local")
+    failed = [case for case, (outcome, _) in journal(local / "ray").items() if outcome == "failed"]
+    for case in failed:
+        assert (local / "ray/ball" / case / "run.json").is_file()
+
+
+def test_a_sequential_test_ends_the_sampling_at_the_same_sample(tmp_path):
+    scenario(tmp_path, 200, early="true")
+    harness(tmp_path, "-j", "2", "--report-dir", "local")
+    harness(tmp_path, "-j", "2", "--on", "ray", "--report-dir", "ray")
+    assert document(tmp_path / "ray") == document(tmp_path / "local")
+    assert lines_in(tmp_path / "ray") < 200
+
+
+def test_a_killed_worker_loses_and_repeats_no_case(local):
+    running = subprocess.Popen(
+        command("-j", "2", "--on", "ray", "--report-dir", "killed"), cwd=local, env=ENVIRONMENT
+    )
+    wait_for(lambda: lines_in(local / "killed") > 20 and ray_workers())
+    os.kill(ray_workers()[0], signal.SIGKILL)
+    assert running.wait() == 0
+    assert journal(local / "killed") == journal(local / "local")
+
+
+def test_after_a_killed_driver_resume_runs_the_rest(local):
+    words = ("-j", "2", "--on", "ray", "--report-dir", "resumed")
+    running = subprocess.Popen(command(*words), cwd=local, env=ENVIRONMENT)
+    wait_for(lambda: lines_in(local / "resumed") > 20)
+    running.kill()
+    running.wait()
+    kept = lines_in(local / "resumed")
+    wait_for(lambda: not ray_workers())
+    done = harness(local, *words, "--resume")
+    assert done.returncode == 0, done.stderr
+    assert f"{kept} of them were known" in done.stdout or kept == 200
+    assert journal(local / "resumed") == journal(local / "local")
+
+
+@pytest.fixture
+def cluster():
+    """A head without processors, to which nodes are added."""
+    from ray.cluster_utils import Cluster
+
+    os.environ["RAY_AUTH_MODE"] = "disabled"
+    started = Cluster(
+        initialize_head=True, head_node_args={"num_cpus": 0, "include_dashboard": False}
+    )
+    yield started
+    started.shutdown()
+    del os.environ["RAY_AUTH_MODE"]
+
+
+def test_a_killed_node_loses_and_repeats_no_case(local, cluster):
+    lost = cluster.add_node(num_cpus=1, include_dashboard=False)
+    cluster.add_node(num_cpus=1, include_dashboard=False)
+    running = subprocess.Popen(
+        command("--on", "ray", "--report-dir", "node"),
+        cwd=local,
+        env={**ENVIRONMENT, "RAY_ADDRESS": cluster.address},
+    )
+    wait_for(lambda: lines_in(local / "node") > 20)
+    cluster.remove_node(lost, allow_graceful=False)
+    assert running.wait() == 0
+    assert journal(local / "node") == journal(local / "local")
+
+
+def test_a_node_with_other_sources_is_refused(local, cluster, tmp_path, monkeypatch):
+    source = Path(__file__).parents[2] / "harness"
+    shutil.copytree(source, tmp_path / "harness", ignore=shutil.ignore_patterns("__pycache__"))
+    with (tmp_path / "harness/steps/wait.py").open("a") as file:
+        file.write("# a change\n")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    cluster.add_node(num_cpus=1, include_dashboard=False)
+    monkeypatch.delenv("PYTHONPATH")
+    done = harness(local, "--on", "ray", "--report-dir", "mixed", RAY_ADDRESS=cluster.address)
+    assert done.returncode == 3
+    assert "has source " in done.stderr
+    assert "results of different installations are not mixed" in done.stderr
+    assert lines_in(local / "mixed") == 0
