@@ -140,8 +140,9 @@ class Studio(GoalActions):
         self.text = text
         self.problems = []
         try:
-            self.files.refuse_outside(Document(text))
-            is_new = self.cell.load(text)
+            document = Document(text)
+            self.files.refuse_outside(document)
+            is_new = self.cell.load(document)
         except SpecError as error:
             self.problems = list(error.problems)
         else:
@@ -248,8 +249,9 @@ class Studio(GoalActions):
 
     def _take_text(self, text: str) -> None:
         """Make a text the scenario's, and show it on every page."""
-        self.files.refuse_outside(Document(text))
-        is_new = self.cell.load(text)
+        document = Document(text)
+        self.files.refuse_outside(document)
+        is_new = self.cell.load(document)
         self.text, self.problems = text, []
         self.files.keep_unsaved(text)
         if is_new:
