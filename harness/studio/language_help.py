@@ -16,8 +16,8 @@ Path = tuple[str, ...]
 ITEM = "-"
 """In a path: an item of a list."""
 
-_KEY = re.compile(r"""^(\s*)((?:- +)*)(?:(["']?)([\w.${}-]+)\3\s*:(?:\s|$))?""")
-_FLOW_KEY = re.compile(r"""([\w.${}-]+)["']?\s*:\s*$""")
+_KEY = re.compile(r"""^(\s*)((?:- +)*)(?:(["']?)([\w.-]+)\3\s*:(?:\s|$))?""")
+_FLOW_KEY = re.compile(r"""([\w.-]+)["']?\s*:\s*$""")
 _WORD = re.compile(r"[\w./-]*$")
 
 
@@ -106,44 +106,34 @@ def path_at(text: str, line: int, column: int) -> tuple[Path, bool]:
     before = _WORD.sub("", current[:column])
     head = _KEY.match(before)
     assert head is not None
-    indent, dashes, key = len(head[1]), head[2], head[4]
-    path = _outer(lines[:line], indent, dashes)
-    if dashes:
-        path = (*path, *(ITEM for _ in re.findall("- +", dashes)))
-    if key:
-        path = (*path, key)
-        inner, is_value = _inside_brackets(before[head.end() :])
-        return (*path, *inner), is_value
+    path = _outer(lines[:line], len(head[1]), is_item=bool(head[2]))
+    path = (*path, *(ITEM for _ in re.findall("- +", head[2])))
     inner, is_value = _inside_brackets(before[head.end() :])
+    if head[4]:
+        return (*path, head[4], *inner), is_value
     return (*path, *inner), bool(inner) and is_value
 
 
-def _outer(lines: Sequence[str], indent: int, dashes: str) -> Path:
-    """The path of the block that a line belongs to."""
+def _outer(lines: Sequence[str], limit: int, *, is_item: bool) -> Path:
+    """The path of the block that a line belongs to, by the columns of keys and dashes before it.
+
+    Args:
+        lines: The lines before it.
+        limit: The column where the line begins.
+        is_item: Whether it begins with a dash, which may stand right below its key.
+    """
     found: list[str] = []
-    limit = indent
-    is_item = bool(dashes)
     for line in reversed(lines):
-        if not line.strip() or line.lstrip().startswith("#"):
-            continue
         match = _KEY.match(line)
-        assert match is not None
-        own, own_dashes, key = len(match[1]), match[2], match[4]
-        inner = own + len(own_dashes)
-        if own_dashes and key and inner == limit and own < limit and not is_item:
-            found.append(ITEM)  # a key of an item whose first key stands behind the dash
-            limit, is_item = own, True
+        if match is None or not line.strip() or line.lstrip().startswith("#"):
             continue
-        if own_dashes and key and own < limit and inner < limit:
-            found.append(key)
-            found.append(ITEM)
-            limit, is_item = own, True
-            continue
-        if key and not own_dashes and (own < limit or (is_item and own == limit)):
-            found.append(key)
-            limit, is_item = own, False
-        if limit == 0 and not is_item:
-            break
+        openers = [(each.start(), ITEM) for each in re.finditer("- +", line[: match.end(2)])]
+        if match[4]:
+            openers.append((match.end(2), match[4]))
+        for column, name in reversed(openers):
+            if column < limit or (column == limit and is_item and name != ITEM):
+                found.append(name)
+                limit, is_item = column, name == ITEM
     return tuple(reversed(found))
 
 
@@ -178,22 +168,15 @@ def complete(text: str, line: int, column: int, names: Names) -> list[Option]:
     """What may be written at a place, keys with their descriptions."""
     path, is_value = path_at(text, line, column)
     options: list[Option] = []
-    nodes = list(_nodes(path))
-    if not is_value or not any("properties" not in node for node in nodes):
-        for node in nodes:
+    for node in _nodes(path):
+        if not is_value:
             for key, child in node.get("properties", {}).items():
                 options.append(Option(key, "key", _first_line(_description(child))))
-    if not is_value:
-        options += [Option(name, "key", "") for name in names.of(path) if path[-1:] != (ITEM,)]
-    else:
-        for node in nodes:
-            words = [*node.get("enum", ()), *((node["const"],) if "const" in node else ())]
-            options += [Option(str(word), "value", "") for word in words]
-            if node.get("type") == "boolean":
-                options += [Option("true", "value", ""), Option("false", "value", "")]
-        options += [Option(name, "value", "") for name in names.of(path)]
-        if path[-1:] == (ITEM,):
-            options += [Option(name, "value", "") for name in names.of(path[:-1])]
+        words = [*node.get("enum", ()), *((node["const"],) if "const" in node else ())]
+        words += ("true", "false") if node.get("type") == "boolean" else ()
+        options += [Option(str(word), "value", "") for word in words]
+    kind = "value" if is_value else "key"
+    options += [Option(name, kind, "") for name in names.of(path)]
     return list({option.text: option for option in options}.values())
 
 
@@ -241,7 +224,7 @@ def _alternatives(node: Schema) -> Iterator[Schema]:
     for word in ("anyOf", "allOf", "oneOf"):
         for each in node.get(word, ()):
             yield from _alternatives(each)
-    if not {"anyOf", "allOf", "oneOf"} & set(node):
+    if not {"anyOf", "allOf", "oneOf"} & set(node) or {"properties", "items"} & set(node):
         yield node
 
 

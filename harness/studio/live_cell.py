@@ -99,7 +99,7 @@ class LiveCell:
 
     # -- the scenario -------------------------------------------------------------------------
 
-    def load(self, text: str) -> bool:
+    def load(self, document: Document) -> bool:
         """Take a changed text; the state is kept as far as its steps are still those executed.
 
         Returns:
@@ -108,7 +108,6 @@ class LiveCell:
         Raises:
             SpecError: With every problem of the text; the cell is as it was.
         """
-        document = Document(text)
         prepared = self._prepared(document)
         is_same = document.base_key() == self.document.base_key()
         if not is_same or set(prepared.observed_links) - set(self.prepared.observed_links):
@@ -286,7 +285,7 @@ class LiveCell:
         before = self.document
         was_by_hand = self.is_by_hand
         document = before.with_step(text, self.steps_done)
-        self.load(document.text)
+        self.load(document)
         if was_by_hand:
             self.history[-1] = replace(self.history[-1], is_run=False)
         self.run_steps(self.steps_done + 1)
@@ -295,7 +294,7 @@ class LiveCell:
         )
         if record.status == "failed":
             self.restore(self.steps_done - 1)
-            self.load(before.text)
+            self.load(before)
             return before.text, record
         return document.text, record
 

@@ -63,13 +63,10 @@ def robot_triangles(description: RobotDescription) -> dict[str, list[Triangles]]
         count = sum(len(part.faces) for parts in links.values() for part in parts)
         if count <= MOST_TRIANGLES or grid > 0.1:
             return {name: parts for name, parts in links.items() if parts}
-        grid *= 1.3
+        grid *= max(1.1, (count / MOST_TRIANGLES) ** 0.5)
 
 
 def _parts(shape: Shape, grid: float) -> Iterable[tuple[FloatArray, IntArray, Any]]:
-    import trimesh
-
-    made: Any = None
     match shape.geometry:
         case Mesh() as mesh:
             for part in mesh_parts(mesh):
@@ -77,20 +74,47 @@ def _parts(shape: Shape, grid: float) -> Iterable[tuple[FloatArray, IntArray, An
                 if grid > GRID:
                     vertices, faces = coarsen(vertices, faces, grid)
                 yield vertices, faces, part.rgba or shape.rgba
-            return
         case Box(size=size):
-            made = trimesh.creation.box(size)
-        case Cylinder(radius=radius, length=length):
-            made = trimesh.creation.cylinder(radius, length, sections=24)
-        case Sphere(radius=radius):
-            made = trimesh.creation.icosphere(subdivisions=2, radius=radius)
-        case Capsule(radius=radius, length=length):
-            made = trimesh.creation.capsule(length, radius, count=(12, 12))
-            made.apply_translation([0, 0, -0.5 * length])
+            yield *_box(size, 0.0), shape.rgba
         case Plane():
-            made = trimesh.creation.box((PLANE_SIZE, PLANE_SIZE, 0.002))
-            made.apply_translation([0, 0, -0.001])
-    yield np.asarray(made.vertices), np.asarray(made.faces), shape.rgba
+            yield *_box((PLANE_SIZE, PLANE_SIZE, 0.002), -0.001), shape.rgba
+        case Cylinder(radius=radius, length=length):
+            half = 0.5 * length
+            profile = [(0.0, -half), (radius, -half), (radius, half), (0.0, half)]
+            yield *_revolved(np.array(profile)), shape.rgba
+        case Sphere(radius=radius):
+            yield *_revolved(_half_circle(radius, 0.0)), shape.rgba
+        case Capsule(radius=radius, length=length):
+            yield *_revolved(_half_circle(radius, 0.5 * length)), shape.rgba
+
+
+def _box(size: tuple[float, float, float], height: float) -> tuple[FloatArray, IntArray]:
+    """A box whose centre is at a height on the z axis."""
+    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    faces = [(a, b, c) for a, b, c, _ in quads] + [(a, c, d) for a, _, c, d in quads]
+    return 0.5 * corners * size + [0.0, 0.0, height], np.array(faces)
+
+
+def _half_circle(radius: float, offset: float) -> FloatArray:
+    """Radii and heights from pole to pole; the halves are moved apart along the axis."""
+    angles = np.linspace(-np.pi / 2, np.pi / 2, 14)
+    heights = radius * np.sin(angles) + np.where(angles < 0, -offset, offset)
+    return np.stack([radius * np.cos(angles), heights], axis=1)
+
+
+def _revolved(profile: FloatArray, sections: int = 24) -> tuple[FloatArray, IntArray]:
+    """The surface that a profile of radii and heights, shape (N, 2), draws about the z axis."""
+    angles = np.linspace(0.0, 2 * np.pi, sections, endpoint=False)
+    turns = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    flat = profile[:, :1, None] * turns[None]
+    heights = np.broadcast_to(profile[:, 1:, None], (len(profile), sections, 1))
+    vertices = np.concatenate([flat, heights], axis=2).reshape(-1, 3)
+    ring, step = np.meshgrid(np.arange(len(profile) - 1), np.arange(sections), indexing="ij")
+    after = (step + 1) % sections
+    a, b = ring * sections + step, ring * sections + after
+    quads = np.stack([a, b, b + sections, a + sections], axis=-1).reshape(-1, 4)
+    return vertices, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
 
 
 @dataclass

@@ -195,7 +195,7 @@ class Session:
     def _run(self) -> None:
         while True:
             try:
-                job = self._jobs.get(timeout=FRAME)
+                job = self._jobs.get(timeout=0.5 * FRAME)
             except queue.Empty:
                 self.frame()
                 continue

@@ -140,8 +140,9 @@ class Studio(GoalActions):
         self.text = text
         self.problems = []
         try:
-            self.files.refuse_outside(Document(text))
-            is_new = self.cell.load(text)
+            document = Document(text)
+            self.files.refuse_outside(document)
+            is_new = self.cell.load(document)
         except SpecError as error:
             self.problems = list(error.problems)
         else:
@@ -202,6 +203,18 @@ class Studio(GoalActions):
         self.after_jump()
         return {}
 
+    def do_undo(self, _: Message) -> Message:
+        """Undo the last step, and take it out of the text."""
+        self._refuse_mistakes()
+        index = self.cell.steps_done - 1
+        if index < 0:
+            raise RefusedError("no step was executed")
+        self.target = None
+        self.cell.restore(index)
+        self._take_text(self.cell.document.without_step(index).text)
+        self.after_jump()
+        return {}
+
     def do_expect_seen(self, _: Message) -> Message:
         """Propose expectations of what is seen now, for the last step executed."""
         self._refuse_mistakes()
@@ -217,10 +230,7 @@ class Studio(GoalActions):
         self._refuse_mistakes()
         texts = [str(text) for text in message["texts"]]
         step = self.cell.steps_done - 1
-        done = self.cell.steps_done
         self._take_text(self.cell.document.with_expectations(texts, step).text)
-        if self.cell.steps_done != done:
-            self.say("warning", "the step is executed again, because its text has changed")
         return {}
 
     def do_save(self, message: Message) -> Message:
@@ -239,8 +249,9 @@ class Studio(GoalActions):
 
     def _take_text(self, text: str) -> None:
         """Make a text the scenario's, and show it on every page."""
-        self.files.refuse_outside(Document(text))
-        is_new = self.cell.load(text)
+        document = Document(text)
+        self.files.refuse_outside(document)
+        is_new = self.cell.load(document)
         self.text, self.problems = text, []
         self.files.keep_unsaved(text)
         if is_new:

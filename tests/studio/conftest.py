@@ -21,7 +21,7 @@ class Served:
     """
 
     def __init__(self, folder, text, *, is_open=False):
-        self.files = StudioFiles(folder, folder / "by_hand.scenario.yaml")
+        self.files = StudioFiles(folder, folder / "open_manipulator_x_by_hand.scenario.yaml")
         self.studio = Studio.opened(self.files, text, None, "")
         self.guard = Guard.of(page_assets(), is_open=is_open)
         self.server = start_server("127.0.0.1", 0, self.guard, self.studio.session.handle)

@@ -6,6 +6,7 @@ import pytest
 from harness.core.errors import SpecError
 from harness.session.run_case import run_case
 from harness.session.run_request import RunRequest
+from harness.studio.document import Document
 from harness.studio.live_cell import LiveCell
 
 TEXT = """\
@@ -79,16 +80,16 @@ def test_what_was_moved_by_hand_has_no_digest_until_it_is_run(cell):
 
 def test_an_edit_keeps_the_steps_before_it(cell):
     cell.run_steps(3)
-    assert not cell.load(TEXT.replace("50 ms", "60 ms"))
+    assert not cell.load(Document(TEXT.replace("50 ms", "60 ms")))
     assert cell.steps_done == 2
-    assert cell.load(TEXT.replace("0.2, 0, 0.015", "0.21, 0, 0.015"))
+    assert cell.load(Document(TEXT.replace("0.2, 0, 0.015", "0.21, 0, 0.015")))
     assert cell.steps_done == 0
 
 
 def test_a_text_with_mistakes_leaves_the_cell_as_it_was(cell):
     cell.run_steps(1)
     with pytest.raises(SpecError, match="opne"):
-        cell.load(TEXT.replace("- gripper: open", "- gripper: opne"))
+        cell.load(Document(TEXT.replace("- gripper: open", "- gripper: opne")))
     assert (cell.steps_done, cell.document.text) == (1, TEXT)
 
 

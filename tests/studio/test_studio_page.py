@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 
+from docs.generators.studio_guide import follow, is_shown, steps
 from harness.session.run_case import run_case
 from harness.session.run_request import RunRequest
 from tests.reporting.browser import wait_for
@@ -119,54 +120,38 @@ def wait_for_client(opened, served):
     raise AssertionError("viser's page does not connect")
 
 
-def test_a_pick_by_hand_becomes_a_scenario_with_the_same_digest(opened, served):
-    page = opened.page
-    page.click("summary:has-text('Objects')")
-    page.fill("#object-size", "0.03 0.03 0.03")
-    page.fill("#object-xyz", "0.2 0 0.015")
-    page.click("#object-add")
-    opened.wait("ace.edit('editor').getValue().includes('name: box')")
-    page.select_option("#goal-kind", "home")
-    page.click("#plan")
-    opened.wait_text("#plan-result", "takes")
-    page.click("#execute")
-    opened.wait_text("#plan-result", "executed: move_to: home")
-    page.fill("#step-text", "pick: {object: box, lift: {distance: 5 cm}}")
-    page.click("#step-run")
-    opened.wait_text("#status", "2 of 2 steps executed")
-    page.click("#expect-seen")
-    opened.wait_text("#proposals", "grasped: box")
-    page.click("#proposals button:has-text('Add')")
-    opened.wait("ace.edit('editor').getValue().includes('- grasped: box')")
-    page.click("#run-all")
-    opened.wait_text("#verdicts", "digest")
-    assert "passed" in page.inner_text(".outcome")
-    shown = page.get_attribute(".outcome", "data-digest")
-    page.keyboard.press("Control+s")
-    opened.wait_text("#log", "saved by_hand.scenario.yaml")
+def test_the_pick_of_the_guide_becomes_a_scenario_with_the_same_digest(opened, served):
+    for _, sentences in steps():
+        for sentence in sentences:
+            shown = follow(opened.page, sentence)
+            if shown:
+                opened.wait(is_shown(shown))
+    shown = opened.page.get_attribute(".outcome", "data-digest")
     assert served.files.path.read_text() == opened.editor()
     result = run_case(RunRequest(served.files.path))
     assert (result.outcome, result.digest) == ("passed", shown)
+    assert [verdict.status for verdict in result.verdicts] == ["passed"] * len(result.verdicts)
+    assert served.studio.cell.object_poses()["box"].translation[2] > 0.09
 
 
 def test_one_step_back_and_to_the_cursor(opened, served):
     opened.page.click("#back")
-    opened.wait_text("#status", "1 of 2 steps executed")
+    opened.wait_text("#status", "4 of 5 steps executed")
     opened.page.evaluate("ace.edit('editor').gotoLine(1000)")
     opened.page.click("#run-line")
-    opened.wait_text("#status", "2 of 2 steps executed")
+    opened.wait_text("#status", "5 of 5 steps executed")
     assert served.studio.cell.is_run
 
 
 def test_a_mistake_is_marked_at_its_place_with_advice(opened):
     good = opened.editor()
-    opened.type_scenario(good.replace("move_to: home", "move_to: hom"))
+    opened.type_scenario(good.replace("gripper: open", "gripper: opne"))
     opened.wait("document.querySelectorAll('#problems button').length === 1")
     problem = opened.page.inner_text("#problems")
-    assert re.match(r"\d+:\d+: there is no named state of arm called 'hom'", problem)
-    assert "did you mean 'home'" in problem
+    assert re.match(r"\d+:\d+: there is no named state of gripper called 'opne'", problem)
+    assert "did you mean 'open'" in problem
     [annotation] = opened.page.evaluate("ace.edit('editor').session.getAnnotations()")
-    assert "hom'" in annotation["text"]
+    assert "opne'" in annotation["text"]
     opened.page.click("#run-all")
     opened.wait_text("#log", "has mistakes")
     opened.type_scenario(good)
@@ -176,7 +161,7 @@ def test_a_mistake_is_marked_at_its_place_with_advice(opened):
 def test_completion_offers_what_the_robot_has(opened):
     page = opened.page
     good = opened.editor()
-    opened.type_scenario(good.replace("move_to: home", "move_to: "))
+    opened.type_scenario(good.replace("gripper: open", "move_to: ", 1))
     page.evaluate(COMPLETE)
     opened.wait("document.querySelector('.ace_autocomplete')?.innerText.includes('home')")
     page.keyboard.press("Escape")

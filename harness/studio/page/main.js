@@ -129,7 +129,7 @@ on("verdicts", (message) => {
   const margin = (v) => (v.margin === null ? "" : ` (margin ${Number(v.margin.toPrecision(3))} ${v.unit})`);
   $("verdicts").replaceChildren(head,
     ...message.steps.map((step) => element("div", { class: `verdict ${step.status.replace(/[ _]/g, "-")}` }, `${step.line}: ${step.summary}: ${step.status.replace("_", " ")}`)),
-    ...message.verdicts.map((v) => element("div", { class: `verdict ${v.status.replace(/[ _]/g, "-")}` }, `${v.line}: ${v.text}: ${v.status}${margin(v)}${v.reason ? `: ${v.reason}` : ""}`)));
+    ...message.verdicts.map((v) => element("div", { class: `verdict ${v.status.replace(/[ _]/g, "-")}` }, `${v.line}: ${v.text}: ${v.status}${margin(v)}${v.reason && v.status !== "passed" ? `: ${v.reason}` : ""}`)));
 });
 
 on("note", (message) => log(message.kind, message.text));
@@ -165,6 +165,7 @@ click("run-all", () => act("run", { until: "end" }));
 click("run-line", () => act("run", { until: "line", line: editor.line() }));
 click("run-next", () => act("run", { until: "next" }));
 click("back", () => act("back"));
+click("undo", () => act("undo"));
 click("step-run", () => run($("step-text").value));
 click("control", () => ask("control", { word: isMine ? "release" : "request" }));
 click("goal-here", () => { if (state) { showGoal(state.tcp); setGoal(); } });
