@@ -1,111 +1,30 @@
-"""Edges checked in two stages: the covers never say what the exact shapes do not."""
+"""The compiled check of motions gives the verdicts of Coal's check of every state."""
 
 import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
 
-import coal
 import numpy as np
 import pytest
 
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.collision.compiled import use_compiled
-from harness.planning.collision.sphere_cover import cover, cover_shapes, signed_distance
+from harness.planning.collision.convex_tree import shapes_tree
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports import FreeMotion, JointGoal, MotionRequest, PlanningOptions
-from harness.robot.mesh_file import convex_hull
 from tests.engine.front_door import run
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, at, boxes, open_manipulator, thing, ur
+from tests.planning.problem import HOMES, description_of
 from tests.second_opinion.runs import SRDF, URDF
-
-pytest.importorskip("numba")
-
-SOLIDS = [
-    Box((0.16, 0.11, 0.1)),
-    Box((0.05, 0.006, 0.02)),
-    Cylinder(0.04, 0.25),
-    Cylinder(0.07, 0.01),
-    Capsule(0.045, 0.19),
-    Sphere(0.03),
-]
 
 
 @pytest.fixture
 def stages():
-    """Switches the compiled stage on and off; as it was afterwards."""
+    """Switches the compiled check on and off; as it was afterwards."""
     yield use_compiled
     use_compiled("when it pays")
-
-
-def points_inside(solid, generator):
-    """Points of a solid, many of them at its edges."""
-    reach = np.array(solid.size if isinstance(solid, Box) else (0.1, 0.1, 0.3))
-    points = np.clip(generator.uniform(-0.6, 0.6, (20_000, 3)), -0.5, 0.5) * reach
-    return points[signed_distance(solid, points) <= 1e-12][:400]
-
-
-def reaches_a_leaf(found, point):
-    """Walk down the tree as the compiled stage does."""
-    node = 0
-    while node < len(found.skip):
-        if np.linalg.norm(found.centers[node] - point) > found.outer[node] + 1e-9:
-            node = found.skip[node]
-        elif found.skip[node] == node + 1:
-            return True
-        else:
-            node += 1
-    return False
-
-
-@pytest.mark.parametrize("solid", SOLIDS, ids=str)
-def test_every_point_of_a_solid_is_in_a_leaf_and_in_every_sphere_above_it(solid):
-    points = points_inside(solid, np.random.default_rng(1))
-    assert len(points) > 50
-    assert all(reaches_a_leaf(cover(solid), point) for point in points)
-
-
-@pytest.mark.parametrize("solid", SOLIDS, ids=str)
-def test_the_ball_inside_every_sphere_of_a_solid_is_inside_the_solid(solid):
-    found = cover(solid)
-    depths = -signed_distance(solid, found.centers)
-    assert np.all(found.inner <= depths + 1e-9)
-
-
-def test_a_hull_is_covered_and_the_balls_inside_it_touch_it(tmp_path):
-    mesh = Mesh(write_mesh(tmp_path))
-    found = cover(mesh)
-    hull = convex_hull(mesh)
-    corners = np.array(hull.points()).reshape(-1, 3)
-    generator = np.random.default_rng(5)
-    for weights in generator.dirichlet(np.full(len(corners), 0.3), 400):
-        assert reaches_a_leaf(found, weights @ corners)
-    for node in generator.integers(len(found.outer), size=60):
-        ball = coal.Sphere(1e-6)
-        pose = coal.Transform3s(np.eye(3), found.centers[node])
-        result = coal.DistanceResult()
-        away = coal.distance(hull, coal.Transform3s(), ball, pose, coal.DistanceRequest(), result)
-        assert away <= -found.inner[node] + 2e-5
-
-
-def test_a_mesh_is_covered_and_each_inner_radius_reaches_a_point_of_it(tmp_path):
-    mesh = Mesh(write_mesh(tmp_path), exact=True)
-    found = cover(mesh)
-    generator = np.random.default_rng(4)
-    loaded = coal.MeshLoader().load(str(mesh.path), np.ones(3))
-    vertices = np.array(loaded.vertices())
-    for _ in range(200):
-        face = loaded.tri_indices(int(generator.integers(loaded.num_tris)))
-        weights = generator.dirichlet(np.ones(3))
-        point = weights @ vertices[[face[0], face[1], face[2]]]
-        assert reaches_a_leaf(found, point)
-    for node in generator.integers(len(found.outer), size=60):
-        ball = coal.Sphere(1e-6)
-        pose = coal.Transform3s(np.eye(3), found.centers[node])
-        result = coal.DistanceResult()
-        away = coal.distance(loaded, coal.Transform3s(), ball, pose, coal.DistanceRequest(), result)
-        assert max(away, 0.0) <= -found.inner[node] + 1e-5
 
 
 def write_mesh(folder: Path) -> Path:
@@ -168,7 +87,7 @@ ROBOTS = {
 
 @pytest.mark.parametrize("name", ROBOTS)
 @pytest.mark.parametrize("padding", [0.0, 0.01])
-def test_verdicts_and_counts_are_the_same_with_and_without_the_compiled_stage(
+def test_verdicts_and_counts_are_the_same_with_and_without_the_compiled_check(
     name, padding, stages, tmp_path
 ):
     make, group = ROBOTS[name]
@@ -231,7 +150,7 @@ def test_a_motion_that_ends_exactly_at_its_margin_is_judged_as_its_last_state(
     assert result.outcome == "passed"
 
 
-def test_plans_are_the_same_with_and_without_the_compiled_stage(stages):
+def test_plans_are_the_same_with_and_without_the_compiled_check(stages):
     plans = []
     for when in ("never", "always"):
         stages(when)
@@ -248,37 +167,137 @@ def test_plans_are_the_same_with_and_without_the_compiled_stage(stages):
     assert np.array_equal(plans[0].trajectory.positions, plans[1].trajectory.positions)
 
 
-def test_without_numba_everything_works_and_with_it_nothing_is_loaded_early():
+def test_the_compiled_check_is_not_loaded_before_it_pays_off():
     program = """
 import sys
-if {hide}: sys.modules["numba"] = None
-from harness.planning.collision import compiled
-from tests.planning.lesson import Cell, ARM, FIRST_BOXES, boxes, ur
+from tests.planning.lesson import Cell, ARM, ur
 from harness.ports import FreeMotion, JointGoal, MotionRequest, PlanningOptions
-from harness.robot.mesh_file import convex_hull
 cell = Cell(ur("ur3e"))
-if {hide}: compiled.use_compiled("always")
 goal = FreeMotion(JointGoal(cell.named("up")))
-plan = cell.planner.plan(MotionRequest(ARM, cell.state, goal, PlanningOptions()))
-assert {hide} or "numba" not in sys.modules
-assert not {hide} or compiled.compiled_stage() is None
-print(plan.trajectory.duration)
+cell.planner.plan(MotionRequest(ARM, cell.state, goal, PlanningOptions()))
+assert "numba" not in sys.modules
 """
-    durations = [
-        subprocess.run(
-            [sys.executable, "-c", program.format(hide=hide)],
-            capture_output=True,
-            text=True,
-            check=True,
-            cwd=Path(__file__).parents[2],
-        ).stdout
-        for hide in (True, False)
+    subprocess.run([sys.executable, "-c", program], check=True, cwd=Path(__file__).parents[2])
+
+
+@pytest.mark.parametrize("kind", ["arm", "gripper"])
+@pytest.mark.parametrize("model", list(HOMES))
+def test_whole_motions_are_as_free_as_their_states(model, kind, stages):
+    """Straight ones and bent ones, with and without padding, of revolute and prismatic joints."""
+    cell = cell_with_stick(model)
+    groups = {"arm": cell.description.arm_group, "gripper": cell.description.gripper.group}
+    space = GroupSpace(cell.kinematics.robot, groups[kind], cell.state)
+    home = space.part(cell.state)
+    generator = np.random.default_rng(2)
+    verdicts = []
+    for padding in (0.0, 0.02):
+        checker = MotionChecker(cell.scene, space, home, padding)
+        for number in range(20):
+            start = drawn(space, generator)
+            end = start + generator.normal(size=space.dof) * (0.1, 0.4)[number % 2]
+            states = line(start, np.clip(end, space.lower, space.upper), space)
+            stages("never")
+            each = [checker.state_free(state) for state in states]
+            verdicts.append(all(each))
+            stages("always")
+            assert checker.edge_free(start, states[-1], 1 / 512) == verdicts[-1]
+            assert checker.first_blocked(states) == (None if verdicts[-1] else each.index(False))
+    assert 0.1 < np.mean(verdicts) < 0.98 or kind == "gripper"
+
+
+@pytest.mark.parametrize("model", list(HOMES))
+def test_a_motion_that_only_just_touches_on_its_way_is_not_free(model, stages):
+    """It goes 3 mrad beyond the last free state, and back."""
+    stages("always")
+    cell = cell_with_stick(model)
+    space = GroupSpace(cell.kinematics.robot, cell.description.arm_group, cell.state)
+    checker = MotionChecker(cell.scene, space, np.array(HOMES[model]), 0.0)
+    generator = np.random.default_rng(6)
+    seen = 0
+    while seen < 60:
+        free, blocked = (drawn(space, generator) for _ in range(2))
+        if not checker.state_free(free) or checker.state_free(blocked):
+            continue
+        start = free
+        while space.distance(free, blocked) > 0.003:
+            middle = 0.5 * (free + blocked)
+            free, blocked = (middle, blocked) if checker.state_free(middle) else (free, middle)
+        back = blocked + (start - blocked) * generator.uniform(0.1, 0.9)
+        states = np.concatenate([line(start, blocked, space), line(blocked, back, space)])
+        seen += 1
+        assert not checker.states_free(states)
+
+
+def test_states_at_20_micrometres_from_their_margin_are_judged_by_the_distance(stages, tmp_path):
+    """The padding is set next to the distance that Coal measures, for solids of every kind."""
+    stages("always")
+    cell = crowded(meshed(ur("ur5e"), exact=False), tmp_path)
+    for number, solid in enumerate((Capsule(0.04, 0.2), Sphere(0.05), Cylinder(0.03, 0.1))):
+        cell.add(thing(f"solid{number}", at(0.3, -0.1 * number, 1.5, (0.4, 0.3, 0)), Shape(solid)))
+    space = GroupSpace(cell.kinematics.robot, ARM, cell.state)
+    generator = np.random.default_rng(9)
+    nearest = set()
+    for _ in range(300):
+        state = drawn(space, generator)
+        padded = [
+            touch for touch, pair in cell.scene.distances(space.whole(state)) if pair.keeps_padding
+        ]
+        others = [
+            touch.distance
+            for touch, pair in cell.scene.distances(space.whole(state))
+            if not pair.keeps_padding
+        ]
+        if min(others) < 1e-3 or not 1e-3 < padded[0].distance < 0.05:
+            continue
+        pair = padded[0].first, padded[0].second
+        for shift in (-2e-5, 2e-5):
+            padding = padded[0].distance + shift
+            checker = MotionChecker(cell.scene, space, space.part(cell.state), padding)
+            if pair not in {lowered.pair for lowered in checker.lowered}:
+                assert checker.state_free(state) == (shift < 0)
+                nearest.add(pair[1])
+    assert len(nearest) >= 4
+
+
+@pytest.mark.parametrize("exact", [False, True])
+def test_every_node_of_a_tree_contains_what_is_below_it(exact, tmp_path):
+    shapes = [
+        Shape(Mesh(write_mesh(tmp_path), exact=exact), at(0.1, 0, 0, (0.3, 0, 1))),
+        Shape(Capsule(0.02, 0.1), at(0, 0, 1)),
+        Shape(Cylinder(0.05, 0.1), at(0, 1, 0, (1, 2, 0))),
     ]
-    assert durations[0] == durations[1]
+    tree = shapes_tree(shapes)
+    low, high = tree.box().reshape(2, 3)
+    for node, (end, _) in enumerate(tree.nodes):
+        center, radius = tree.spheres[node, :3], tree.spheres[node, 3]
+        for below in range(node, end):
+            if tree.nodes[below, 1] < 0:
+                continue
+            first, last, kind = tree.convexes[tree.nodes[below, 1]]
+            points = tree.points[first:last] if kind < 2 else tree.spheres[below, None, :3]
+            assert np.all(np.linalg.norm(points - center, axis=1) <= radius + 1e-9)
+            assert np.all((low - 1e-9 <= points) & (points <= high + 1e-9))
+    assert np.sum(tree.nodes[:, 0] == np.arange(len(tree.nodes)) + 1) == (24 + 2 if exact else 3)
 
 
-def test_shapes_that_move_together_have_one_tree():
-    shapes = [Shape(Box((0.1, 0.02, 0.02)), at(0.05, 0, 0)), Shape(Capsule(0.02, 0.1), at(0, 0, 1))]
-    found = cover_shapes(shapes)
-    assert found.skip[0] == len(found.outer)
-    assert np.all(np.linalg.norm(found.centers - found.centers[0], axis=1) <= found.outer[0] + 1e-6)
+def cell_with_stick(model):
+    """The lesson's tables and boxes, the arm at home, a stick in its hand."""
+    cell = Cell(description_of(model))
+    cell.add(boxes(*FIRST_BOXES))
+    cell.state = cell.with_arm(HOMES[model])
+    tcp = cell.kinematics.link_pose(cell.state, cell.description.tcp_link)
+    cell.add(thing("stick", tcp @ at(0.05, 0, 0), Shape(Box((0.2, 0.01, 0.01)))))
+    hand = cell.description.gripper.links
+    cell.scene.attach_object("stick", cell.description.tcp_link, hand, cell.state)
+    return cell
+
+
+def drawn(space, generator):
+    """Group positions within limits, a turn each way where there are none."""
+    return generator.uniform(np.maximum(space.lower, -np.pi), np.minimum(space.upper, np.pi))
+
+
+def line(first, second, space):
+    """States every 1/512 rad, the first left out."""
+    count = max(1, int(np.ceil(space.distance(first, second) * 512)))
+    return first + (second - first) * np.arange(1, count + 1)[:, None] / count

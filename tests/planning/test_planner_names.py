@@ -102,14 +102,14 @@ def test_no_planner_looks_for_a_way_to_where_the_arm_stands(trial, name):
 
 
 @pytest.fixture
-def compiled_stage_from_the_start():
+def compiled_check_from_the_start():
     """It is loaded when it pays (100 MB once): here before anything is measured."""
     use_compiled("always")
     yield
     use_compiled("when it pays")
 
 
-@pytest.mark.usefixtures("compiled_stage_from_the_start")
+@pytest.mark.usefixtures("compiled_check_from_the_start")
 @pytest.mark.parametrize("name", planner_names())
 def test_plans_are_freed(trial, name):
     """A plan that OMPL keeps for good keeps its checker too: 5 MB each."""

@@ -5,8 +5,7 @@ import pytest
 
 from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.geometry import Box, Capsule, Cylinder, Shape, Sphere
-from harness.planning.collision.checker import MotionChecker
-from harness.planning.collision.free_stretches import coarse_to_fine
+from harness.planning.collision.checker import MotionChecker, coarse_to_fine
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports import PoseGoal
 from tests.planning.lesson import ARM, TCP, Cell, at, thing, ur
@@ -158,4 +157,4 @@ def test_free_states_are_those_without_touches(cell):
 
 def test_an_edge_is_checked_whole():
     for count in (1, 2, 3, 7, 8, 33):
-        assert sorted(coarse_to_fine(count)) == list(range(1, count + 1))
+        assert sorted(coarse_to_fine(count)) == list(range(count))

@@ -1,4 +1,4 @@
-"""Arranges a group's motion and the scene's sphere covers in arrays that certify edges."""
+"""Arranges a group's motion and the scene's shapes in the arrays of the compiled check."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -6,25 +6,30 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
 import pinocchio as pin
 
-from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Sphere
-from harness.core.spatial import SE3
+from harness.core.geometry import Plane
 from harness.core.types import FloatArray, IntArray
-from harness.planning.collision.scene import Body, BodyPair, CollisionModel
-from harness.planning.collision.sphere_cover import cover_shapes
+from harness.planning.collision.convex_tree import ConvexTree, concatenate, shapes_tree
+from harness.planning.collision.scene import Body, CollisionModel
 from harness.planning.model.robot_model import GroupSpace
 from harness.robot.description import Joint
 
-BOX, CYLINDER, CAPSULE, SPHERE, PLANE, MESH = range(6)
-"""Shape kinds of the compiled stage."""
+Certify = Callable[..., tuple[int, int]]
+"""The type of `edge_kernel.certify`."""
 
 ROUNDING = 1e-5
 """Band around a margin that is left undecided, because of Coal's tolerance [m]."""
+
+MOST_LEFT = 64 * 1024
+"""Size of the memory for the pairs that are left in the intervals of a motion; where it is full,
+all pairs of the whole interval are compared again."""
+
+MOST_WAITING, SCRATCH = 1024, 16
+"""Largest number of pairs of nodes that wait for comparison, and rows of working memory."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,46 +37,43 @@ class MotionArrays:
     """Arrays that check a motion of one group in one scene; `edge_kernel.certify` explains each.
 
     Attributes:
-        columns: The indices of the moving joints in description order.
-        rows: The indices of Coal's collision pairs for each check.
+        rest: The positions of the moving joints where the group's are zero, shape (M,).
+        drive: What the group's positions add to them, shape (M, dof).
     """
 
-    columns: IntArray
-    nodes: FloatArray
-    skip: IntArray
-    parent: IntArray
-    chain: FloatArray
-    body_poses: FloatArray
-    bodies: IntArray
-    part_data: FloatArray
-    parts: IntArray
-    margins: FloatArray
-    checks: IntArray
-    keys: IntArray
-    joints: IntArray
-    rows: tuple[tuple[int, ...], ...]
+    rest: FloatArray
+    drive: FloatArray
+    robot: tuple[IntArray | FloatArray, ...]
+    shapes: tuple[IntArray | FloatArray, ...]
+    pairs: tuple[IntArray | FloatArray, ...]
+    memory: tuple[IntArray | FloatArray, ...]
 
     def certify(
-        self, stage: Callable[..., Any], values: FloatArray, straight: bool, found: IntArray
-    ) -> tuple[int, int]:
-        """Call `edge_kernel.certify` on values of the moving joints, shape (N, M)."""
-        return stage(
-            values,
+        self, check: Certify, states: FloatArray, count: int, *, straight: bool
+    ) -> tuple[int, IntArray]:
+        """Classify the states of a motion.
+
+        Args:
+            check: The compiled function `edge_kernel.certify`.
+            states: Group positions at each state, shape (count, dof); of a straight motion both its
+                ends, shape (2, dof), the first of which is not one of the states.
+            count: The number of states.
+            straight: Whether the motion is straight.
+
+        Returns:
+            A blocked state or -1, and the undecided states.
+        """
+        queue, found = np.empty((2 * count + 4, 4), dtype=np.int64), np.empty(count, dtype=np.int64)
+        blocked, undecided = check(
+            self.rest + states @ self.drive.T,
+            count,
             straight,
-            self.nodes,
-            self.skip,
-            self.parent,
-            self.chain,
-            self.body_poses,
-            self.bodies,
-            self.part_data,
-            self.parts,
-            self.margins,
-            self.checks,
-            self.keys,
-            self.joints,
-            found,
+            self.robot,
+            self.shapes,
+            self.pairs,
+            (*self.memory[:-1], queue, self.memory[-1], found),
         )
+        return blocked, found[:undecided]
 
 
 def motion_arrays(
@@ -83,21 +85,44 @@ def motion_arrays(
     margin = np.array([margins[pair.first, pair.second] for pair in model.pairs])[layout.pairs]
     free = np.maximum(margin, 0.0) + ROUNDING
     blocked = np.where(margin >= 0, margin - ROUNDING, -np.inf)
+    tree = layout.tree
     return MotionArrays(
-        columns=moving.columns,
-        nodes=layout.nodes,
-        skip=layout.skip,
-        parent=moving.parent,
-        chain=moving.chain,
-        body_poses=moving.body_poses(model.bodies),
-        bodies=layout.body_rows,
-        part_data=np.array(layout.part_data).reshape(-1, 15),
-        parts=np.array(layout.parts, dtype=np.int64).reshape(-1, 3),
-        margins=np.column_stack([free, blocked]),
-        checks=np.array(layout.checks, dtype=np.int64).reshape(-1, 3),
-        keys=np.array(layout.keys, dtype=np.int64).reshape(-1, 6),
-        joints=np.array(layout.joints or [0], dtype=np.int64),
-        rows=tuple(layout.rows),
+        rest=space.offset[moving.columns],
+        drive=space.matrix[moving.columns],
+        robot=(
+            moving.parent,
+            moving.chain,
+            moving.body_poses(model.bodies),
+            layout.body_rows,
+            layout.boxes,
+        ),
+        shapes=(
+            tree.spheres,
+            tree.nodes,
+            tree.convexes,
+            tree.sizes,
+            tree.points,
+            tree.edges_at,
+            tree.edges,
+        ),
+        pairs=(np.column_stack([free, blocked]), layout.checks, layout.keys, layout.joints),
+        memory=_working_memory(layout, len(moving.columns)),
+    )
+
+
+def _working_memory(layout: _Layout, width: int) -> tuple[IntArray | FloatArray, ...]:
+    """The memory of the compiled check that does not depend on the length of a motion."""
+    bodies, pairs, keys = len(layout.body_rows), len(layout.checks), len(layout.keys)
+    floats = ((width,), (width,), (width, 12), (bodies, 12), (bodies, 3), (keys, 2, 9))
+    return (
+        *(np.empty(shape) for shape in floats),
+        np.zeros((pairs, 3)),
+        np.empty((SCRATCH, 13)),
+        np.empty(bodies, dtype=np.int64),
+        np.empty(keys, dtype=np.int64),
+        layout.tree.convexes[:, 0].copy(),
+        np.empty((MOST_WAITING, 2), dtype=np.int64),
+        np.empty(max(MOST_LEFT, 2 * pairs), dtype=np.int64),
     )
 
 
@@ -163,126 +188,65 @@ class MovingJoints:
         return found
 
 
-@dataclass(frozen=True, eq=False)
-class _Trees:
-    """Spheres of all bodies (K, 5), the ends of their subtrees (K,), and body ranges (B, 2)."""
-
-    nodes: FloatArray
-    skip: IntArray
-    ranges: IntArray
-
-
 class _Layout:
-    """The checks of a scene as indices of covers, parts and keys.
+    """The pairs of a scene as indices of bodies and keys.
 
     Attributes:
-        nodes: The spheres of all bodies.
-        skip: The ends of their subtrees.
-        body_rows: The joint that carries each body, and the body's range of spheres.
-        parts: The body, kind and first sphere of each shape that spheres are checked against.
-        part_data: The poses and sizes of the parts.
+        tree: The trees of all bodies.
+        body_rows: The joint that carries each body, and its root in the tree, shape (B, 2).
+        boxes: The lower and upper corner of each body's bounding box, shape (B, 6).
         keys: The joints that move two bodies relative to each other, as ranges of `joints`.
         joints: The joints of all keys.
-        checks: The body with the spheres, the other body's part and the key of each check.
-        pairs: The index of each check's pair in the scene.
-        rows: The indices of Coal's collision pairs of each check.
+        checks: The two bodies and the key of each pair, shape (K, 3).
+        pairs: The index of each of them in the scene, shape (K,).
     """
 
     def __init__(self, model: CollisionModel, moving: MovingJoints) -> None:
-        self._bodies, self._moving = model.bodies, moving
-        self._geometry = model.geometry
+        self._moving = moving
         self._index = {body.name: number for number, body in enumerate(model.bodies)}
         self._carrier = [moving.above[body.joint] for body in model.bodies]
-        self._only_solid = [
-            not any(isinstance(shape.geometry, Mesh) for shape in body.shapes)
-            for body in model.bodies
-        ]
         self._has_plane = [
             any(isinstance(shape.geometry, Plane) for shape in body.shapes) for body in model.bodies
         ]
-        trees = _trees(model)
-        self.nodes, self.skip = trees.nodes, trees.skip
-        self.body_rows: IntArray = np.column_stack([self._carrier, trees.ranges]).astype(np.int64)
-        self._radius = [
-            float(trees.nodes[start, 3]) if start < end else np.inf for start, end in trees.ranges
-        ]
-        self.parts: list[tuple[int, int, int]] = []
-        self.part_data: list[FloatArray] = []
-        self.keys: list[tuple[int, int, int, int, int, int]] = []
-        self.joints: list[int] = []
-        self._parts_of: dict[int, list[tuple[int, int]]] = {}
         self._key_of: dict[tuple[int, int], int] = {}
-        self.checks: list[tuple[int, int, int]] = []
-        self.pairs: list[int] = []
-        self.rows: list[tuple[int, ...]] = []
+        keys: list[tuple[int, ...]] = []
+        joints: list[int] = []
+        checks: list[tuple[int, int, int]] = []
+        pairs: list[int] = []
         for number, pair in enumerate(model.pairs):
-            for body, part, key, pair_rows in self._checks_of(pair):
-                self.checks.append((body, part, key))
-                self.pairs.append(number)
-                self.rows.append(pair_rows)
+            first, second = self._index[pair.first], self._index[pair.second]
+            if self._carrier[first] == self._carrier[second]:
+                continue
+            if self._has_plane[first]:
+                first, second = second, first
+            checks.append((first, second, self._key(first, second, keys, joints)))
+            pairs.append(number)
+        self.tree, roots, self.boxes = _trees(model)
+        self.body_rows: IntArray = np.column_stack([self._carrier, roots]).astype(np.int64)
+        self.keys: IntArray = np.array(keys, dtype=np.int64).reshape(-1, 6)
+        self.joints: IntArray = np.array(joints or [0], dtype=np.int64)
+        self.checks: IntArray = np.array(checks, dtype=np.int64).reshape(-1, 3)
+        self.pairs: IntArray = np.array(pairs, dtype=np.int64)
 
-    def _checks_of(self, pair: BodyPair) -> list[tuple[int, int, int, tuple[int, ...]]]:
-        """For each part: the body with the tree, the other body's part, the key and Coal's rows."""
-        first, second = self._index[pair.first], self._index[pair.second]
-        if self._carrier[first] == self._carrier[second]:
-            return []
-        body, other = sorted(
-            (first, second),
-            key=lambda b: (self._has_plane[b], self._only_solid[b], self._radius[b]),
-        )
-        by_shape: dict[int, list[int]] = {}
-        tree_geometries = set(self._bodies[body].geometries)
-        for row in pair.pairs:
-            ends = self._geometry.collisionPairs[row]
-            geometry = ends.second if ends.first in tree_geometries else ends.first
-            by_shape.setdefault(int(geometry), []).append(row)
-        key = self._key(body, other)
-        if not self._only_solid[other]:
-            return [(body, self._tree_part(other), key, tuple(pair.pairs))]
-        return [
-            (body, part, key, tuple(by_shape[geometry]))
-            for part, geometry in self._solid_parts(other)
-        ]
-
-    def _solid_parts(self, body: int) -> list[tuple[int, int]]:
-        """The part and Coal's geometry index of each shape of a body."""
-        if body not in self._parts_of:
-            found = []
-            for geometry, shape in zip(
-                self._bodies[body].geometries, self._bodies[body].shapes, strict=True
-            ):
-                kind, size = _kind_and_size(shape.geometry)
-                found.append((len(self.parts), geometry))
-                self.parts.append((body, kind, 0))
-                self.part_data.append(np.concatenate([_flat(_matrix(shape.pose)), size]))
-            self._parts_of[body] = found
-        return self._parts_of[body]
-
-    def _tree_part(self, body: int) -> int:
-        """The part that stands for a body's whole tree."""
-        if body not in self._parts_of:
-            self._parts_of[body] = [(len(self.parts), -1)]
-            self.parts.append((body, MESH, int(self.body_rows[body, 1])))
-            self.part_data.append(np.concatenate([_flat(np.eye(4)), np.zeros(3)]))
-        return self._parts_of[body][0][0]
-
-    def _key(self, body: int, other: int) -> int:
-        """The joints that move a body relative to the joint that carries another."""
-        carrier = self._carrier[other]
-        if (body, carrier) in self._key_of and carrier < 0:
-            return self._key_of[body, carrier]
-        first, second = self._moving.path(self._carrier[body]), self._moving.path(carrier)
-        near = [joint for joint in first if joint not in second]
-        far = [joint for joint in second if joint not in first]
-        start = len(self.joints)
-        self.joints += near + far
-        middle, end = start + len(near), start + len(near) + len(far)
-        self.keys.append((body if near else -1, other if far else -1, start, middle, middle, end))
-        self._key_of[body, carrier] = len(self.keys) - 1
-        return len(self.keys) - 1
+    def _key(self, body: int, other: int, keys: list[tuple[int, ...]], joints: list[int]) -> int:
+        """The joints that move a body and another one relative to each other."""
+        carriers = self._carrier[body], self._carrier[other]
+        name = (body, -1) if carriers[1] < 0 else (-1, other) if carriers[0] < 0 else (body, other)
+        if name not in self._key_of:
+            first, second = map(self._moving.path, carriers)
+            near = [joint for joint in first if joint not in second]
+            far = [joint for joint in second if joint not in first]
+            start = len(joints)
+            joints += near + far
+            middle, end = start + len(near), start + len(near) + len(far)
+            self._key_of[name] = len(keys)
+            keys.append((body if near else -1, other if far else -1, start, middle, middle, end))
+        return self._key_of[name]
 
 
-_cover_cache: WeakKeyDictionary[CollisionModel, _Trees] = WeakKeyDictionary()
+_tree_cache: WeakKeyDictionary[CollisionModel, tuple[ConvexTree, IntArray, FloatArray]] = (
+    WeakKeyDictionary()
+)
 _layout_cache: WeakKeyDictionary[CollisionModel, dict[tuple[int, ...], _Layout]] = (
     WeakKeyDictionary()
 )
@@ -297,42 +261,13 @@ def _layout(model: CollisionModel, moving: MovingJoints) -> _Layout:
     return layouts[key]
 
 
-def _trees(model: CollisionModel) -> _Trees:
-    """The concatenated sphere trees of a scene's bodies; cached per scene."""
-    if model not in _cover_cache:
-        covers = [cover_shapes(body.shapes) if _has_tree(body) else None for body in model.bodies]
-        sizes = [0 if cover is None else len(cover.outer) for cover in covers]
-        ends = np.cumsum([0, *sizes])
-        nodes = [np.column_stack([c.centers, c.outer, c.inner]) for c in covers if c is not None]
-        skips = [c.skip + at for c, at in zip(covers, ends[:-1], strict=True) if c is not None]
-        _cover_cache[model] = _Trees(
-            nodes=np.vstack([np.zeros((0, 5)), *nodes]),
-            skip=np.concatenate([np.zeros(0, dtype=np.int64), *skips]),
-            ranges=np.column_stack([ends[:-1], ends[1:]]),
-        )
-    return _cover_cache[model]
-
-
-def _has_tree(body: Body) -> bool:
-    """Whether a body has a sphere tree: movable bodies and meshes have one, planes have none."""
-    kinds = {type(shape.geometry) for shape in body.shapes}
-    return Plane not in kinds and (body.joint != 0 or Mesh in kinds)
-
-
-def _kind_and_size(geometry: Geometry) -> tuple[int, FloatArray]:
-    match geometry:
-        case Box(size=size):
-            return BOX, 0.5 * np.array(size)
-        case Cylinder(radius=radius, length=length):
-            return CYLINDER, np.array([radius, 0.5 * length, 0.0])
-        case Capsule(radius=radius, length=length):
-            return CAPSULE, np.array([radius, 0.5 * length, 0.0])
-        case Sphere(radius=radius):
-            return SPHERE, np.array([radius, 0.0, 0.0])
-        case Plane():
-            return PLANE, np.zeros(3)
-        case Mesh():
-            raise ValueError("a mesh has no closed-form distance")
+def _trees(model: CollisionModel) -> tuple[ConvexTree, IntArray, FloatArray]:
+    """The trees of a scene's bodies, one after another, their roots and boxes; cached per scene."""
+    if model not in _tree_cache:
+        trees = [shapes_tree(body.shapes) for body in model.bodies]
+        roots = np.cumsum([0, *(len(tree.nodes) for tree in trees)])[:-1]
+        _tree_cache[model] = concatenate(trees), roots, np.array([tree.box() for tree in trees])
+    return _tree_cache[model]
 
 
 def _joint_motion(joint: Joint, value: float) -> FloatArray:
@@ -344,12 +279,6 @@ def _joint_motion(joint: Joint, value: float) -> FloatArray:
     else:
         motion[:3, :3] = pin.exp3(axis * value)
     return motion
-
-
-def _matrix(pose: SE3) -> FloatArray:
-    matrix = np.eye(4)
-    matrix[:3, :3], matrix[:3, 3] = pose.rotation, pose.translation
-    return matrix
 
 
 def _flat(matrix: FloatArray) -> FloatArray:

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
@@ -13,11 +13,10 @@ import numpy as np
 import pinocchio as pin
 
 from harness.core.errors import PlanningFailed
-from harness.core.types import FloatArray, IntArray
+from harness.core.types import FloatArray
 from harness.planning.collision import wording
 from harness.planning.collision.certificates import MotionArrays, motion_arrays
-from harness.planning.collision.compiled import compiled_stage, count_states
-from harness.planning.collision.free_stretches import ClearanceCertificates, coarse_to_fine
+from harness.planning.collision.compiled import compiled_check
 from harness.planning.collision.scene import CoalScene
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports import Touch
@@ -26,15 +25,6 @@ from harness.recording.goal_failures import CollisionFailure, TouchRecord
 
 DEEPEST_START = 0.002
 """Penetration at the start above which a motion is rejected [m]."""
-
-FEW_OPEN = 3
-"""Number of undecided states and pairs at which Coal first checks whether one is blocked."""
-
-MOST_OPEN = 4096
-"""Largest number of undecided states and pairs on an edge; with more, Coal checks all states."""
-
-MOST_SINGLE_PAIRS = 12
-"""Largest number of shape pairs of one state that are checked without the broad phase."""
 
 _MEASURED = 1e-4  # [m] extra margin within which found pairs are measured
 
@@ -53,11 +43,10 @@ class MotionChecker:
     grasps) keeps its start distance minus `MARGIN_SLACK` instead: it may separate and slide, but
     not penetrate deeper. A pair without contact at the start never gets into contact.
 
-    With the compiled stage, edges are checked in two stages: sphere covers certify parts of the
-    motion as free or a state as blocked, and Coal's exact shapes decide what remains undecided.
-    Without it, states with enough clearance certify their neighbourhood (`ClearanceCertificates`).
-    An edge is free when all its states at the requested spacing are free, and it counts as that
-    many states in either case: results, counts and plans do not depend on the stage.
+    A motion is free when all its states at the requested spacing are free, and it counts as that
+    many states. The compiled check decides most of them at once, by conservative advancement on the
+    same shapes; Coal decides the others, and all while the compiled check is not loaded. Results,
+    counts and plans do not depend on which of them decides.
 
     Attributes:
         checks: The number of states checked.
@@ -139,8 +128,7 @@ class MotionChecker:
 
     def state_free(self, positions: FloatArray) -> bool:
         """Whether every pair keeps its margin at group positions."""
-        self.checks += 1
-        return self._exact(positions)
+        return self.states_free(np.asarray(positions)[None])
 
     def edge_free(self, first: FloatArray, second: FloatArray, resolution: float) -> bool:
         """Whether the straight line between two positions is free; its start is not checked.
@@ -151,71 +139,45 @@ class MotionChecker:
             resolution: The largest joint-space distance between checked states [rad].
         """
         count = max(1, int(np.ceil(self.space.distance(first, second) / resolution)))
-        shares = np.arange(1, count + 1) / count
-        return self._all_free(first + (second - first) * shares[:, None], straight=True)
+        return self._blocked(np.array([first, second]), count, straight=True) is None
 
     def states_free(self, states: FloatArray) -> bool:
         """Whether all states of a motion are free, shape (N, dof), densely sampled."""
-        return self._all_free(states, straight=False)
+        return self._blocked(states, len(states), straight=False) is None
 
     def first_blocked(self, states: FloatArray) -> int | None:
         """Index of the first state of a motion that is not free, shape (N, dof), or None."""
-        if self.states_free(states):
+        blocked = self._blocked(states, len(states), straight=False)
+        if blocked is None:
             return None
-        return next(index for index, state in enumerate(states) if not self._exact(state))
+        earlier = enumerate(states[:blocked])
+        return next((index for index, state in earlier if not self._exact(state)), blocked)
 
-    def _all_free(self, states: FloatArray, *, straight: bool) -> bool:
-        self.checks += len(states)
-        certify = compiled_stage()
-        if certify is None:
-            count_states(len(states))
-            return self._clearance_certificates.are_free(states, self._exact)
-        arrays = self._arrays
-        values = np.ascontiguousarray(self.space.whole(states)[:, arrays.columns])
-        for room in (self._open[:FEW_OPEN], self._open):  # undecided pairs may be blocked
-            blocked, left_open = arrays.certify(certify, values, straight, room)
+    def _blocked(self, states: FloatArray, count: int, *, straight: bool) -> int | None:
+        """A state of a motion that is not free, or None; the arguments of `MotionArrays.certify`.
+
+        The compiled check decides all states but those within `ROUNDING` of a margin. These, and
+        all states before it is loaded, are checked by Coal, coarse to fine.
+        """
+        self.checks += count
+        open_states: Iterable[int] | None = None
+        certify = compiled_check(count)
+        if certify is not None:
+            blocked, open_states = self._arrays.certify(certify, states, count, straight=straight)
             if blocked >= 0:
-                return False
-            if left_open >= 0:
-                return self._decide(states, room[:left_open])
-            if not self._decide(states, room):
-                return False
-        return all(self._exact(states[step - 1]) for step in coarse_to_fine(len(states)))
-
-    @cached_property
-    def _clearance_certificates(self) -> ClearanceCertificates:
-        return ClearanceCertificates(self._scene_model, self.space, self._margins)
+                return blocked
+        for index in coarse_to_fine(count) if open_states is None else open_states:
+            if straight:
+                state = states[0] + (states[1] - states[0]) * ((index + 1) / count)
+            else:
+                state = states[index]
+            if not self._exact(state):
+                return int(index)
+        return None
 
     @cached_property
     def _arrays(self) -> MotionArrays:
         return motion_arrays(self._scene_model, self.space, self._margins)
-
-    @cached_property
-    def _open(self) -> IntArray:
-        return np.empty((MOST_OPEN, 2), dtype=np.int64)
-
-    def _decide(self, states: FloatArray, left_open: IntArray) -> bool:
-        """Whether the pairs that the covers leave undecided are free, by Coal's exact shapes.
-
-        At a margin, rounding lets a pair alone be blocked where the bounding boxes of the broad
-        phase do not overlap. The check of the whole state decides, as it does for single states.
-        """
-        rows_of = self._arrays.rows
-        by_state: dict[int, list[int]] = {}
-        for state, check in left_open.tolist():
-            by_state.setdefault(state, []).extend(rows_of[check])
-        for state, rows in by_state.items():
-            if len(rows) > MOST_SINGLE_PAIRS:
-                if not self._exact(states[state]):
-                    return False
-                continue
-            configuration = self.space.robot.configuration(self.space.whole(states[state]))
-            geometry, found = self._geometry, self._geometry_data
-            pin.updateGeometryPlacements(self._robot, self._data, geometry, found, configuration)
-            is_near = any(pin.computeCollision(geometry, found, row) for row in rows)
-            if is_near and not self._exact(states[state]):
-                return False
-        return True
 
     def _exact(self, positions: FloatArray) -> bool:
         configuration = self.space.robot.configuration(self.space.whole(positions))
@@ -250,3 +212,15 @@ class MotionChecker:
 def touch_records(touches: Sequence[Touch]) -> tuple[TouchRecord, ...]:
     """Touches as a failure records them."""
     return tuple(TouchRecord((touch.first, touch.second), touch.distance) for touch in touches)
+
+
+def coarse_to_fine(count: int) -> Iterator[int]:
+    """Indices of states: the last, then at halves, quarters ...; collisions are found early."""
+    step = 1
+    while step < count:
+        step *= 2
+    yield count - 1
+    while step > 1:
+        half = step // 2
+        yield from range(half - 1, count - 1, step)
+        step = half

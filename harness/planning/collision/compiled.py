@@ -1,4 +1,4 @@
-"""Selects the compiled edge checks of the extra `fast`; they are loaded when it pays off."""
+"""Loads the compiled check of motions when it pays off."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any, Literal
 
 PAYS_AFTER = 20_000
-"""States that are checked before the compiled stage is loaded: at most half a second of work.
+"""States that are checked before the compiled check is loaded: at most half a second of work.
 
 Loading takes half a second when it is compiled already, and several seconds the first time. The
 results are the same, so only the computing time depends on when it is loaded.
@@ -20,20 +20,18 @@ _states = 0
 
 
 def use_compiled(when: When) -> None:
-    """Choose when this process uses the compiled stage, for benchmarks and tests."""
+    """Choose when this process uses the compiled check, for benchmarks and tests."""
     global _when
     _when = when
 
 
-def count_states(number: int) -> None:
-    """Count states that are checked without the compiled stage."""
+def compiled_check(states: int) -> Callable[..., Any] | None:
+    """`edge_kernel.certify` for a number of states; None while loading it does not pay off."""
     global _states
-    _states += number
-
-
-def compiled_stage() -> Callable[..., Any] | None:
-    """`edge_kernel.certify`, or None when it is not installed or does not pay off yet."""
-    if _when == "never" or (_when == "when it pays" and _states < PAYS_AFTER):
+    if _when == "never":
+        return None
+    if _when == "when it pays" and _states < PAYS_AFTER:
+        _states += states
         return None
     return _load()
 
@@ -42,6 +40,6 @@ def compiled_stage() -> Callable[..., Any] | None:
 def _load() -> Callable[..., Any] | None:
     try:
         from harness.planning.collision.edge_kernel import certify
-    except (ImportError, RuntimeError):  # not installed; no writable cache folder
+    except RuntimeError:  # no writable folder for the cache
         return None
     return certify

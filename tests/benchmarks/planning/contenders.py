@@ -78,7 +78,7 @@ def naive(problem: Problem, seed: int = 1) -> Outcome:
     ou.RNG.setSeed(seed)
     problem.forget()
     before = time.process_time()
-    checker, space = EveryPair(problem.scene, problem.space), problem.space
+    checker, space = EveryPair(problem.scene, problem.space, problem.route.padding), problem.space
     begin = time.process_time()
     scene = begin - before
     states = ob.RealVectorStateSpace(space.dof)
@@ -118,12 +118,12 @@ def _state(space: ob.RealVectorStateSpace, positions: np.ndarray) -> ob.State:
 
 
 def is_free(problem: Problem, waypoints: np.ndarray) -> bool:
-    """Whether a path is free at `FINAL_RESOLUTION` on the exact shapes, by Coal alone.
+    """Whether a path keeps its margins at `FINAL_RESOLUTION`, by Coal alone.
 
     States are taken evenly from the start on, whatever the waypoints: others than those that the
     planner checked edge by edge.
     """
-    checker = EveryPair(problem.scene, problem.space)
+    checker = EveryPair(problem.scene, problem.space, problem.route.padding)
     lengths = np.linalg.norm(np.diff(waypoints, axis=0), axis=1)
     knots = np.concatenate([[0.0], np.cumsum(lengths)])
     places = np.append(np.arange(0.0, knots[-1], FINAL_RESOLUTION), knots[-1])

@@ -93,8 +93,14 @@ def cage(rng: np.random.Generator, s: float) -> Layout:
             shapes.append(box((bar, bar, height), (u * side / 2, v * side / 2, height / 2)))
     shapes.append(can(0.04 * s, 0.16 * s, (0, 0, 0.08 * s)))
     inside = place @ at((-side / 2 - 0.02 * s, 0.03 * s, 0.72 * height)) @ at((0, 0, 0), AHEAD)
-    above = place @ at((0.03 * s, 0, 0.45 * s + 0.05), DOWN)
-    return Layout([Shape(p.geometry, place @ p.pose) for p in shapes], [inside, above])
+    above = place @ at((0.03 * s, 0, 0.45 * s + 0.13), DOWN)
+    aside = [
+        place
+        @ at((-0.02 * s, end * (side / 2 + 0.02 * s), 0.72 * height), (0, 0, -end * np.pi / 2))
+        @ at((0, 0, 0), AHEAD)
+        for end in (-1, 1)
+    ]
+    return Layout([Shape(p.geometry, place @ p.pose) for p in shapes], [inside, above, *aside])
 
 
 def clutter(rng: np.random.Generator, s: float, count: int, height: float) -> list[Shape]:

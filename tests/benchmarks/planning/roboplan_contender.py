@@ -10,9 +10,9 @@ import roboplan.rrt as rrt
 from harness.core.geometry import Box, Cylinder
 from harness.planning.verification.verify import FINAL_RESOLUTION, UNPADDED_RESOLUTION
 from harness.robot.urdf.write import write_urdf
-from tests.benchmarks.planning.arms import arm, folder
+from tests.benchmarks.planning.arms import ARM_GROUP, arm, packages
 from tests.benchmarks.planning.contenders import PATIENCE, RANGE, SPACING, Outcome
-from tests.benchmarks.planning.problems import GROUND_HEIGHT, GROUP, Problem
+from tests.benchmarks.planning.problems import GROUND_HEIGHT, Problem
 
 COLOUR = np.full(4, 0.5)
 GROUND = core.Box(10.0, 10.0, 1.0)
@@ -50,7 +50,7 @@ def _planned(
         if path is None:
             continue
         planned = planned or time.process_time()
-        options = core.PathShortcuttingOptions(group_name=GROUP, max_step_size=fine, seed=seed)
+        options = core.PathShortcuttingOptions(group_name=ARM_GROUP, max_step_size=fine, seed=seed)
         short = np.array(core.PathShortcutter(scene, options).shortcut(path).positions)
         if verify is None or not any(
             core.hasCollisionsAlongPath(scene, first, second, verify)
@@ -63,7 +63,7 @@ def _planned(
 
 def _plan(scene: core.Scene, problem: Problem, spacing: float, seed: int) -> core.JointPath | None:
     options = rrt.RRTOptions(
-        group_name=GROUP,
+        group_name=ARM_GROUP,
         max_nodes=MOST_NODES,
         max_connection_distance=RANGE,
         collision_check_step_size=spacing,
@@ -84,18 +84,17 @@ def _plan(scene: core.Scene, problem: Problem, spacing: float, seed: int) -> cor
 
 def _robot(problem: Problem) -> core.Scene:
     """A scene with the arm alone."""
-    description = arm(problem.model)
-    urdf = write_urdf(problem.model, description.links, description.joints)
-    scene = core.Scene(
-        problem.model, core.loadUrdfSceneDescriptionFromXml(urdf, [str(folder().parent)])
-    )
-    scene.addGroup(GROUP, list(problem.space.joint_names))
+    description = arm(exact=True)
+    urdf = write_urdf("arm", description.links, description.joints)
+    folders = [str(place.parent) for place in packages().values()]
+    scene = core.Scene("arm", core.loadUrdfSceneDescriptionFromXml(urdf, folders))
+    scene.addGroup(ARM_GROUP, list(problem.space.joint_names))
     return scene
 
 
 def _load_scene(scene: core.Scene, problem: Problem) -> None:
     """Add things and ground; the same pairs are checked as by the others."""
-    description = arm(problem.model)
+    description = arm(exact=True)
     solid = {link.name for link in description.links if link.collisions}
     allowed = [pair for pair in description.allowed_collisions if solid.issuperset(pair)]
     for number, shape in enumerate(problem.obstacles):

@@ -1,0 +1,250 @@
+"""Shapes as trees of convex sets, with which the compiled check measures exact distances."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Shape, Sphere
+from harness.core.types import FloatArray, IntArray
+from harness.robot.mesh_file import convex_hull, read_triangles
+
+POINTS, POLYTOPE, CYLINDER, HALF_SPACE = range(4)
+"""Kinds of convex sets, as in `edge_kernel`."""
+
+FEW_POINTS = 32
+"""Number of points up to which comparing all of them finds the farthest one the fastest."""
+
+
+@dataclass(frozen=True, eq=False)
+class ConvexTree:
+    """A tree of nodes in preorder; a leaf is exact, and a node contains the nodes below it.
+
+    A node is a ball and, where it has one, a convex set inside that ball. Boxes, hulls and other
+    convex solids are a single node. The tree of an exact mesh ends with its triangles.
+
+    Attributes:
+        spheres: Centre and radius of each node's ball in the frame of the shape [m], shape (N, 4).
+        nodes: The index after the subtree of each node, and its convex set or -1, shape (N, 2).
+        convexes: The range of each set's points, and its kind, shape (C, 3).
+        sizes: The radius by which each set is rounded; of a cylinder also its radius and half its
+            length [m], shape (C, 3).
+        points: The points of all sets [m], shape (P, 3); of a cylinder its centre, of a half space
+            a point of its surface, each with a second point 1 m along the axis or the normal.
+        edges_at: Where the neighbours of each point begin, shape (P + 1,).
+        edges: The points that an edge of their polytope joins.
+    """
+
+    spheres: FloatArray
+    nodes: IntArray
+    convexes: IntArray
+    sizes: FloatArray
+    points: FloatArray
+    edges_at: IntArray
+    edges: IntArray
+
+    def placed(self, rotation: FloatArray, translation: FloatArray) -> ConvexTree:
+        """The tree of the moved shape."""
+        spheres = self.spheres.copy()
+        spheres[:, :3] = self.spheres[:, :3] @ rotation.T + translation
+        return replace(self, spheres=spheres, points=self.points @ rotation.T + translation)
+
+    def box(self) -> FloatArray:
+        """The lower and the upper corner of the box about all sets, shape (6,)."""
+        ends: list[FloatArray] = []
+        for (first, last, kind), (rounding, radius, half) in zip(
+            self.convexes.tolist(), self.sizes.tolist(), strict=True
+        ):
+            points, reach = self.points[first:last], rounding
+            if kind == HALF_SPACE:
+                return np.repeat([-np.inf, np.inf], 3)
+            if kind == CYLINDER:
+                axis = points[1] - points[0]
+                reach = np.abs(axis) * half + np.sqrt(np.maximum(1.0 - axis**2, 0.0)) * radius
+                points = points[:1]
+            ends += [points.min(axis=0) - reach, points.max(axis=0) + reach]
+        return np.concatenate([np.min(ends, axis=0), np.max(ends, axis=0)])
+
+
+def shapes_tree(shapes: Sequence[Shape]) -> ConvexTree:
+    """The tree of shapes that move together, in their common frame.
+
+    Raises:
+        RobotError: A mesh file cannot be read.
+    """
+    trees = [
+        geometry_tree(shape.geometry).placed(shape.pose.rotation, shape.pose.translation)
+        for shape in shapes
+    ]
+    return _joined(trees)
+
+
+def concatenate(trees: Sequence[ConvexTree]) -> ConvexTree:
+    """Several trees one after another, their indices shifted."""
+    starts = {
+        name: np.cumsum([0, *(len(getattr(tree, name)) for tree in trees)])
+        for name in ("nodes", "convexes", "points", "edges")
+    }
+    nodes, convexes, places, edges = [], [], [np.zeros(0, dtype=np.int64)], []
+    for row, tree in enumerate(trees):
+        node, convex, point, edge = (int(starts[name][row]) for name in starts)
+        has_set = tree.nodes[:, 1] >= 0
+        nodes.append(tree.nodes + np.column_stack([np.full(len(has_set), node), convex * has_set]))
+        convexes.append(tree.convexes + np.array([point, point, 0]))
+        places.append(tree.edges_at[:-1] + edge)
+        edges.append(tree.edges + point)
+    return ConvexTree(
+        np.concatenate([tree.spheres for tree in trees]),
+        np.concatenate(nodes),
+        np.concatenate(convexes),
+        np.concatenate([tree.sizes for tree in trees]),
+        np.concatenate([tree.points for tree in trees]),
+        np.append(np.concatenate(places), starts["edges"][-1]),
+        np.concatenate(edges),
+    )
+
+
+@lru_cache(maxsize=1024)
+def geometry_tree(geometry: Geometry) -> ConvexTree:
+    """The tree of a geometry in its own frame.
+
+    Raises:
+        RobotError: A mesh file cannot be read.
+    """
+    match geometry:
+        case Box(size=size):
+            corners = np.array(np.meshgrid(*([-0.5, 0.5],) * 3)).reshape(3, -1).T * size
+            return _leaf(corners)
+        case Sphere(radius=radius):
+            return _leaf(np.zeros((1, 3)), rounding=radius)
+        case Capsule(radius=radius, length=length):
+            return _leaf(_along_z(-0.5 * length, 0.5 * length), rounding=radius)
+        case Cylinder(radius=radius, length=length):
+            sizes, reach = (0.0, radius, 0.5 * length), float(np.hypot(radius, 0.5 * length))
+            return _formula(CYLINDER, sizes, reach)
+        case Plane():
+            return _formula(HALF_SPACE, (0.0, 0.0, 0.0), np.inf)
+        case Mesh(exact=True):
+            mesh = read_triangles(geometry)
+            return _surface(mesh.vertices, mesh.faces)
+        case Mesh():
+            return _hull(geometry)
+
+
+def _along_z(*heights: float) -> FloatArray:
+    return np.column_stack([np.zeros((len(heights), 2)), heights])
+
+
+def _formula(kind: int, sizes: tuple[float, float, float], reach: float) -> ConvexTree:
+    """A solid about the origin whose farthest points follow from a formula."""
+    tree = _leaf(_along_z(0.0, 1.0))
+    return replace(
+        tree,
+        spheres=np.array([[0.0, 0.0, 0.0, reach]]),
+        convexes=np.array([[0, 2, kind]]),
+        sizes=np.array([sizes]),
+    )
+
+
+def _leaf(points: FloatArray, faces: IntArray | None = None, rounding: float = 0.0) -> ConvexTree:
+    """A single node: a few points, or a polytope with its triangles, shape (F, 3)."""
+    edges_at, edges = np.zeros(len(points) + 1, dtype=np.int64), np.zeros(0, dtype=np.int64)
+    if faces is not None:
+        edges_at, edges = _neighbours(faces, len(points))
+    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    radius = float(np.linalg.norm(points - middle, axis=1).max()) + rounding
+    kind = POINTS if faces is None else POLYTOPE
+    return ConvexTree(
+        np.append(middle, radius)[None],
+        np.array([[1, 0]]),
+        np.array([[0, len(points), kind]]),
+        np.array([[rounding, 0.0, 0.0]]),
+        points,
+        edges_at,
+        edges,
+    )
+
+
+def _neighbours(faces: IntArray, count: int) -> tuple[IntArray, IntArray]:
+    """The points that an edge of a triangle joins with each point."""
+    pairs = np.unique(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=0)
+    pairs = np.unique(np.vstack([pairs, pairs[:, ::-1]]), axis=0)
+    return np.searchsorted(pairs[:, 0], np.arange(count + 1)), np.ascontiguousarray(pairs[:, 1])
+
+
+def _hull(geometry: Mesh) -> ConvexTree:
+    """The hull that Coal makes of a mesh's points."""
+    hull = convex_hull(geometry)
+    points = np.array(hull.points(), dtype=float).reshape(-1, 3)
+    if len(points) <= FEW_POINTS:
+        return _leaf(points)
+    polygons = (hull.polygons(row) for row in range(hull.num_polygons))
+    faces = np.array([(face[0], face[1], face[2]) for face in polygons], dtype=np.int64)
+    used, faces = np.unique(faces, return_inverse=True)
+    return _leaf(points[used], faces.reshape(-1, 3))
+
+
+def _hull_of_points(points: FloatArray) -> ConvexTree:
+    """A node that contains points, shape (N, 3)."""
+    if len(points) <= FEW_POINTS:
+        return _leaf(points)
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        hull = ConvexHull(points)
+    except QhullError:  # flat
+        return _leaf(points)
+    used, faces = np.unique(hull.simplices, return_inverse=True)
+    return _leaf(points[used], faces.reshape(-1, 3))
+
+
+def _surface(vertices: FloatArray, faces: IntArray) -> ConvexTree:
+    """The tree of a surface: hulls of ever fewer triangles."""
+    middles = vertices[faces].mean(axis=1)
+    found: list[ConvexTree] = []
+    ends: list[int] = []
+
+    def descend(members: IntArray) -> None:
+        place = len(found)
+        found.append(_hull_of_points(vertices[np.unique(faces[members])]))
+        ends.append(0)
+        if len(members) > 1:
+            for half in _halves(middles, members):
+                descend(half)
+        ends[place] = len(found)
+
+    descend(np.arange(len(faces)))
+    tree = concatenate(found)
+    return replace(tree, nodes=np.column_stack([ends, tree.nodes[:, 1]]))
+
+
+def _joined(trees: Sequence[ConvexTree]) -> ConvexTree:
+    """One tree above several, which are halved where there are many."""
+    if len(trees) == 1:
+        return trees[0]
+    roots = np.array([tree.spheres[0] for tree in trees])
+    if len(trees) > 2:
+        halves = _halves(roots[:, :3], np.arange(len(trees)))
+        return _joined([_joined([trees[row] for row in half]) for half in halves])
+    centers, radii = roots[:, :3], roots[:, 3]
+    if not np.isfinite(radii).all():
+        root = np.array([0.0, 0.0, 0.0, np.inf])
+    else:
+        low, high = (centers - radii[:, None]).min(axis=0), (centers + radii[:, None]).max(axis=0)
+        middle = 0.5 * (low + high)
+        root = np.append(middle, (np.linalg.norm(centers - middle, axis=1) + radii).max())
+    below = concatenate(trees)
+    convexes = below.nodes[:, 1]
+    top = np.array([[1 + len(below.nodes), -1]])
+    nodes = np.vstack([top, np.column_stack([below.nodes[:, 0] + 1, convexes])])
+    return replace(below, spheres=np.vstack([root, below.spheres]), nodes=nodes)
+
+
+def _halves(places: FloatArray, members: IntArray) -> tuple[IntArray, IntArray]:
+    """Members in two halves along the axis on which their places differ most."""
+    axis = int(np.argmax(np.ptp(places[members], axis=0)))
+    order = members[np.argsort(places[members, axis], kind="stable")]
+    return order[: len(order) // 2], order[len(order) // 2 :]
