@@ -235,7 +235,7 @@ class _Compiler:
 
     def _object(self, spec: ObjectSpec, pose: SE3, folder: Path) -> WorldObject:
         """The object, its mesh files looked into; raises ObjectUnusableError."""
-        obj = resolve_object(spec, pose, folder)
+        obj = resolve_object(spec, pose, folder, self.sources.scenario.collision)
         for shape in obj.shapes:
             if isinstance(shape.geometry, Mesh):
                 try:

@@ -165,7 +165,8 @@ def _prepared(loaded: LoadedScenario, missing: frozenset[Prerequisite]) -> Prepa
 
 def _robot(loaded: LoadedScenario) -> RobotDescription:
     try:
-        return load_robot(loaded.scenario.robot, loaded.path.parent)
+        scenario = loaded.scenario
+        return load_robot(scenario.robot, loaded.path.parent, scenario.collision)
     except RobotOptionError as error:
         loc = ("robot", error.key.split(".")[0])
         raise SpecError([loaded.lines.problem(loc, str(error))]) from error

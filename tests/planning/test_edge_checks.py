@@ -88,7 +88,7 @@ def test_a_hull_is_covered_and_the_balls_inside_it_touch_it(tmp_path):
 
 
 def test_a_mesh_is_covered_and_each_inner_radius_reaches_a_point_of_it(tmp_path):
-    mesh = Mesh(write_mesh(tmp_path), exact=True)
+    mesh = Mesh(write_mesh(tmp_path), collision="exact")
     found = cover(mesh)
     generator = np.random.default_rng(4)
     loaded = coal.MeshLoader().load(str(mesh.path), np.ones(3))
@@ -127,12 +127,12 @@ def write_mesh(folder: Path) -> Path:
     return path
 
 
-def meshed(description, *, exact):
+def meshed(description, collision):
     """The robot with the meshes it is drawn with as collision shapes of its last links."""
     links = []
     for link in description.links:
         meshes = tuple(
-            replace(shape, geometry=replace(shape.geometry, exact=exact))
+            replace(shape, geometry=replace(shape.geometry, collision=collision))
             for shape in link.visuals
             if isinstance(shape.geometry, Mesh)
         )
@@ -145,7 +145,7 @@ def crowded(description, folder):
     """A cell with boxes, a mesh in the way, and something in the hand."""
     cell = Cell(description)
     cell.add(boxes(*FIRST_BOXES))
-    bar = Mesh(write_mesh(folder), exact=True)
+    bar = Mesh(write_mesh(folder), collision="exact")
     cell.add(thing("bar", at(0.25, -0.35, 1.35, (0.3, 0.5, 0)), Shape(bar)))
     tip = cell.kinematics.link_pose(cell.state, description.tcp_link)
     cell.add(thing("held", tip, Shape(Cylinder(0.02, 0.12))))
@@ -158,8 +158,8 @@ def crowded(description, folder):
 
 ROBOTS = {
     "ur3e": (lambda: ur("ur3e"), ARM),
-    "ur5e with a mesh": (lambda: meshed(ur("ur5e"), exact=True), ARM),
-    "ur5e with a hull": (lambda: meshed(ur("ur5e"), exact=False), ARM),
+    "ur5e with a mesh": (lambda: meshed(ur("ur5e"), "exact"), ARM),
+    "ur5e with a hull": (lambda: meshed(ur("ur5e"), "hull"), ARM),
     "open_manipulator_x": (open_manipulator, "arm"),
 }
 

@@ -90,7 +90,7 @@ def cover(geometry: Geometry) -> Cover:
             np.ones(1, dtype=np.int64),
         )
     if isinstance(geometry, Mesh):
-        return _cover_surface(geometry) if geometry.exact else _cover_hull(geometry)
+        return _cover_surface(geometry) if geometry.collision == "exact" else _cover_hull(geometry)
     if isinstance(geometry, Capsule):
         return _cover_capsule(geometry)
     if isinstance(geometry, Box):
