@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from harness.core.errors import RobotOptionError
-from harness.core.geometry import CollisionMode, Mesh, Shape
+from harness.core.geometry import CollisionMode, Mesh, Shape, undivided
 from harness.robot.description import RobotDescription
 from harness.robot.mesh_file import decomposition_of
 
@@ -64,7 +64,7 @@ def with_collision_shapes(
             near = difflib.get_close_matches(name, description.link_names, 1)
             hint = f"; did you mean '{near[0]}'?" if near else ""
             raise RobotOptionError("collision", f"'{description.name}' has no link '{name}'{hint}")
-    return replace(
+    described = replace(
         description,
         links=tuple(
             replace(
@@ -72,6 +72,63 @@ def with_collision_shapes(
             )
             for link in description.links
         ),
+    )
+    notes = parts_notes({link.name: link.collisions for link in described.links})
+    return replace(described, notes=(*described.notes, *notes))
+
+
+@dataclass(frozen=True)
+class MeshShapes:
+    """What stands for a mesh of a body.
+
+    Attributes:
+        body: The link or the object.
+        file: The name of the mesh file.
+        parts: The number of convex parts; 0 for the triangles.
+        excess: How far they reach beyond the mesh at most [m].
+    """
+
+    body: str
+    file: str
+    parts: int
+    excess: float
+
+    def __str__(self) -> str:
+        if not self.parts:
+            return f"{self.body}: the planner checks the triangles of {self.file}"
+        shapes = f"{self.parts} convex parts" if self.parts > 1 else "its convex hull"
+        larger = f"at most {1e3 * self.excess:.1f} mm larger than the mesh"
+        return f"{self.body}: {self.file} collides as {shapes}, {larger}"
+
+
+def mesh_shapes(bodies: Mapping[str, Iterable[Shape]]) -> tuple[MeshShapes, ...]:
+    """What stands for every mesh of bodies, given by name with their collision shapes."""
+    found: dict[tuple[str, Mesh], MeshShapes] = {}
+    for body, shapes in bodies.items():
+        for shape in undivided(shapes):
+            mesh = shape.geometry
+            if not isinstance(mesh, Mesh):
+                continue
+            measured = decomposition_of(mesh)
+            parts, excess = len(measured.parts), measured.excess
+            if mesh.collision == "exact":
+                parts, excess = 0, 0.0
+            elif mesh.collision == "hull":
+                parts, excess = 1, measured.hull_excess
+            found[body, mesh] = MeshShapes(body, mesh.path.name, parts, excess)
+    return tuple(found.values())
+
+
+def parts_notes(bodies: Mapping[str, Iterable[Shape]]) -> tuple[str, ...]:
+    """A note on the meshes for which convex parts stand; empty where there are none."""
+    parts = [each for each in mesh_shapes(bodies) if each.parts > 1]
+    if not parts:
+        return ()
+    worst = max(parts, key=lambda each: each.excess)
+    names = ", ".join(dict.fromkeys(each.body for each in parts))
+    return (
+        f"{sum(each.parts for each in parts)} convex parts stand for the meshes of {names}; they "
+        f"reach at most {1e3 * worst.excess:.1f} mm beyond the mesh (at {worst.body})",
     )
 
 

@@ -31,6 +31,7 @@ from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
 from harness.planning.search.find_pipeline import check_planner
 from harness.ports import Kinematics, MotionPlanner, PlanningScene
 from harness.recording.run import Finding
+from harness.robot.collision_shapes import parts_notes
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
 from harness.world.imported import ImportedWorld
@@ -156,6 +157,8 @@ def _prepared(loaded: LoadedScenario, missing: frozenset[Prerequisite]) -> Prepa
         raise SpecError([*problems, *error.problems]) from error
     if problems:
         raise SpecError(problems)
+    added = (*program.world.objects, *program.later_objects.values())
+    notes += parts_notes({obj.name: obj.shapes for obj in added})
     placed = tuple(
         PlacedExpectation.of(item.spec, item.step, item.line) for item in program.expectations
     )

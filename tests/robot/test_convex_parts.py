@@ -12,11 +12,15 @@ from scipy.spatial import ConvexHull
 
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh, Shape, undivided
+from harness.language.scenario import RobotSpec
 from harness.robot.collision_shapes import collision_shapes
 from harness.robot.decomposition.decomposition import MOST_PARTS, decompose
 from harness.robot.decomposition.parts_cache import cache_folder, stored_decomposition
 from harness.robot.decomposition.solid_grid import surface_points
+from harness.robot.load import load_robot
 from harness.robot.mesh_file import decomposition_of, exact_surface, hull_points
+from harness.robot_tools.robot_check import check_robot
+from tests.robot.arm_files import SHAPE, SRDF, URDF
 from tests.robot.vessels import vessel, write_obj
 
 BIN = {"sides": 4, "outer": 0.1, "inner": 0.09, "height": 0.06, "floor": 0.005}
@@ -167,3 +171,28 @@ def test_a_flat_mesh_is_refused(tmp_path):
     path = write_obj(tmp_path / "flat.obj", vertices * [1, 1, 0], faces)
     with pytest.raises(RobotError, match=r"flat\.obj is flat"):
         collision_shapes([Shape(Mesh(path))])
+
+
+def arm_with(folder, shape):
+    """An arm of three joints, one link with another shape."""
+    (folder / "arm.urdf").write_text(URDF.replace(SHAPE, SHAPE + shape, 1))
+    (folder / "arm.srdf").write_text(SRDF)
+    return load_robot(RobotSpec(urdf="arm.urdf", srdf="arm.srdf"), folder)
+
+
+def test_a_missing_visual_mesh_is_a_note(tmp_path):
+    visual = '<visual><geometry><mesh filename="{}"/></geometry></visual>'
+    for name in ("gone.stl", "package://gone/a.stl"):
+        [note] = [each for each in arm_with(tmp_path, visual.format(name)).notes if name in each]
+        assert note.startswith("link 'upper': the visual is not drawn: ")
+
+
+def test_a_check_of_a_robot_says_what_stands_for_its_meshes(tmp_path):
+    write_obj(tmp_path / "bin.obj", *vessel(**BIN))
+    mesh = '<collision><geometry><mesh filename="bin.obj"/></geometry></collision>'
+    description = arm_with(tmp_path, mesh)
+    [note] = [note for note in description.notes if "convex parts" in note]
+    assert note.startswith("5 convex parts stand for the meshes of upper; they reach at most ")
+    report = check_robot(description, "arm.urdf", samples=5).report
+    [found] = [each for each in report.findings if each.about == "collision shapes"]
+    assert found.details[0].startswith("upper: bin.obj collides as 5 convex parts, at most ")

@@ -124,3 +124,21 @@ def test_an_unknown_link_of_the_robots_collision_is_reported(tmp_path):
     robot = "{model: open_manipulator_x, collision: {link9: hull}}"
     [problem] = check(tmp_path, "- wait: 1 s", robot=robot).problems
     assert "'open_manipulator_x' has no link 'link9'; did you mean 'link" in problem.message
+
+
+WORLD = """\
+world: a bench
+objects:
+  - {name: jug, mesh: {file: gone.stl}, pose: {xyz: [0.3, 0, 0]}, static: true}
+  - {name: lid, box: {size: [0.02, 0.02, 0.02]}, pose: {frame: jug, xyz: [0, 0, 0.1]}}
+"""
+JUG = "objects:\n  - {name: jug, box: {size: [0.1, 0.1, 0.1]}, replace: true, static: true}\n"
+
+
+def test_an_object_with_a_missing_mesh_can_be_replaced(tmp_path):
+    (tmp_path / "bench.world.yaml").write_text(WORLD)
+    words = {"robot": ARM, "world": "bench.world.yaml"}
+    [problem] = check(tmp_path, "- wait: 1 s", **words).problems
+    assert "object 'jug': there is no mesh file 'gone.stl'" in problem.message
+    assert "with `replace: true` in `objects` takes its place" in problem.message
+    assert not check(tmp_path, "- wait: 1 s", rest=JUG, **words).problems
