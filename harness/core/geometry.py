@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
 from harness.core.spatial import SE3
 
 Rgba = tuple[float, float, float, float]
+
+CollisionMode = Literal["hull", "parts", "exact"]
+"""How a mesh collides: as its convex hull, as convex parts, or in the planner as its triangles."""
 
 
 @dataclass(frozen=True)
@@ -49,15 +54,22 @@ class Plane:
 
 @dataclass(frozen=True)
 class Mesh:
-    """A triangle mesh file (STL, OBJ, DAE); `scale` multiplies its coordinates to metres.
+    """A triangle mesh file (STL, OBJ, DAE), its convex hull, or one of its convex parts.
 
-    Planner and physics both collide with its convex hull; with `exact`, the planner collides with
-    its triangles, which are a surface.
+    Planner and physics both collide with the hull or the part. With the collision mode `exact`, the
+    planner collides with the triangles, which are a surface, and the physics with the parts.
+
+    Attributes:
+        path: The path of the file.
+        scale: The factors from its coordinates to metres.
+        collision: How it collides; None before that is decided, and for what is only seen.
+        part: The number of the convex part; None for the whole mesh.
     """
 
     path: Path
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
-    exact: bool = False
+    collision: CollisionMode | None = None
+    part: int | None = None
 
 
 Geometry = Box | Cylinder | Sphere | Capsule | Plane | Mesh
@@ -111,3 +123,15 @@ def bounding_radius(shape: Shape) -> float:
             return offset + radius + 0.5 * length
         case Plane() | Mesh():
             return float("inf")
+
+
+def undivided(shapes: Iterable[Shape]) -> tuple[Shape, ...]:
+    """The shapes, with the mesh in place of its convex parts; for pictures and files."""
+    whole: list[Shape] = []
+    for shape in shapes:
+        if isinstance(shape.geometry, Mesh) and shape.geometry.part is not None:
+            if shape.geometry.part == 0:
+                whole.append(replace(shape, geometry=replace(shape.geometry, part=None)))
+        else:
+            whole.append(shape)
+    return tuple(whole)

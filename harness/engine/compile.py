@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from harness.assertions.placed import as_expectation, check_expectation
 from harness.cell.program import Program, ProgramExpectation, ProgramStep, step_seed
 from harness.cell.scope import At, Prerequisite, Problems, Scope
@@ -162,6 +164,7 @@ class _Compiler:
         """The world's own objects; what is wrong with one is reported at the scenario's `world`."""
         resolved: dict[str, WorldObject] = {}
         world, problems = self.sources.world, list[str]()
+        replaced = {spec.name for spec in self.sources.scenario.objects if spec.replace}
         for spec in world.objects:
             self.object_locs[spec.name] = ("world",)
             if spec.name in resolved:
@@ -181,7 +184,13 @@ class _Compiler:
             try:
                 resolved[spec.name] = self._object(spec, pose, self.sources.world_dir)
             except ObjectUnusableError as unusable:
-                problems.append(f"object '{spec.name}': {unusable}")
+                if spec.name in replaced:
+                    resolved[spec.name] = _unusable(spec.name, pose)
+                    continue
+                problems.append(
+                    f"object '{spec.name}': {unusable}; an object of this name with"
+                    " `replace: true` in `objects` takes its place"
+                )
                 self.problems.add_unusable(spec.name)
         if problems:
             self.problems.add(
@@ -235,7 +244,7 @@ class _Compiler:
 
     def _object(self, spec: ObjectSpec, pose: SE3, folder: Path) -> WorldObject:
         """The object, its mesh files looked into; raises ObjectUnusableError."""
-        obj = resolve_object(spec, pose, folder)
+        obj = resolve_object(spec, pose, folder, self.sources.scenario.collision)
         for shape in obj.shapes:
             if isinstance(shape.geometry, Mesh):
                 try:
@@ -336,6 +345,11 @@ class _Compiler:
         self.pending.append((spec, loc))
         line, _ = self.sources.lines.line_of(loc)
         self.expectations.append(ProgramExpectation(spec, step, line))
+
+
+def _unusable(name: str, pose: SE3) -> WorldObject:
+    """A frame for an object that cannot be used and is replaced."""
+    return WorldObject(name, (), pose, True, 0.0, np.zeros(3), np.zeros((3, 3)))
 
 
 def _without_pose(spec: ObjectSpec) -> ObjectSpec:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Any, cast
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
+from harness.core.geometry import CollisionMode
 from harness.core.variation import MOST_SAMPLES, count_of
 from harness.language.base import (
     Count,
@@ -17,6 +18,7 @@ from harness.language.base import (
     Name,
     Number,
     SpecModel,
+    kind_of,
 )
 from harness.language.cameras import CameraSpec, VideoSpec
 from harness.language.expectation import AnyExpectation
@@ -130,6 +132,18 @@ class RobotSpec(SpecModel):
         "form that fits, else `numeric`. By default the one that the robot's folder names; "
         "`harness list ik-solvers` has the names.",
     )
+    collision: (
+        Annotated[
+            Annotated[CollisionMode, Tag("one")]
+            | Annotated[dict[Name, CollisionMode], Tag("many")],
+            Discriminator(kind_of),
+        ]
+        | None
+    ) = Field(
+        default=None,
+        description="How the meshes of the robot's links collide, as the `collision` of a mesh; "
+        "one word, or one for each link. By default as the scenario's `collision` says.",
+    )
     joint_limits: dict[Name, JointLimits] = Field(
         default_factory=dict,
         description="Limits by joint name; they are narrower than the robot's own.",
@@ -208,6 +222,12 @@ class Scenario(SpecModel):
     )
     objects: tuple[ObjectSpec, ...] = Field(
         default=(), description="Objects that are added to the world's, or replace them."
+    )
+    collision: CollisionMode = Field(
+        default="parts",
+        description="How meshes collide that have no `collision` of their own: as convex `parts`, "
+        "which are one hull where that is within 10 mm of the mesh (or a tenth of its longest "
+        "side); as convex `hull`; or `exact` in the planner and as parts in the physics.",
     )
     cameras: tuple[CameraSpec, ...] = Field(
         default=(), description="Cameras that are added to those of the world and the robot."

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
+from harness.core.geometry import CollisionMode
 from harness.language.base import (
     Color,
     Duration,
@@ -69,6 +70,12 @@ class MeshSpec(SpecModel):
         default=1.0,
         description="The factor from the file's numbers to metres; one number, or one for each "
         "axis.",
+    )
+    collision: CollisionMode | None = Field(
+        default=None,
+        description="How the mesh collides: as its convex `hull`, as convex `parts`, or `exact`: "
+        "the planner then checks its triangles, and the physics collides with the parts. "
+        "By default as the scenario's `collision` says.",
     )
 
 

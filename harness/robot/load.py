@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from harness.core.errors import RobotOptionError
+from harness.core.geometry import CollisionMode
 from harness.core.registry import broken_plugins
 from harness.core.resources import data_folder
 from harness.language.files.xml_file import LARGEST_FILE, read_xml
@@ -19,6 +20,7 @@ from harness.language.scenario import RobotSpec
 from harness.robot.acceleration import with_possible_accelerations
 from harness.robot.bare_arm import without_gripper
 from harness.robot.calibration import calibrated
+from harness.robot.collision_shapes import with_collision_shapes
 from harness.robot.compose import RobotPart, compose_robot
 from harness.robot.description import Joint, RobotDescription
 from harness.robot.find_file import find_file, find_folder
@@ -74,12 +76,15 @@ def gripper_names() -> tuple[str, ...]:
     return tuple(name for name, (_, facts) in _every_model().items() if facts.kind == "gripper")
 
 
-def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
+def load_robot(
+    spec: RobotSpec, base_dir: Path = Path(), collision: CollisionMode | None = None
+) -> RobotDescription:
     """The robot of a scenario, composed and with its options applied.
 
     Args:
         spec: The `robot:` of the scenario.
         base_dir: The scenario's folder, to which paths in `model` and `gripper` are relative.
+        collision: How meshes collide whose link the robot's `collision` does not have.
 
     Raises:
         RobotError: The robot is unknown, its files cannot be used, or an option does not fit it.
@@ -109,7 +114,8 @@ def load_robot(spec: RobotSpec, base_dir: Path = Path()) -> RobotDescription:
     description, known = with_moveit_files(description, spec.moveit, base_dir)
     if spec.model is None and main is not None:
         description = with_possible_accelerations(description, known)
-    return with_options(description, spec)
+    description = with_options(description, spec)
+    return with_collision_shapes(description, spec.collision, collision)
 
 
 def _calibrated(main: RobotPart | None, path: Path) -> RobotPart:

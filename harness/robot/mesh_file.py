@@ -1,4 +1,4 @@
-"""Mesh files (STL, OBJ, DAE) as triangles and convex hulls, the same for planner and physics.
+"""Mesh files (STL, OBJ, DAE) as triangles, convex hulls and parts, for planner and physics alike.
 
 Coal reads them with Assimp, as MoveIt and RViz do. As there, a COLLADA file's `unit` is applied and
 its `up_axis` is not.
@@ -18,10 +18,15 @@ import numpy as np
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh
 from harness.core.types import FloatArray, IntArray
+from harness.robot.decomposition.decomposition import Decomposition
+from harness.robot.decomposition.parts_cache import stored_decomposition
 
 SUFFIXES = (".stl", ".obj", ".dae")
 LARGEST_FILE = 64_000_000
 """Largest mesh file [bytes]."""
+
+FLAT = 1e-9
+"""Thickness below which a mesh is flat [m]."""
 
 HEADER = 20_000
 UNIT = re.compile(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']\s*([0-9.eE+-]+)\s*[\"']")
@@ -67,17 +72,57 @@ def exact_surface(geometry: Mesh) -> Any:
 
 @lru_cache(maxsize=512)
 def convex_hull(geometry: Mesh) -> Any:
-    """The convex hull of a file's points as Coal's geometry, a solid.
+    """The convex hull of a file's points, or of a part of the mesh, as Coal's geometry, a solid.
 
     Raises:
         RobotError: As `read_triangles`; or the mesh is flat.
     """
+    if geometry.part is not None:
+        return _hull_of(decomposition_of(geometry).parts[geometry.part])
     model = _load(geometry)
+    flat = f"{geometry.path.name} is flat: it encloses nothing to touch"
+    if _thickness(np.array(model.vertices())) < FLAT:  # Qhull can crash on such points
+        raise RobotError(flat)
     try:
         model.buildConvexHull(True, "Qt")
     except (RuntimeError, ValueError) as error:
-        raise RobotError(f"{geometry.path.name} is flat: it encloses nothing to touch") from error
+        raise RobotError(flat) from error
     return model.convex
+
+
+def _thickness(points: FloatArray) -> float:
+    """Extent of points along the normal of the plane nearest to them [m]."""
+    away = points - points.mean(axis=0)
+    normal = np.linalg.eigh(away.T @ away)[1][:, 0]
+    return float(np.ptp(away @ normal))
+
+
+def _hull_of(points: FloatArray) -> Any:
+    import coal
+
+    corners = coal.StdVec_Vec3s()
+    corners.extend(list(points))
+    return coal.Convex.convexHull(corners, True, "Qt")
+
+
+def decomposition_of(geometry: Mesh) -> Decomposition:
+    """The convex parts of a mesh, from the cache where they are known.
+
+    Raises:
+        RobotError: As `convex_hull`.
+    """
+    return _decomposition(Mesh(geometry.path, geometry.scale))
+
+
+@lru_cache(maxsize=512)
+def _decomposition(geometry: Mesh) -> Decomposition:
+    def triangles() -> FloatArray:
+        mesh = read_triangles(geometry)
+        return mesh.vertices[mesh.faces]
+
+    convex_hull(geometry)  # refuses what is damaged or flat
+    factors = np.array(geometry.scale) * metres_per_unit(geometry)
+    return stored_decomposition(geometry.path.read_bytes(), factors, triangles)
 
 
 def hull_points(geometry: Mesh) -> FloatArray:

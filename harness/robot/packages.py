@@ -29,6 +29,10 @@ class NotFoundError(ValueError):
     """A file does not exist, or is outside the folders that may be read."""
 
 
+class OutsideError(NotFoundError):
+    """A file is outside the folders that may be read."""
+
+
 @dataclass(frozen=True)
 class PackagePath:
     """Folders that may contain a robot's files.
@@ -93,7 +97,7 @@ class PackagePath:
         else:
             path = (folder / name.removeprefix("file://")).resolve()
         if not self.may_read(path):
-            raise NotFoundError(
+            raise OutsideError(
                 f"'{name}' lies outside the robot's folder {self.home} and the given ones; "
                 "add its folder to `packages`"
             )

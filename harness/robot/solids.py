@@ -19,9 +19,10 @@ DOT = 1e-6
 
 
 def coal_geometry(shape: Shape) -> Any:
-    """Coal's geometry of a shape in its own frame; a mesh is its convex hull unless it is exact.
+    """Coal's geometry of a shape in its own frame.
 
-    The physics collides with the same hulls.
+    A mesh is its convex hull or one of its convex parts, as in the physics; or its triangles, where
+    its collision mode is `exact`.
 
     Raises:
         RobotError: A mesh file cannot be read.
@@ -41,7 +42,7 @@ def coal_geometry(shape: Shape) -> Any:
         case Plane():
             return coal.Halfspace(np.array([0.0, 0.0, 1.0]), 0.0)
         case Mesh() as mesh:
-            return exact_surface(mesh) if mesh.exact else convex_hull(mesh)
+            return exact_surface(mesh) if mesh.collision == "exact" else convex_hull(mesh)
 
 
 def box_corners(solid: Any) -> FloatArray:

@@ -10,6 +10,7 @@ from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.trial import IkTrial
 from harness.reporting.robot_report import RobotFinding
+from harness.robot.collision_shapes import mesh_shapes
 from harness.robot.description import RobotDescription
 from harness.robot.link_masses import mass_notes, mass_problems
 from harness.simulation.agreement import link_poses_in_physics
@@ -105,6 +106,20 @@ def states(description: RobotDescription) -> RobotFinding:
         text = f"{len(problems)} of {len(looked_at)} cannot be taken"
     details = tuple(f"{name}: {each}" for name, found in problems.items() for each in found)
     return RobotFinding("named states", text, not problems, details)
+
+
+def shapes(description: RobotDescription) -> RobotFinding | None:
+    """What stands for the meshes with which the links collide; None where there are none."""
+    found = mesh_shapes({link.name: link.collisions for link in description.links})
+    if not found:
+        return None
+    count = sum(max(each.parts, 1) for each in found)
+    excess = max(each.excess for each in found)
+    text = (
+        f"{count} convex shapes stand for {len(found)} meshes, at most {1e3 * excess:.1f} mm larger"
+    )
+    values = {"parts": count, "meshes": len(found), "excess": excess}
+    return RobotFinding("collision shapes", text, True, tuple(map(str, found)), values)
 
 
 def self_collisions(touches: SelfTouches) -> RobotFinding:

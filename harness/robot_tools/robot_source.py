@@ -124,7 +124,8 @@ def load_source(source: RobotSource) -> RobotDescription:
         for option in OPTIONS:
             if getattr(source, option):
                 raise RobotError(f"'{path}' says its robot itself: {OPTIONS[option]} is for others")
-        return load_robot(load_scenario(path).scenario.robot, path.parent)
+        scenario = load_scenario(path).scenario
+        return load_robot(scenario.robot, path.parent, scenario.collision)
     return load_robot(RobotSpec.model_validate(source.words()))
 
 

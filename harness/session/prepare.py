@@ -31,6 +31,7 @@ from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
 from harness.planning.search.find_pipeline import check_planner
 from harness.ports import Kinematics, MotionPlanner, PlanningScene
 from harness.recording.run import Finding
+from harness.robot.collision_shapes import parts_notes
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
 from harness.steps.external import External
@@ -160,6 +161,8 @@ def _prepared(loaded: LoadedScenario, missing: frozenset[Prerequisite]) -> Prepa
         raise SpecError([*problems, *error.problems]) from error
     if problems:
         raise SpecError(problems)
+    added = (*program.world.objects, *program.later_objects.values())
+    notes += parts_notes({obj.name: obj.shapes for obj in added})
     placed = tuple(
         PlacedExpectation.of(item.spec, item.step, item.line) for item in program.expectations
     )
@@ -169,7 +172,8 @@ def _prepared(loaded: LoadedScenario, missing: frozenset[Prerequisite]) -> Prepa
 
 def _robot(loaded: LoadedScenario) -> RobotDescription:
     try:
-        return load_robot(loaded.scenario.robot, loaded.path.parent)
+        scenario = loaded.scenario
+        return load_robot(scenario.robot, loaded.path.parent, scenario.collision)
     except RobotOptionError as error:
         loc = ("robot", error.key.split(".")[0])
         raise SpecError([loaded.lines.problem(loc, str(error))]) from error

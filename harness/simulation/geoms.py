@@ -106,12 +106,12 @@ def geom_kind_and_size(geometry: Geometry) -> tuple[mujoco.mjtGeom, list[float]]
 
 
 def add_mesh(spec: mujoco.MjSpec, geometry: Mesh) -> str:
-    """Register a mesh file once, as its convex hull collides; returns the asset's name.
+    """Register a mesh file once, as its hull or part collides; returns the asset's name.
 
     Raises:
         RobotError: The file cannot be read, or is flat.
     """
-    name = f"{geometry.path}|{geometry.scale}"
+    name = f"{geometry.path}|{geometry.scale}|{geometry.part}"
     if spec.mesh(name) is None:
         mesh = spec.add_mesh(name=name)
         mesh.uservert = hull_points(geometry).ravel()

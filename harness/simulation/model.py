@@ -5,13 +5,14 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
 
 from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
+from harness.robot.collision_shapes import convex_shapes
 from harness.robot.description import RobotDescription
 from harness.simulation.compiling import compile_model, refuse_unusable_masses
 from harness.simulation.geoms import (
@@ -112,7 +113,9 @@ def build_model(
     Raises:
         ModelRefused: MuJoCo cannot simulate one of the bodies.
     """
-    simulated = [obj for obj in objects if obj.in_simulation]
+    simulated = [
+        replace(obj, shapes=convex_shapes(obj.shapes)) for obj in objects if obj.in_simulation
+    ]
     refuse_unusable_masses(simulated)
     surfaces = Surfaces.of(
         [link_friction(description, link.name) for link in description.links]

@@ -9,6 +9,7 @@ import numpy as np
 
 from harness.core.geometry import Friction
 from harness.core.types import FloatArray
+from harness.robot.collision_shapes import convex_shapes
 from harness.robot.description import Inertial, Joint, RobotDescription
 from harness.robot.tree import carriers
 from harness.simulation.geoms import Surfaces, add_collision_geom
@@ -60,7 +61,7 @@ def add_robot(spec: mujoco.MjSpec, description: RobotDescription, surfaces: Surf
             set_inertia(body, link.inertial)
         if joint.is_movable:
             _add_joint(body, joint, joint_range(description, joint))
-        for shape in link.collisions:
+        for shape in convex_shapes(link.collisions):
             add_collision_geom(spec, body, shape, link_friction(description, link.name), surfaces)
         bodies[link.name] = body
     for joint in description.joints:

@@ -12,6 +12,7 @@ from harness.core.errors import RobotError
 from harness.core.geometry import (
     Box,
     Capsule,
+    CollisionMode,
     Cylinder,
     Friction,
     Geometry,
@@ -26,6 +27,7 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import Light, World, WorldObject
 from harness.language.world import GEOMETRIES, FrictionSpec, ObjectSpec, ShapeSpec, WorldSpec
+from harness.robot.collision_shapes import collision_shapes
 from harness.robot.mesh_file import hull_solid
 from harness.world.markers import plate, printed
 
@@ -37,20 +39,27 @@ class ObjectUnusableError(ValueError):
     """An object lacks something that only its author can say."""
 
 
-def resolve_object(spec: ObjectSpec, pose: SE3, base_dir: Path) -> WorldObject:
+def resolve_object(
+    spec: ObjectSpec, pose: SE3, base_dir: Path, collision: CollisionMode | None = None
+) -> WorldObject:
     """The object with every number known.
 
     Args:
         spec: What the file says; its own pose is not read.
         pose: The pose T_world_object of the object.
         base_dir: Folder that mesh files are relative to.
+        collision: How meshes collide that do not state it.
 
     Raises:
         ObjectUnusableError: A dynamic object of planes, one without shapes, mass and inertia, or
             a mesh file that is not there or cannot be used.
     """
     parts = spec.shapes or ((spec,) if _has_geometry(spec) else ())
-    shapes = tuple(_shape(part, spec.color, base_dir) for part in parts)
+    given = tuple(_shape(part, spec.color, base_dir) for part in parts)
+    try:
+        shapes = collision_shapes(given, collision)
+    except RobotError as error:
+        raise ObjectUnusableError(str(error)) from error
     mass, center, inertia = 0.0, np.array(spec.center_of_mass, dtype=float), np.zeros((3, 3))
     if not spec.static:
         with np.errstate(over="ignore", invalid="ignore"):  # the physics refuses what overflows
@@ -66,7 +75,7 @@ def resolve_object(spec: ObjectSpec, pose: SE3, base_dir: Path) -> WorldObject:
         friction=_friction(spec.friction),
         in_planning=spec.in_ in ("planning", "both"),
         in_simulation=spec.in_ in ("simulation", "both"),
-        visuals=_looks(spec, parts, base_dir),
+        visuals=_looks(spec, parts, base_dir) or (given if len(shapes) > len(given) else ()),
     )
 
 
@@ -116,7 +125,8 @@ def _geometry(spec: ObjectSpec | ShapeSpec, base_dir: Path) -> Geometry:
         if not path.is_file():
             raise ObjectUnusableError(f"there is no mesh file '{spec.mesh.file}' next to the file")
         scale = spec.mesh.scale
-        return Mesh(path, scale if isinstance(scale, tuple) else (scale, scale, scale))
+        factors = scale if isinstance(scale, tuple) else (scale, scale, scale)
+        return Mesh(path, factors, spec.mesh.collision)
     return Plane()
 
 
@@ -176,7 +186,7 @@ class _Solid:
 
 
 def _solids(shapes: Sequence[Shape]) -> list[_Solid]:
-    """Each shape in the object's axes; of a mesh its convex hull, which is what touches."""
+    """Each shape in the object's axes; of a mesh its convex parts, which are what touches."""
     found: list[_Solid] = []
     for shape in shapes:
         centroid = np.zeros(3)

@@ -48,12 +48,12 @@ def write_mesh(folder: Path) -> Path:
     return path
 
 
-def meshed(description, *, exact):
+def meshed(description, collision):
     """The robot with the meshes it is drawn with as collision shapes of its last links."""
     links = []
     for link in description.links:
         meshes = tuple(
-            replace(shape, geometry=replace(shape.geometry, exact=exact))
+            replace(shape, geometry=replace(shape.geometry, collision=collision))
             for shape in link.visuals
             if isinstance(shape.geometry, Mesh)
         )
@@ -66,7 +66,7 @@ def crowded(description, folder):
     """A cell with boxes, a mesh in the way, and something in the hand."""
     cell = Cell(description)
     cell.add(boxes(*FIRST_BOXES))
-    bar = Mesh(write_mesh(folder), exact=True)
+    bar = Mesh(write_mesh(folder), collision="exact")
     cell.add(thing("bar", at(0.25, -0.35, 1.35, (0.3, 0.5, 0)), Shape(bar)))
     tip = cell.kinematics.link_pose(cell.state, description.tcp_link)
     cell.add(thing("held", tip, Shape(Cylinder(0.02, 0.12))))
@@ -79,8 +79,8 @@ def crowded(description, folder):
 
 ROBOTS = {
     "ur3e": (lambda: ur("ur3e"), ARM),
-    "ur5e with a mesh": (lambda: meshed(ur("ur5e"), exact=True), ARM),
-    "ur5e with a hull": (lambda: meshed(ur("ur5e"), exact=False), ARM),
+    "ur5e with a mesh": (lambda: meshed(ur("ur5e"), "exact"), ARM),
+    "ur5e with a hull": (lambda: meshed(ur("ur5e"), "hull"), ARM),
     "open_manipulator_x": (open_manipulator, "arm"),
 }
 
@@ -231,7 +231,7 @@ def test_a_motion_that_only_just_touches_on_its_way_is_not_free(model, stages):
 def test_states_at_20_micrometres_from_their_margin_are_judged_by_the_distance(stages, tmp_path):
     """The padding is set next to the distance that Coal measures, for solids of every kind."""
     stages("always")
-    cell = crowded(meshed(ur("ur5e"), exact=False), tmp_path)
+    cell = crowded(meshed(ur("ur5e"), "hull"), tmp_path)
     for number, solid in enumerate((Capsule(0.04, 0.2), Sphere(0.05), Cylinder(0.03, 0.1))):
         cell.add(thing(f"solid{number}", at(0.3, -0.1 * number, 1.5, (0.4, 0.3, 0)), Shape(solid)))
     space = GroupSpace(cell.kinematics.robot, ARM, cell.state)
@@ -259,10 +259,10 @@ def test_states_at_20_micrometres_from_their_margin_are_judged_by_the_distance(s
     assert len(nearest) >= 4
 
 
-@pytest.mark.parametrize("exact", [False, True])
-def test_every_node_of_a_tree_contains_what_is_below_it(exact, tmp_path):
+@pytest.mark.parametrize("collision", ["hull", "exact"])
+def test_every_node_of_a_tree_contains_what_is_below_it(collision, tmp_path):
     shapes = [
-        Shape(Mesh(write_mesh(tmp_path), exact=exact), at(0.1, 0, 0, (0.3, 0, 1))),
+        Shape(Mesh(write_mesh(tmp_path), collision=collision), at(0.1, 0, 0, (0.3, 0, 1))),
         Shape(Capsule(0.02, 0.1), at(0, 0, 1)),
         Shape(Cylinder(0.05, 0.1), at(0, 1, 0, (1, 2, 0))),
     ]
@@ -277,7 +277,9 @@ def test_every_node_of_a_tree_contains_what_is_below_it(exact, tmp_path):
             points = tree.points[first:last] if kind < 2 else tree.spheres[below, None, :3]
             assert np.all(np.linalg.norm(points - center, axis=1) <= radius + 1e-9)
             assert np.all((low - 1e-9 <= points) & (points <= high + 1e-9))
-    assert np.sum(tree.nodes[:, 0] == np.arange(len(tree.nodes)) + 1) == (24 + 2 if exact else 3)
+    assert np.sum(tree.nodes[:, 0] == np.arange(len(tree.nodes)) + 1) == (
+        24 + 2 if collision == "exact" else 3
+    )
 
 
 def cell_with_stick(model):

@@ -21,6 +21,7 @@ XACRO = URDF.replace(
     '<robot name="three">', '<robot name="three" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 )
 MESH = '<visual><geometry><mesh filename="{}"/></geometry></visual>'
+TOUCHED = MESH.replace("visual", "collision")
 TWICE = "<include file='level{0}.xml'/><include file='level{0}.xml'/>"
 FILES = {"arm.urdf": URDF, "arm.srdf": SRDF, "arm.xacro": XACRO, "arm.xml": MJCF}
 ROBOTS = {
@@ -65,16 +66,16 @@ CASES = {
     ],
     "a missing mesh": [
         (
-            "arm.urdf", SHAPE, SHAPE + MESH.format("gone.stl"),
-            "4:267: link 'upper': mesh 'gone.stl' is not there",
+            "arm.urdf", SHAPE, SHAPE + TOUCHED.format("gone.stl"),
+            "4:270: link 'upper': mesh 'gone.stl' is not there",
         ),
         (
-            "arm.urdf", SHAPE, SHAPE + MESH.format("package://gone/a.stl"),
-            "4:267: link 'upper': mesh 'package://gone/a.stl': the package 'gone' is not found",
+            "arm.urdf", SHAPE, SHAPE + TOUCHED.format("package://gone/a.stl"),
+            "4:270: link 'upper': mesh 'package://gone/a.stl': the package 'gone' is not found",
         ),
         (
-            "arm.xacro", SHAPE, SHAPE + MESH.format("gone.stl"),
-            "4:267: link 'upper': mesh 'gone.stl' is not there",
+            "arm.xacro", SHAPE, SHAPE + TOUCHED.format("gone.stl"),
+            "4:270: link 'upper': mesh 'gone.stl' is not there",
         ),
         ("arm.xml", 'file="t.obj"', 'file="gone.obj"', "3:33: mesh 'gone.obj' is not there"),
     ],

@@ -173,3 +173,12 @@ def test_fingers_on_one_tendon_are_a_gripper_and_a_site_its_tcp(
     assert arm.joint_by_name["r"].mimic.multiplier == multiplier
     assert arm.gripper.max_effort == pytest.approx(effort)
     assert arm.gripper.widths[:, 1].max() == pytest.approx(0.09, abs=1e-6)
+
+
+def test_a_missing_texture_is_not_needed(tmp_path):
+    texture = '<texture name="wood" type="2d" file="gone.png"/><material name="m" texture="wood"/>'
+    text = MJCF.replace("</asset>", texture + "</asset>")
+    text = text.replace('size="0.05 0.05"', 'material="m" size="0.05 0.05"')
+    assert (text.count("wood"), text.count('"m"')) == (2, 2)
+    write(tmp_path, text)
+    assert set(load(tmp_path).joint_names) == set(JOINTS)

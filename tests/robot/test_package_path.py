@@ -12,7 +12,9 @@ from harness.robot.load import load_robot
 from tests.robot.arm_files import SHAPE, SRDF, URDF
 from tests.world.sdf_files import TETRAHEDRON
 
-LOOK = '<visual><geometry><mesh filename="package://looks/meshes/part.obj"/></geometry></visual>'
+LOOK = (
+    '<collision><geometry><mesh filename="package://looks/meshes/part.obj"/></geometry></collision>'
+)
 
 
 def package(folder, name, *, manifest=True):
@@ -32,7 +34,7 @@ def looks(folder, **words):
 
 
 def arm(folder):
-    """A package with an arm that is drawn by the mesh of another one."""
+    """A package with an arm that collides as the mesh of another one."""
     (package(folder, "arm") / "urdf").mkdir()
     (folder / "urdf" / "arm.urdf").write_text(URDF.replace(SHAPE, SHAPE + LOOK))
     (folder / "urdf" / "arm.srdf").write_text(SRDF)
@@ -40,9 +42,9 @@ def arm(folder):
 
 
 def mesh(base, urdf, **words):
-    """The file that draws the arm's first link."""
+    """The mesh with which the arm's first link collides."""
     found = load_robot(RobotSpec.model_validate({"urdf": str(urdf), **words}), base)
-    (seen,) = next(link for link in found.links if link.name == "upper").visuals
+    _, seen = next(link for link in found.links if link.name == "upper").collisions
     assert isinstance(seen.geometry, Mesh)
     return seen.geometry.path
 

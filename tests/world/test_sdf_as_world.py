@@ -142,3 +142,9 @@ def test_a_mesh_that_cannot_be_touched_is_reported_at_its_line_in_the_sdf_file(t
     with pytest.raises(SpecError, match="is flat: it encloses nothing") as caught:
         load(tmp_path, text)
     assert text.splitlines()[caught.value.problems[0].line - 1].startswith("<uri>flat.obj")
+
+
+def test_a_missing_visual_mesh_is_a_note(tmp_path):
+    gone = "<visual name='v'><geometry><mesh><uri>gone.stl</uri></mesh></geometry></visual>"
+    found = load(tmp_path, text_with("link", gone))
+    assert any("a visual is not drawn: " in str(note) for note in found.notes)

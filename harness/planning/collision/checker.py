@@ -15,6 +15,7 @@ import pinocchio as pin
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.planning.collision import wording
+from harness.planning.collision.approximation import approximation_note
 from harness.planning.collision.certificates import MotionArrays, motion_arrays
 from harness.planning.collision.compiled import compiled_check
 from harness.planning.collision.scene import CoalScene
@@ -90,7 +91,8 @@ class MotionChecker:
         if deep:
             raise PlanningFailed(
                 "START_STATE_IN_COLLISION",
-                f"the robot starts in collision: {wording.touches(deep)}",
+                f"the robot starts in collision: {wording.touches(deep)}"
+                + approximation_note(deep, self.scene),
                 CollisionFailure(touch_records(deep)),
             )
         for touch in near:

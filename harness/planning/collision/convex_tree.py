@@ -127,7 +127,7 @@ def geometry_tree(geometry: Geometry) -> ConvexTree:
             return _formula(CYLINDER, sizes, reach)
         case Plane():
             return _formula(HALF_SPACE, (0.0, 0.0, 0.0), np.inf)
-        case Mesh(exact=True):
+        case Mesh(collision="exact"):
             mesh = read_triangles(geometry)
             return _surface(mesh.vertices, mesh.faces)
         case Mesh():

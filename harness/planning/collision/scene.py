@@ -264,16 +264,19 @@ class CoalScene:
     def link_corners(self, link: str) -> FloatArray:
         """Corners of the boxes around a link's shapes; its origin where it has none, (n, 3)."""
         corners = [
-            shape.pose.apply(box_corners(coal_geometry(shape))) for shape in self._shapes_of(link)
+            shape.pose.apply(box_corners(coal_geometry(shape))) for shape in self.shapes_of(link)
         ]
         return np.concatenate(corners) if corners else np.zeros((1, 3))
 
     def distance_to_link(self, link: str, point: FloatArray) -> float:
         """Distance between a point in a link's frame and the link's shapes, 0 inside [m]."""
-        return distance_to_point(self._shapes_of(link), point)
+        return distance_to_point(self.shapes_of(link), point)
 
-    def _shapes_of(self, link: str) -> tuple[Shape, ...]:
-        return next(each.collisions for each in self.description.links if each.name == link)
+    def shapes_of(self, body: str) -> tuple[Shape, ...]:
+        """The shapes of a link or an object, in its frame."""
+        if body in self._objects:
+            return self._objects[body].shapes
+        return next(each.collisions for each in self.description.links if each.name == body)
 
     def distances(self, joint_positions: FloatArray) -> list[tuple[Touch, BodyPair]]:
         """Signed distance of every checked pair of bodies [m], nearest first."""

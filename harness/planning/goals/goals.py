@@ -11,6 +11,7 @@ from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.registry import described
 from harness.core.types import FloatArray
+from harness.planning.collision.approximation import approximation_note
 from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.collision.wording import (
     angle,
@@ -72,11 +73,12 @@ def find_goals(
     free = tuple(branch.positions for branch in study.branches if not branch.touches)
     if not free:
         ways = counted_noun(study.branches, "way")
+        nearest = study.branches[0].touches
         each = "that one" if len(study.branches) == 1 else "each of them"
         raise PlanningFailed(
             "GOAL_IN_COLLISION",
             f"{goal.link} reaches {point(target_of(goal))} in {ways}, {each} in collision; "
-            f"the nearest: {touches(study.branches[0].touches)}",
+            f"the nearest: {touches(nearest)}{approximation_note(nearest, checker.scene)}",
             study.record,
         )
     return GoalCandidates(free, Details.of(study.record))
@@ -99,7 +101,8 @@ def _joint_goal(checker: MotionChecker, goal: JointGoal) -> GoalCandidates:
         found = checker.touches(positions)
         raise PlanningFailed(
             "GOAL_IN_COLLISION",
-            f"at the goal's joint positions these are in collision: {touches(found)}",
+            f"at the goal's joint positions these are in collision: {touches(found)}"
+            + approximation_note(found, checker.scene),
             CollisionFailure(touch_records(found)),
         )
     return GoalCandidates((positions,), Details())

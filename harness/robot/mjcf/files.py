@@ -12,8 +12,7 @@ from harness.robot.packages import NotFoundError, PackagePath
 
 DEEPEST_INCLUDE = 20
 MOST_FILES = 200
-ASSETS = {"mesh": "meshdir", "texture": "texturedir", "hfield": "meshdir", "skin": "meshdir"}
-TEXTURE_SIDES = ("file", "fileright", "fileup", "fileleft", "filedown", "filefront", "fileback")
+ASSETS = ("mesh", "hfield", "skin")
 
 USER_DATA = ("body", "jnt", "geom", "site", "cam", "tendon", "actuator", "sensor")
 MOST: Mapping[str, Mapping[str, int]] = {
@@ -46,7 +45,8 @@ def read_tree(path: Path, packages: PackagePath) -> list[XmlElement]:
 
     Raises:
         SpecError: A file cannot be read, includes itself, is not MJCF, refers to a file that does
-            not exist or may not be read, or needs too much memory; at line and column.
+            not exist (but a texture) or may not be read, or needs too much memory; at line and
+            column.
     """
     roots: list[XmlElement] = []
     _include(path, packages, (), roots)
@@ -54,14 +54,11 @@ def read_tree(path: Path, packages: PackagePath) -> list[XmlElement]:
     if top.tag != "mujoco":
         top.refuse(f"the root element is <{top.tag}>, an MJCF's is <mujoco>")
     _refuse_unbounded(roots)
-    folders = _folders(roots, path.parent)
+    folder = _mesh_folder(roots, path.parent)
     for root in roots:
         for item in root.walk():
-            if item.tag in ASSETS:
-                for key in TEXTURE_SIDES:
-                    if item.get(key):
-                        folder = folders[ASSETS[item.tag]]
-                        _check(item, key, folder, packages)
+            if item.tag in ASSETS and item.get("file"):
+                _check(item, "file", folder, packages)
     return roots
 
 
@@ -91,14 +88,12 @@ def _include(
         _include(inside, packages, files, roots)
 
 
-def _folders(roots: list[XmlElement], folder: Path) -> dict[str, Path]:
-    """Folders of meshes and textures, by the compiler's attribute."""
-    found = {"meshdir": folder, "texturedir": folder}
+def _mesh_folder(roots: list[XmlElement], folder: Path) -> Path:
+    """The folder of meshes, by the compiler's attribute."""
+    found = folder
     for compiler in (item for root in roots for item in root.findall("compiler")):
-        for key in found:
-            name = compiler.get(key) or compiler.get("assetdir")
-            if name:
-                found[key] = folder / name
+        name = compiler.get("meshdir") or compiler.get("assetdir")
+        found = folder / name if name else found
     return found
 
 

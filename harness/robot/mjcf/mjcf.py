@@ -63,6 +63,7 @@ def read_mjcf(path: Path, packages: PackagePath) -> Mjcf:
     }
     try:
         spec = mujoco.MjSpec.from_file(str(path))
+        _remove_textures(spec)
         model = spec.compile()
     except ValueError as error:
         raise SpecError([_problem(str(error), roots[0], path)]) from error
@@ -71,6 +72,14 @@ def read_mjcf(path: Path, packages: PackagePath) -> Mjcf:
     ordered = in_tree_order(links, joints, str(path), elements)
     urdf = Urdf(model.names.split(b"\0")[0].decode(), *ordered, tuple(reader.notes), elements)
     return Mjcf(urdf, reader.states(), reader.excluded())
+
+
+def _remove_textures(spec: Any) -> None:
+    """Remove all textures: pictures show plain colours, and files may be missing."""
+    for material in spec.materials:
+        material.textures = [""] * len(material.textures)
+    for texture in list(spec.textures):
+        spec.delete(texture)
 
 
 def _problem(message: str, root: XmlElement, path: Path) -> Problem:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from harness.core.spatial import SE3
+from harness.robot.collision_shapes import collision_shapes
 from harness.robot.description import Joint, Link
 from harness.robot.forward_kinematics import link_poses
 from harness.robot.solids import coal_geometry
@@ -36,7 +37,9 @@ def touching_pairs(urdf: Urdf, positions: Mapping[str, float]) -> tuple[tuple[st
     carrier = carriers(urdf.joints, urdf.root)
     neighbours = adjacent_pairs(urdf.links, urdf.joints)
     solids = [
-        (link.name, shape, coal_geometry(shape)) for link in urdf.links for shape in link.collisions
+        (link.name, shape, coal_geometry(shape))
+        for link in urdf.links
+        for shape in collision_shapes(link.collisions)
     ]
     found: dict[tuple[str, str], None] = {}
     for later, (second, shape, solid) in enumerate(solids):

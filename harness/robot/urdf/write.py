@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from harness.core.errors import RobotError
-from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
+from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere, undivided
 from harness.core.spatial import SE3, rotation_from_rpy
 from harness.core.types import FloatArray
 from harness.robot.description import Inertial, Joint, Link
@@ -38,7 +38,7 @@ def write_urdf(
         if link.inertial is not None:
             _write_inertial(element, link.inertial)
         for tag, shapes in (("visual", link.visuals), ("collision", link.collisions)):
-            for shape in shapes:
+            for shape in undivided(shapes):
                 for piece in _known_to_urdf(shape):
                     _write_shape(element, tag, piece, folder)
     for joint in joints:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.core.errors import RobotError
+from harness.core.errors import RobotError, SpecError
 from harness.core.geometry import Mesh, Rgba
 from harness.core.spatial import SE3
 from harness.language.base import LARGEST_NUMBER, SMALLEST_SIZE
@@ -82,7 +82,13 @@ class ShapeReader:
             return None
         if geometry.tag == "empty":
             return None
-        return self._shape(element, geometry, folder, pose, color=color)
+        try:
+            return self._shape(element, geometry, folder, pose, color=color)
+        except SpecError as error:
+            if geometry.tag != "mesh":
+                raise
+            self.notes.add(geometry.place, f"a visual is not drawn: {error.problems[0].message}")
+            return None
 
     def _geometry(self, element: XmlElement) -> XmlElement:
         geometry = element.find("geometry")

@@ -67,7 +67,7 @@ def arm(*, exact: bool = False) -> RobotDescription:
 def _exact(shape: Shape) -> Shape:
     if not isinstance(shape.geometry, Mesh):
         return shape
-    return replace(shape, geometry=replace(shape.geometry, exact=True))
+    return replace(shape, geometry=replace(shape.geometry, collision="exact"))
 
 
 @cache

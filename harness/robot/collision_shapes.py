@@ -1,0 +1,142 @@
+"""Replaces meshes by their convex parts, with which planner and physics collide."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+from harness.core.errors import RobotOptionError
+from harness.core.geometry import CollisionMode, Mesh, Shape, undivided
+from harness.robot.description import RobotDescription
+from harness.robot.mesh_file import decomposition_of
+
+DEFAULT_MODE: CollisionMode = "parts"
+"""How meshes collide where nothing is stated."""
+
+
+def collision_shapes(
+    shapes: Iterable[Shape], mode: CollisionMode | None = None
+) -> tuple[Shape, ...]:
+    """The shapes with which planner and physics collide.
+
+    Args:
+        shapes: The shapes of a body. A mesh that has a collision mode keeps it.
+        mode: The mode of the other meshes; None for the default.
+
+    Raises:
+        RobotError: A mesh cannot be read, or is flat.
+    """
+    found: list[Shape] = []
+    for shape in shapes:
+        mesh = shape.geometry
+        if not isinstance(mesh, Mesh) or mesh.part is not None:
+            found.append(shape)
+            continue
+        mesh = replace(mesh, collision=mesh.collision or mode or DEFAULT_MODE)
+        count = len(decomposition_of(mesh).parts) if mesh.collision == "parts" else 1
+        numbers = range(count) if count > 1 else (None,)
+        found += [replace(shape, geometry=replace(mesh, part=number)) for number in numbers]
+    return tuple(found)
+
+
+def with_collision_shapes(
+    description: RobotDescription,
+    links: CollisionMode | Mapping[str, CollisionMode] | None,
+    mode: CollisionMode | None,
+) -> RobotDescription:
+    """The robot with the shapes with which planner and physics collide.
+
+    Args:
+        description: The robot with whole meshes.
+        links: How the meshes of all links collide, or those of some.
+        mode: How the others do; None for the default.
+
+    Raises:
+        RobotOptionError: A link is not known.
+        RobotError: A mesh cannot be read, or is flat.
+    """
+    by_link: Mapping[str, CollisionMode | None] = (
+        links if isinstance(links, Mapping) else dict.fromkeys(description.link_names, links)
+    )
+    for name in by_link:
+        if name not in description.link_names:
+            near = difflib.get_close_matches(name, description.link_names, 1)
+            hint = f"; did you mean '{near[0]}'?" if near else ""
+            raise RobotOptionError("collision", f"'{description.name}' has no link '{name}'{hint}")
+    described = replace(
+        description,
+        links=tuple(
+            replace(
+                link, collisions=collision_shapes(link.collisions, by_link.get(link.name) or mode)
+            )
+            for link in description.links
+        ),
+    )
+    notes = parts_notes({link.name: link.collisions for link in described.links})
+    return replace(described, notes=(*described.notes, *notes))
+
+
+@dataclass(frozen=True)
+class MeshShapes:
+    """What stands for a mesh of a body.
+
+    Attributes:
+        body: The link or the object.
+        file: The name of the mesh file.
+        parts: The number of convex parts; 0 for the triangles.
+        excess: How far they reach beyond the mesh at most [m].
+    """
+
+    body: str
+    file: str
+    parts: int
+    excess: float
+
+    def __str__(self) -> str:
+        if not self.parts:
+            return f"{self.body}: the planner checks the triangles of {self.file}"
+        shapes = f"{self.parts} convex parts" if self.parts > 1 else "its convex hull"
+        larger = f"at most {1e3 * self.excess:.1f} mm larger than the mesh"
+        return f"{self.body}: {self.file} collides as {shapes}, {larger}"
+
+
+def mesh_shapes(bodies: Mapping[str, Iterable[Shape]]) -> tuple[MeshShapes, ...]:
+    """What stands for every mesh of bodies, given by name with their collision shapes."""
+    found: dict[tuple[str, Mesh], MeshShapes] = {}
+    for body, shapes in bodies.items():
+        for shape in undivided(shapes):
+            mesh = shape.geometry
+            if not isinstance(mesh, Mesh):
+                continue
+            measured = decomposition_of(mesh)
+            parts, excess = len(measured.parts), measured.excess
+            if mesh.collision == "exact":
+                parts, excess = 0, 0.0
+            elif mesh.collision == "hull":
+                parts, excess = 1, measured.hull_excess
+            found[body, mesh] = MeshShapes(body, mesh.path.name, parts, excess)
+    return tuple(found.values())
+
+
+def parts_notes(bodies: Mapping[str, Iterable[Shape]]) -> tuple[str, ...]:
+    """A note on the meshes for which convex parts stand; empty where there are none."""
+    parts = [each for each in mesh_shapes(bodies) if each.parts > 1]
+    if not parts:
+        return ()
+    worst = max(parts, key=lambda each: each.excess)
+    names = ", ".join(dict.fromkeys(each.body for each in parts))
+    return (
+        f"{sum(each.parts for each in parts)} convex parts stand for the meshes of {names}; they "
+        f"reach at most {1e3 * worst.excess:.1f} mm beyond the mesh (at {worst.body})",
+    )
+
+
+def convex_shapes(shapes: Iterable[Shape]) -> tuple[Shape, ...]:
+    """The shapes for the physics, where an `exact` mesh collides with its parts."""
+    return collision_shapes(
+        replace(shape, geometry=replace(shape.geometry, collision="parts"))
+        if isinstance(shape.geometry, Mesh) and shape.geometry.collision == "exact"
+        else shape
+        for shape in shapes
+    )
