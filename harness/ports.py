@@ -837,7 +837,7 @@ class Simulator(Protocol):
 
 @dataclass(frozen=True)
 class ExternalRequest:
-    """What a step wants of external programs.
+    """What a step requires of external programs.
 
     Attributes:
         step: Id of the step.
@@ -877,6 +877,6 @@ class ExternalControl(Protocol):
         """Let them command the robot until the request's end.
 
         Raises:
-            StepFailed: COMMUNICATION_FAILURE; nobody can be reached.
+            StepFailed: COMMUNICATION_FAILURE; no program can be reached.
         """
         ...

@@ -155,8 +155,8 @@ def for_run(run: argparse.ArgumentParser) -> None:
                      help="a command that the step `external` may start; repeatable")  # fmt: skip
     run.add_argument("--robot", choices=("simulated", "ros2"), default="simulated",
                      help="ros2: plan here, and let the controllers of a ROS 2 robot execute;"
-                     " prints the plan and asks before the first motion")  # fmt: skip
-    run.add_argument("--yes", action="store_true", help="with --robot ros2: do not ask")
+                     " prints the plan and waits for a confirmation")  # fmt: skip
+    run.add_argument("--yes", action="store_true", help="with --robot ros2: confirm in advance")
     run.add_argument("--velocity-scaling", metavar="SHARE", type=share, default=1.0,
                      help="with --robot ros2: share of the planned speed (default: 1)")  # fmt: skip
     _domain_options(run)

@@ -23,7 +23,7 @@ def run_on_ros2(arguments: argparse.Namespace, files: Sequence[Path]) -> int:
     """Run one scenario on a ROS 2 robot, once the user has seen the plan and agreed.
 
     Raises:
-        UsageError: There is more than one scenario, or nobody can be asked.
+        UsageError: There is more than one scenario, or the user cannot confirm.
     """
     from harness.cli.bridge import show_case
     from harness.ros.bridge import open_graph
@@ -46,12 +46,12 @@ def run_on_ros2(arguments: argparse.Namespace, files: Sequence[Path]) -> int:
         page=not arguments.no_page,
         bag=arguments.bag,
     )
-    asked = _Confirmation(arguments.yes, arguments.velocity_scaling)
+    confirmation = _Confirmation(arguments.yes, arguments.velocity_scaling)
     domain = domain_of_user(arguments.domain)
     graph = open_graph(arguments.adapter, domain, node="armharness", is_local=not arguments.network)
     try:
-        options = RemoteOptions(arguments.velocity_scaling, asked)
-        case = run_on_robot(request, graph, options, asked.note)
+        options = RemoteOptions(arguments.velocity_scaling, confirmation)
+        case = run_on_robot(request, graph, options, confirmation.note)
     finally:
         graph.close()
     show_case(case, request)
@@ -59,7 +59,7 @@ def run_on_ros2(arguments: argparse.Namespace, files: Sequence[Path]) -> int:
 
 
 class _Confirmation:
-    """Prints the plan of each motion, and asks before the first one."""
+    """Prints the plan of each motion, and requires a confirmation before the first one."""
 
     def __init__(self, is_agreed: bool, velocity_scaling: float) -> None:
         self._is_agreed, self._share = is_agreed, velocity_scaling

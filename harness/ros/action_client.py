@@ -20,7 +20,7 @@ class ClientGoal:
     """A goal that was sent, and what the server said of it.
 
     Attributes:
-        identifier: In hex.
+        identifier: The goal's UUID in hex.
         is_accepted: None before the server answered.
         status: How it ended; UNKNOWN before.
         result: The result; None before the end.
@@ -58,7 +58,7 @@ class ActionClient:
         return self._send.is_ready and self._cancel.is_ready and self._result.is_ready
 
     def wait_until(self, holds: Callable[[], bool], timeout: float) -> bool:
-        """Spin until something holds; whether it came to hold within the wall time [s]."""
+        """Spin until something holds; whether it did within the wall time [s]."""
         deadline = time.monotonic() + timeout
         while not holds():
             if time.monotonic() > deadline:

@@ -61,9 +61,9 @@ class ActionServer:
         """Serve an action from now on.
 
         Args:
-            graph: Where.
-            name: Such as `/arm_controller/follow_joint_trajectory`.
-            kind: Such as `control_msgs/action/FollowJointTrajectory`.
+            graph: The graph that serves it.
+            name: The action's name, such as `/arm_controller/follow_joint_trajectory`.
+            kind: The action's type, such as `control_msgs/action/FollowJointTrajectory`.
             clock: The simulated time [s].
             on_goal: Called with a goal's identifier and content; whether it is accepted. It runs
                 from then on, and may have ended already.
@@ -81,7 +81,7 @@ class ActionServer:
         graph.serve(f"{name}/_action/get_result", f"{kind}_GetResult", self._take_request)
 
     def owns(self, goal: str) -> bool:
-        """Whether a goal came to this server."""
+        """Whether a goal was sent to this server."""
         return goal in self._goals
 
     def feedback(self, goal: str, content: Any) -> None:

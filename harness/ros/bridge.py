@@ -24,7 +24,7 @@ class BridgeRequest:
 
     Attributes:
         run: The case, and what is written of it.
-        domain: ROS_DOMAIN_ID.
+        domain: The number of the ROS domain.
         is_local: Whether nodes of other machines are kept out.
         adapter: `rtps`, or `rclpy` of a ROS 2 installation.
         nodes: Commands that steps may start, by name.

@@ -77,7 +77,7 @@ class CameraTopics:
         """Publish what is due at a simulated time.
 
         Args:
-            time: Simulated time [s].
+            time: The present simulated time [s].
             sample: Index of the current physics sample, from which the noise is drawn.
             positions: Joint positions in description order, shape (n,).
             poses: Returns T_world_object of the objects that are there (xyz, quat wxyz), shape

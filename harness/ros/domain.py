@@ -1,4 +1,4 @@
-"""Domains of ROS 2: the user's, or one that nobody else uses."""
+"""Domains of ROS 2: the user's, or one that no other program uses."""
 
 from __future__ import annotations
 

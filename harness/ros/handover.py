@@ -24,8 +24,8 @@ class HandOver:
     """What commands the robot between two ticks, and what is done after each.
 
     Attributes:
-        prepared: The scenario.
-        simulator: The physics.
+        prepared: The scenario that is executed.
+        simulator: The physics of the run.
     """
 
     prepared: Prepared
@@ -53,7 +53,7 @@ class HandOver:
         """Move time tick by tick until the request's end.
 
         Args:
-            request: What ends it.
+            request: What ends the loop, and when.
             feed: Lets commands take effect before a tick.
             after: Called after each tick.
         """

@@ -43,7 +43,7 @@ class Allowed:
 
     Attributes:
         commands: Command lines; `node` is the name of one that the user gave none.
-        domain: ROS_DOMAIN_ID of the programs.
+        domain: The ROS_DOMAIN_ID of the programs.
     """
 
     commands: Mapping[str, str]
@@ -125,5 +125,5 @@ class Program:
                 self._process.wait(patience)
                 break
         with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._process.pid, signal.SIGKILL)  # what it left behind
+            os.killpg(self._process.pid, signal.SIGKILL)  # what it started and left running
         self._output.close()

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from harness.ros.control.cell import TICK
 
 LATE = 0.05
-"""Wall time behind which a tick, and what arrives in it, counts as late [s]."""
+"""Lag from which a tick, and what arrives in it, counts as late [s]."""
 
 GIVE_UP = 0.25
 """Lag that is not made up for any more: simulated time goes on from here [s]."""
@@ -23,10 +23,10 @@ class Pace:
 
     Attributes:
         factor: Simulated seconds in a wall second.
-        ticks: Ticks so far.
+        ticks: The number of ticks so far.
         late: Ticks that began late.
         late_commands: Commands that arrived while a tick was late.
-        worst: Largest lag [s].
+        worst: The largest lag of a tick [s].
         lost: Wall time that was given up [s].
     """
 

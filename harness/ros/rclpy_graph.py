@@ -67,7 +67,7 @@ class RclpyGraph:
         """Join a domain.
 
         Args:
-            domain: ROS_DOMAIN_ID.
+            domain: The number of the ROS domain.
             node: The name of the node.
             is_local: Whether it talks to this machine alone.
 

@@ -101,8 +101,8 @@ class RemoteArm:
             self._gripper = ActionClient(graph, f"/{names.gripper}/gripper_cmd", GRIPPER)
         found = self._wait(lambda: any(a.is_ready for a in self._arms.values()), PATIENCE)
         if not found:
-            wanted = " or ".join(f"/{name}/follow_joint_trajectory" for name in self._arms)
-            _unreachable(f"no action server {wanted} answers in this domain")
+            required = " or ".join(f"/{name}/follow_joint_trajectory" for name in self._arms)
+            _unreachable(f"no action server {required} answers in this domain")
         self._arm = next(arm for arm in self._arms.values() if arm.is_ready)
         if not self._wait(lambda: bool(self._times), PATIENCE):
             _unreachable(
@@ -137,7 +137,7 @@ class RemoteArm:
         return self.joint_positions() if self._command is None else self._command.copy()
 
     def object_pose(self, name: str) -> SE3:
-        """T_world_object as the scenario has it: nobody measures it."""
+        """T_world_object as the scenario has it; it is not measured."""
         return next(obj.pose for obj in self._program.all_objects() if obj.name == name)
 
     # -- motion -------------------------------------------------------------------------------

@@ -42,10 +42,10 @@ class StateTopics:
         """Publish the state at a simulated time.
 
         Args:
-            time: Simulated time [s].
-            positions: In description order, shape (n,).
-            velocities: Shape (n,).
-            efforts: Shape (n,); 0 for joints without a motor.
+            time: The present simulated time [s].
+            positions: Joint positions in description order, shape (n,).
+            velocities: Joint velocities, shape (n,).
+            efforts: Joint efforts, shape (n,); 0 for joints without a motor.
         """
         moment = stamp(time)
         self._clock.publish(message("rosgraph_msgs/msg/Clock", clock=moment))

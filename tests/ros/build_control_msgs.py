@@ -22,7 +22,7 @@ from harness.ros.interfaces import ACTIONS, MESSAGES
 PACKAGE = """<?xml version="1.0"?>
 <package format="3"><name>control_msgs</name><version>5.0.0</version>
 <description>Field lists of control_msgs</description>
-<maintainer email="nobody@example.org">nobody</maintainer><license>BSD-3-Clause</license>
+<maintainer email="someone@example.org">someone</maintainer><license>BSD-3-Clause</license>
 <buildtool_depend>ament_cmake</buildtool_depend><depend>builtin_interfaces</depend>
 <depend>std_msgs</depend><depend>trajectory_msgs</depend><depend>action_msgs</depend>
 <member_of_group>rosidl_interface_packages</member_of_group></package>

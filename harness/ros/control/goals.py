@@ -56,9 +56,9 @@ class TrajectoryGoal:
 
     Attributes:
         times: Time from start of each point [s], shape (N,).
-        positions: Shape (N, dof).
-        velocities: Shape (N, dof); None where the points have none.
-        accelerations: Shape (N, dof); None where the points have none.
+        positions: The positions at the points, shape (N, dof).
+        velocities: The velocities, shape (N, dof); None where the points have none.
+        accelerations: The accelerations, shape (N, dof); None where the points have none.
         stamp: Simulated time at which it starts [s]; 0 for at once.
         path: Tolerances on the way, by joint, where the goal has its own.
         goal: Tolerances at the end, by joint, where the goal has its own.
@@ -82,7 +82,7 @@ def checked_goal(content: Mapping[str, Any], joints: Sequence[Joint], now: float
         content: `joint_names`, `points` (lists of time, positions, velocities, accelerations),
             `stamp`, and the tolerances of an action.
         joints: The joints of the controller.
-        now: Simulated time [s].
+        now: The present simulated time [s].
 
     Raises:
         GoalRefused: With the error code that the message's own result has for it.

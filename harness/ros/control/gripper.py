@@ -36,7 +36,7 @@ class _Active:
 
 
 class GripperController:
-    """Moves the gripper's joint as the step `gripper` does, beside the arm's motion."""
+    """Moves the gripper's joint as the step `gripper` does, independent of the arm."""
 
     def __init__(self, name: str, description: RobotDescription, timestep: float) -> None:
         gripper = description.gripper
@@ -67,11 +67,11 @@ class GripperController:
         """Move to a position from now on; the effort limit that applies.
 
         Args:
-            goal: Its identifier.
+            goal: The identifier of the goal.
             content: `position` and `max_effort`, 0 for the gripper's own.
-            now: Simulated time [s].
+            now: The present simulated time [s].
             commanded: The last set point of the joint.
-            measured: Its position.
+            measured: The measured position of the joint.
 
         Raises:
             GoalRefused: The position cannot be reached, or is no number.
@@ -109,7 +109,7 @@ class GripperController:
         """How it ended; None while it goes on.
 
         Args:
-            now: Simulated time [s].
+            now: The present simulated time [s].
             positions: Measured positions since the last call, shape (N,).
             effort: The effort of the joint.
         """

@@ -18,9 +18,9 @@ class Spline:
 
     Attributes:
         times: Strictly rising [s], shape (K,).
-        positions: Shape (K, dof).
-        velocities: Shape (K, dof); None for straight segments.
-        accelerations: Shape (K, dof); None for segments that are not quintic.
+        positions: The positions at the knots, shape (K, dof).
+        velocities: The velocities, shape (K, dof); None for straight segments.
+        accelerations: The accelerations, shape (K, dof); None where segments are not quintic.
     """
 
     times: FloatArray

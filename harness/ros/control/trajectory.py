@@ -86,7 +86,7 @@ class TrajectoryController:
         Args:
             goal: Its identifier; empty for one from a topic.
             content: The message, as `checked_goal` takes it.
-            now: Simulated time [s].
+            now: The present simulated time [s].
             start: The last set point, shape (1, dof) each.
 
         Raises:

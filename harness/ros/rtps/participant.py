@@ -126,6 +126,10 @@ class Participant:
         """Number of other participants that are known."""
         return len(self._peers)
 
+    def known_topics(self) -> set[str]:
+        """Names in DDS of the topics that peers write or read."""
+        return {found[0] for peer in self._peers.values() for found in peer.endpoints.values()}
+
     # -- time ---------------------------------------------------------------------------------
 
     def spin(self, until: float) -> None:
@@ -144,7 +148,7 @@ class Participant:
                 return
 
     def close(self) -> None:
-        """Leave the domain; peers are told."""
+        """Leave the domain, and let the peers know."""
         inline = self._inline(PARTICIPANT_GUID=self.guid(wire.PARTICIPANT))
         head = struct.pack("<HH", 0, 16) + wire.NO_ENTITY + wire.SPDP_WRITER
         body = head + wire.sequence_number(2) + inline
@@ -370,10 +374,10 @@ class Participant:
             reader.writers.pop(guid, None)
 
     def _match_known(self, mine: Writer | Reader) -> None:
-        wanted = (0x04, 0x07) if isinstance(mine, Writer) else (0x02, 0x03)
+        kinds = (0x04, 0x07) if isinstance(mine, Writer) else (0x02, 0x03)
         for peer in self._peers.values():
             for guid, endpoint in peer.endpoints.items():
-                if guid[15] & 0x0F in wanted:
+                if guid[15] & 0x0F in kinds:
                     _match(mine, guid, endpoint)
 
     def _endpoint(self, entity: bytes, topic: str, type_name: str, qos: Qos) -> bytes:

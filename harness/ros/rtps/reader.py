@@ -22,7 +22,7 @@ class Received:
 
     Attributes:
         writer: GUID of its writer.
-        number: Its sequence number.
+        number: The sequence number of the sample.
         payload: Encapsulation header and content.
         inline: Parameters that came with it.
     """
@@ -59,11 +59,11 @@ class Reader:
     """A reader of one topic.
 
     Attributes:
-        entity: Its entity identifier.
+        entity: The entity identifier of the reader.
         topic: The name of the topic in DDS.
         type_name: The name of its type in DDS.
-        qos: What it requests.
-        send: Sends submessages.
+        qos: The quality that it requests.
+        send: Sends submessages to another participant.
         deliver: Called with every sample, those of a writer in order.
     """
 

@@ -41,7 +41,7 @@ class Submessage:
     """One submessage of a datagram.
 
     Attributes:
-        kind: Its identifier.
+        kind: The identifier of its kind.
         flags: The eight bits of its flags.
         body: What follows its header.
     """
@@ -63,7 +63,7 @@ class Sample:
     Attributes:
         reader: Entity of the reader; zeros for all readers.
         writer: Entity of the writer.
-        number: The sequence number.
+        number: The sequence number of the sample.
         inline: Parameters that come with the sample.
         payload: Encapsulation header and content, or fragments of them.
         first: Number of the first fragment, from 1; 0 for a whole sample.

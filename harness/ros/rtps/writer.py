@@ -55,11 +55,11 @@ class Writer:
     """A writer of one topic.
 
     Attributes:
-        entity: Its entity identifier.
+        entity: The entity identifier of the writer.
         topic: The name of the topic in DDS, such as `rt/joint_states`.
         type_name: The name of its type in DDS.
-        qos: What it offers.
-        send: Sends submessages.
+        qos: The quality that it offers.
+        send: Sends submessages to another participant.
     """
 
     entity: bytes
@@ -93,10 +93,10 @@ class Writer:
         if guid in self.readers:
             self.readers[guid].address = address
             return
-        wants_kept = self.qos.is_latched and qos.is_latched
-        first = self._first if wants_kept else self.last + 1
+        gets_kept = self.qos.is_latched and qos.is_latched
+        first = self._first if gets_kept else self.last + 1
         proxy = self.readers[guid] = _Reader(address, qos, first, first - 1)
-        if wants_kept:
+        if gets_kept:
             for kept in self._history:
                 self._send_sample(guid[:12], guid[12:], proxy, kept)
         elif qos.is_reliable and self.last:

@@ -1,0 +1,61 @@
+"""The page on ROS 2: its table lists what the bridge serves, and its example runs."""
+
+import os
+import re
+import shlex
+import sys
+
+import pytest
+
+from docs import ROOT
+from harness.cli.main import main
+from tests.engine.front_door import check_file
+from tests.ros.bridging import bridge
+
+PAGE = (ROOT / "docs/guides/ros2.md").read_text(encoding="utf-8")
+PYTHON = os.environ.get("HARNESS_ROS_PYTHON", sys.executable)
+
+
+def block(language):
+    return re.search(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)[1]
+
+
+def test_the_table_lists_what_the_bridge_serves(tmp_path):
+    listed = set()
+    for row in re.findall(r"^\| (`/.*?) \| `?(action )?", PAGE, re.MULTILINE):
+        listed |= set(re.findall(r"`(/[^`]+)`", row[0]))
+    file = tmp_path / "turn.scenario.yaml"
+    file.write_text(block("yaml"))
+    with bridge(file) as (node, _):
+        node.ready()
+        participant = node.graph.participant
+        node.wait(lambda: "rt/gripper_camera/camera_info" in participant.known_topics())
+        node.sleep(0.3)
+        known = participant.known_topics()
+    served = {topic.removeprefix("rt") for topic in known if topic.startswith("rt/")}
+    served = {re.sub(r"/_action/.*", "", topic) for topic in served}
+    assert served == listed
+
+
+def test_the_scenario_of_the_page_is_correct(tmp_path):
+    file = tmp_path / "turn.scenario.yaml"
+    file.write_text(block("yaml"))
+    assert check_file(file).problems == ()
+
+
+def test_the_commands_of_the_page_exist(capsys):
+    for line in re.findall(r"```sh\n(.*?)\n```", PAGE, re.DOTALL):
+        words = shlex.split(line)
+        with pytest.raises(SystemExit) as ended:
+            main([words[1], "--help"])
+        assert ended.value.code == 0
+        said = capsys.readouterr().out
+        assert all(word in said for word in words if word.startswith("--"))
+
+
+@pytest.mark.ros
+def test_the_node_of_the_page_moves_the_arm(tmp_path):
+    file, node = tmp_path / "turn.scenario.yaml", tmp_path / "student.py"
+    file.write_text(block("yaml"))
+    node.write_text(block("python"))
+    assert main(["grade", str(file), "--node", f"{PYTHON} {node}", "--no-report"]) == 0
