@@ -122,7 +122,7 @@ def _working_memory(layout: _Layout, width: int) -> tuple[IntArray | FloatArray,
         np.empty(keys, dtype=np.int64),
         layout.tree.convexes[:, 0].copy(),
         np.empty((MOST_WAITING, 2), dtype=np.int64),
-        np.empty(max(MOST_LEFT, 2 * pairs), dtype=np.int64),
+        np.arange(max(MOST_LEFT, 2 * pairs)),
     )
 
 
@@ -202,7 +202,7 @@ class _Layout:
     """
 
     def __init__(self, model: CollisionModel, moving: MovingJoints) -> None:
-        self._moving = moving
+        self._paths = {carrier: moving.path(carrier) for carrier in (-1, *moving.above)}
         self._index = {body.name: number for number, body in enumerate(model.bodies)}
         self._carrier = [moving.above[body.joint] for body in model.bodies]
         self._has_plane = [
@@ -233,7 +233,7 @@ class _Layout:
         carriers = self._carrier[body], self._carrier[other]
         name = (body, -1) if carriers[1] < 0 else (-1, other) if carriers[0] < 0 else (body, other)
         if name not in self._key_of:
-            first, second = map(self._moving.path, carriers)
+            first, second = (self._paths[carrier] for carrier in carriers)
             near = [joint for joint in first if joint not in second]
             far = [joint for joint in second if joint not in first]
             start = len(joints)

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -67,18 +68,15 @@ class MotionChecker:
         self.space = space
         self.padding = padding
         self.checks = 0
+        self._key = object()
         self.lowered: list[LoweredMargin] = []
         model = self._scene_model
         self._pairs = model.pairs
         self._robot = model.robot.model
         self._data = self._robot.createData()
-        self._geometry = geometry = model.geometry  # the manager below holds no reference
-        self._geometry_data = geometry.createData()
+        self._geometry = model.geometry
+        self._geometry_data = model.shared.geometry_data
         self._margins = self._choose_margins(start)
-        self._set_margins(0.0)
-        self._manager = pin.BroadPhaseManager_DynamicAABBTreeCollisionManager(
-            self._robot, geometry, self._geometry_data
-        )
 
     def _choose_margins(self, start: FloatArray) -> dict[tuple[str, str], float]:
         margins = {
@@ -104,24 +102,26 @@ class MotionChecker:
         return margins
 
     def _set_margins(self, more: float) -> None:
-        requests = self._geometry_data.collisionRequests
-        for pair in self._pairs:
-            margin = self._margins[pair.first, pair.second] + more
-            for row in pair.pairs:
-                requests[row].security_margin = margin
+        margins = [self._margins[pair.first, pair.second] + more for pair in self._pairs]
+        found = self._scene_model.margin_map(margins)
+        self._geometry_data.setSecurityMargins(self._geometry, found, True, False)
+        self._scene_model.shared.holder = self._key if more == 0 else None
 
     def _near(self, positions: FloatArray, slack: float) -> list[Touch]:
         """Pairs nearer than margin plus slack, nearest first; only those are measured."""
         geometry, found = self._geometry, self._geometry_data
         self._set_margins(slack + _MEASURED)
         configuration = self.space.robot.configuration(self.space.whole(positions))
-        pin.computeCollisions(self._robot, self._data, geometry, found, configuration, False)
+        if not pin.computeCollisions(
+            self._robot, self._data, geometry, found, configuration, False
+        ):
+            return []
         results = found.collisionResults
         near: list[Touch] = []
         for pair in self._pairs:
-            if any(results[row].isCollision() for row in pair.pairs):
+            if any(results[row].isCollision() for row in pair.rows):
                 distances = (
-                    pin.computeDistance(geometry, found, row).min_distance for row in pair.pairs
+                    pin.computeDistance(geometry, found, row).min_distance for row in pair.rows
                 )
                 touch = Touch(pair.first, pair.second, float(min(distances)))
                 if touch.distance < self._margins[pair.first, pair.second] + slack:
@@ -181,11 +181,20 @@ class MotionChecker:
     def _arrays(self) -> MotionArrays:
         return motion_arrays(self._scene_model, self.space, self._margins)
 
-    def _exact(self, positions: FloatArray) -> bool:
-        configuration = self.space.robot.configuration(self.space.whole(positions))
-        return not pin.computeCollisions(
-            self._robot, self._data, self._manager, configuration, True
+    @cached_property
+    def _manager(self) -> Any:
+        """Coal's broad phase with this checker's margins; it holds no reference to its model."""
+        self._set_margins(0.0)
+        return pin.BroadPhaseManager_DynamicAABBTreeCollisionManager(
+            self._robot, self._geometry, self._geometry_data
         )
+
+    def _exact(self, positions: FloatArray) -> bool:
+        manager = self._manager
+        if self._scene_model.shared.holder is not self._key:
+            self._set_margins(0.0)
+        configuration = self.space.robot.configuration(self.space.whole(positions))
+        return not pin.computeCollisions(self._robot, self._data, manager, configuration, True)
 
     def path_free(self, waypoints: FloatArray, resolution: float) -> bool:
         """Whether all edges of a path are free; its first waypoint is not checked."""

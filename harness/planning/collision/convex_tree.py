@@ -55,9 +55,15 @@ class ConvexTree:
     def box(self) -> FloatArray:
         """The lower and the upper corner of the box about all sets, shape (6,)."""
         ends: list[FloatArray] = []
-        for (first, last, kind), (rounding, radius, half) in zip(
-            self.convexes.tolist(), self.sizes.tolist(), strict=True
-        ):
+        node = 0
+        while node < len(self.nodes):
+            end, convex = self.nodes[node].tolist()
+            if convex < 0:
+                node += 1
+                continue
+            node = end  # the set contains those below it
+            first, last, kind = self.convexes[convex].tolist()
+            rounding, radius, half = self.sizes[convex].tolist()
             points, reach = self.points[first:last], rounding
             if kind == HALF_SPACE:
                 return np.repeat([-np.inf, np.inf], 3)

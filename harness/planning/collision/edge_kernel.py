@@ -523,6 +523,18 @@ def compare_trees(
     return answer
 
 
+@_compiled
+def move_to_front(order, check):
+    """Compare a pair before all others from now on: it often blocks the next motion too."""
+    place = 0
+    while order[place] != check:
+        place += 1
+    while place > 0:
+        order[place] = order[place - 1]
+        place -= 1
+    order[0] = check
+
+
 @_entry
 def certify(values, count, straight, robot, shapes, pairs, memory):
     """Classify the states of a motion as free, blocked or undecided.
@@ -567,8 +579,6 @@ def certify(values, count, straight, robot, shapes, pairs, memory):
     sets = (convexes, sizes, points, edges_at, edges, hints)
     width = values.shape[1]
     total = checks.shape[0]
-    for check in range(total):
-        left[check] = check
     for body in range(body_stamp.shape[0]):
         body_stamp[body] = -1
     for key in range(key_stamp.shape[0]):
@@ -684,6 +694,7 @@ def certify(values, count, straight, robot, shapes, pairs, memory):
             if answer == FREE:
                 continue
             if answer == BLOCKED:
+                move_to_front(left, check)
                 return middle, 0
             if share:
                 left[room + failed] = check

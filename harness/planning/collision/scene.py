@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 import pinocchio as pin
@@ -13,7 +14,7 @@ import pinocchio as pin
 from harness.core.errors import StepFailed
 from harness.core.geometry import Plane, Shape
 from harness.core.spatial import SE3
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
 from harness.planning.collision.geometry import geometry_object
 from harness.planning.model.robot_model import RobotModel
@@ -106,23 +107,56 @@ class BodyPair:
         second: The name of the second body.
         keeps_padding: Between the robot (or what it holds) and an object of the world that it is
             not about to grasp.
-        pairs: Rows of the geometry model's collision pairs.
+        rows: Indices of the geometry model's collision pairs.
     """
 
     first: str
     second: str
     keeps_padding: bool
-    pairs: range
+    rows: tuple[int, ...]
+
+
+@dataclass(eq=False)
+class SharedData:
+    """Coal's data of a scene, which takes milliseconds to make.
+
+    Attributes:
+        geometry_data: The requests with their margins, and the results of the last check.
+        holder: The user whose margins the requests have.
+    """
+
+    geometry_data: pin.GeometryData
+    holder: object = None
 
 
 @dataclass(frozen=True, eq=False)
 class CollisionModel:
-    """The scene as it is now, ready to be checked; not changed after it was made."""
+    """The scene as it is now, ready to be checked; not changed after it was made.
+
+    Attributes:
+        rows: The geometries of each of the geometry model's collision pairs, shape (R, 2).
+    """
 
     robot: RobotModel
     geometry: pin.GeometryModel
     bodies: tuple[Body, ...]
     pairs: tuple[BodyPair, ...]
+    rows: IntArray
+
+    @cached_property
+    def shared(self) -> SharedData:
+        """The data that all checkers of this scene share."""
+        return SharedData(self.geometry.createData())
+
+    def margin_map(self, margins: Sequence[float]) -> FloatArray:
+        """The margins of all pairs of bodies, as Pinocchio takes them for pairs of geometries."""
+        found = np.zeros((self.geometry.ngeoms, self.geometry.ngeoms))
+        of_row = np.zeros(len(self.rows))
+        for pair, margin in zip(self.pairs, margins, strict=True):
+            for row in pair.rows:
+                of_row[row] = margin
+        found[self.rows[:, 0], self.rows[:, 1]] = of_row
+        return found
 
 
 class CoalScene:
@@ -282,13 +316,13 @@ class CoalScene:
         """Signed distance of every checked pair of bodies [m], nearest first."""
         model = self.collision_model()
         robot, geometry = model.robot, model.geometry
-        data = geometry.createData()
+        data = model.shared.geometry_data
         configuration = robot.configuration(np.asarray(joint_positions, dtype=float))
         pin.computeDistances(robot.model, robot.data, geometry, data, configuration)
         results = data.distanceResults
         found: list[tuple[Touch, BodyPair]] = []
         for pair in model.pairs:
-            nearest = min(float(results[row].min_distance) for row in pair.pairs)
+            nearest = min(float(results[row].min_distance) for row in pair.rows)
             found.append((Touch(pair.first, pair.second, nearest), pair))
         found.sort(key=lambda item: (item[0].distance, item[0].first, item[0].second))
         return found
@@ -296,12 +330,18 @@ class CoalScene:
     def is_allowed(self, first: str, second: str) -> bool:
         """Whether the robot's description or the scene lets two bodies touch."""
         links = self.description.link_names
-        names = [(first, second)]
-        names += [(ROBOT, second)] if first in links else []
-        names += [(first, ROBOT)] if second in links else []
-        names += [(ROBOT, ROBOT)] if first in links and second in links else []
-        keys = {_sorted(*pair) for pair in names}
-        return bool(keys & (self._allowed | self._extra))
+        return self._allows(first, second, first in links, second in links)
+
+    def _allows(self, first: str, second: str, first_is_link: bool, second_is_link: bool) -> bool:
+        key = _sorted(first, second)
+        if key in self._allowed or key in self._extra:
+            return True
+        if not self._extra:
+            return False
+        names = [(ROBOT, second)] if first_is_link else []
+        names += [(first, ROBOT)] if second_is_link else []
+        names += [(ROBOT, ROBOT)] if first_is_link and second_is_link else []
+        return any(_sorted(*pair) in self._extra for pair in names)
 
     def collision_model(self) -> CollisionModel:
         """Geometries and pairs of the scene as it is now."""
@@ -321,13 +361,30 @@ class CoalScene:
             for name, obj in self._objects.items()
             if obj.shapes
         ]
-        pairs: list[BodyPair] = []
-        for later, second in enumerate(bodies):
-            for first in bodies[:later]:
-                if self._is_checked(first, second):
-                    padded = _sorted(first.name, second.name) not in self._unpadded
-                    pairs.append(_add_pair(geometry, first, second, padded=padded))
-        return CollisionModel(self.robot, geometry, tuple(bodies), tuple(pairs))
+        checked = [
+            (first, second)
+            for later, second in enumerate(bodies)
+            for first in bodies[:later]
+            if self._is_checked(first, second)
+        ]
+        is_checked = np.zeros((geometry.ngeoms, geometry.ngeoms), dtype=bool)
+        for first, second in checked:
+            a, b = first.geometries, second.geometries
+            is_checked[a[0] : a[-1] + 1, b[0] : b[-1] + 1] = True
+        geometry.setCollisionPairs(is_checked)
+        rows = np.argwhere(is_checked)
+        row_of = {(a, b): row for row, (a, b) in enumerate(rows.tolist())}
+        pairs = tuple(self._pair(first, second, row_of) for first, second in checked)
+        return CollisionModel(self.robot, geometry, tuple(bodies), pairs, rows)
+
+    def _pair(self, first: Body, second: Body, row_of: Mapping[tuple[int, int], int]) -> BodyPair:
+        rows = tuple(row_of[a, b] for a in first.geometries for b in second.geometries)
+        robot_side = [body for body in (first, second) if body.is_link or body.is_held]
+        padded = _sorted(first.name, second.name) not in self._unpadded
+        # Links come before objects; a held object comes before what it could hit.
+        if second.is_held and not first.is_link:
+            first, second = second, first
+        return BodyPair(first.name, second.name, padded and len(robot_side) == 1, rows)
 
     def _add_body(
         self,
@@ -352,7 +409,9 @@ class CoalScene:
         return Body(name, joint, indices, placed, is_link, not is_link and link is not None)
 
     def _is_checked(self, first: Body, second: Body) -> bool:
-        if first.joint == second.joint or self.is_allowed(first.name, second.name):
+        if first.joint == second.joint or self._allows(
+            first.name, second.name, first.is_link, second.is_link
+        ):
             return False
         for held, other in ((first, second), (second, first)):
             if held.is_held and other.is_link:
@@ -368,19 +427,6 @@ class CoalScene:
                 ObjectFailure(name, tuple(self._objects)),
             )
         return self._objects[name]
-
-
-def _add_pair(geometry: pin.GeometryModel, first: Body, second: Body, *, padded: bool) -> BodyPair:
-    start = len(geometry.collisionPairs)
-    for a in first.geometries:
-        for b in second.geometries:
-            geometry.addCollisionPair(pin.CollisionPair(a, b))
-    rows = range(start, len(geometry.collisionPairs))
-    robot_side = [body for body in (first, second) if body.is_link or body.is_held]
-    # Links come before objects; a held object comes before what it could hit.
-    if second.is_held and not first.is_link:
-        first, second = second, first
-    return BodyPair(first.name, second.name, padded and len(robot_side) == 1, rows)
 
 
 def _sorted(first: str, second: str) -> tuple[str, str]:

@@ -84,10 +84,9 @@ class EveryPair:
         self._geometry_data = self._geometry.createData()
         self._space = space
         self.checks = 0
-        for pair in model.pairs:
-            for row in pair.pairs:
-                margin = padding if pair.keeps_padding else 0.0
-                self._geometry_data.collisionRequests[row].security_margin = margin
+        margins = [padding if pair.keeps_padding else 0.0 for pair in model.pairs]
+        found = model.margin_map(margins)
+        self._geometry_data.setSecurityMargins(self._geometry, found, True, False)
 
     def free(self, positions: np.ndarray) -> bool:
         """Whether nothing is nearer than its margin."""
