@@ -119,6 +119,13 @@ def for_run(run: argparse.ArgumentParser) -> None:
         " GitLab names; `harness merge` joins the parts",
     )
     run.add_argument(
+        "--conditions",
+        metavar="FILE",
+        default="",
+        help="run the samples of an earlier run, by its conditions.jsonl or its report folder,"
+        " instead of drawing new ones: the same conditions for another version, robot or planner",
+    )
+    run.add_argument(
         "--on",
         metavar="CLUSTER",
         dest="cluster",

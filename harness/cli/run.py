@@ -20,6 +20,7 @@ from harness.suite.warm import WarmServer
 if TYPE_CHECKING:
     from harness.reporting.terminal import Style
     from harness.session.run_request import RunRequest
+    from harness.suite.conditions import Conditions
     from harness.suite.suite_run import SuiteRun
 
 BRIEF_FROM = 20
@@ -115,6 +116,7 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
         strict=arguments.strict,
         reporters=arguments.reporters,
         nodes=named_commands(arguments.nodes) if arguments.nodes else {},
+        conditions=_conditions(arguments),
     )
     plan = planned_cases(files, request)
     if shard is not None and root is not None:
@@ -133,6 +135,23 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
     return SuiteRun(plan, how, files)
 
 
+def _conditions(arguments: argparse.Namespace) -> Conditions | None:
+    """The samples of `--conditions`."""
+    if not arguments.conditions:
+        return None
+    from harness.suite.conditions import read_conditions
+
+    given = {
+        "--seed": arguments.seed,
+        "--samples": arguments.samples,
+        "--shard": arguments.shard or None,
+    }
+    for option, value in given.items():
+        if value is not None:
+            raise UsageError(f"--conditions and {option} exclude each other")
+    return read_conditions(Path(arguments.conditions))
+
+
 def write_files(arguments: argparse.Namespace, suite: SuiteRun) -> Path | None:
     """The files of a suite; GitHub's summary of the job where there is one."""
     from harness.reporting.suite.github import append_summary
@@ -143,6 +162,11 @@ def write_files(arguments: argparse.Namespace, suite: SuiteRun) -> Path | None:
         from harness.reporting.suite.history import history_of
         from harness.reporting.suite.write import write_suite
 
+        if any(each.case.sample is not None for each in suite.plan) and not suite.is_part:
+            from harness.suite.conditions import FILE, conditions_of, write_conditions
+
+            conditions = conditions_of(suite.plan, suite.results)
+            write_conditions(Path(arguments.report_dir) / FILE, conditions)
         history = history_of(Path(arguments.history)) if arguments.history else {}
         page = write_suite(Path(arguments.report_dir), suite.record, suite.exit_code, history)
     return page

@@ -8,6 +8,8 @@ import math
 from collections.abc import Mapping
 from typing import Any, cast
 
+from pydantic_core import to_json
+
 from harness.core.printable import json_printable
 
 
@@ -16,7 +18,10 @@ def json_text(document: object) -> str:
 
     Controls and signs that turn the direction of text are `\\u` escapes.
     """
-    text = json.dumps(_plain(document), indent=2, ensure_ascii=False, allow_nan=False)
+    try:
+        text = to_json(document, indent=2, inf_nan_mode="null").decode()
+    except (ValueError, TypeError):  # values that pydantic refuses, such as lone surrogates
+        text = json.dumps(_plain(document), indent=2, ensure_ascii=False, allow_nan=False)
     return f"{json_printable(text)}\n"
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,8 +11,11 @@ from harness.core.errors import HarnessError
 from harness.reporting.result import CaseResult
 from harness.suite.plan import SuiteRequest, cases_of
 from harness.suite.shards import ShardRecord, read_shard_records
-from harness.suite.stream import FILE, read_entries, read_results
+from harness.suite.stream import FILE, entry_of, read_results
 from harness.suite.suite_run import SuiteOptions, SuiteRun
+
+NO_REPORT = b'"report_dir": ""'
+"""What a line of a journal has in it whose case has no report."""
 
 
 def merge_parts(
@@ -59,13 +62,11 @@ def merge_parts(
     suite.take_all(results)
     suite.missing_parts = tuple(missing)
     if target is not None:
-        write_merged_journal(folders, records, target)
+        _write_journal(folders, records, target)
     return suite, first
 
 
-def write_merged_journal(
-    folders: Sequence[Path], records: Sequence[ShardRecord], target: Path
-) -> None:
+def _write_journal(folders: Sequence[Path], records: Sequence[ShardRecord], target: Path) -> None:
     """Write the results of all parts into one `results.jsonl`, for `harness results`.
 
     Raises:
@@ -74,16 +75,27 @@ def write_merged_journal(
     part = target / f".{FILE}.{os.getpid()}"
     try:
         target.mkdir(parents=True, exist_ok=True)
-        with part.open("w", encoding="utf-8") as merged:
+        with part.open("wb") as merged:
             for folder, record in zip(folders, records, strict=True):
-                for entry in read_entries(folder / FILE):
-                    moved = replace(entry, result=_moved(entry.result, Path(record.root), folder))
-                    merged.write(moved.line)
+                root = Path(record.root)
+                merged.writelines(_moved_lines(folder / FILE, root, folder))
         part.replace(target / FILE)
     except OSError as error:
         raise HarnessError(f"'{target / FILE}' cannot be written: {error.strerror}") from error
     finally:
         part.unlink(missing_ok=True)
+
+
+def _moved_lines(journal: Path, root: Path, folder: Path) -> Iterator[bytes]:
+    """The lines of a journal; those that name a report name where it is now."""
+    if not journal.is_file():
+        return
+    with journal.open("rb") as file:
+        for line in file:
+            if NO_REPORT in line or root == folder:
+                yield line
+            elif (entry := entry_of(line)) is not None:
+                yield replace(entry, result=_moved(entry.result, root, folder)).line.encode()
 
 
 def _moved(result: CaseResult, root: Path, folder: Path) -> CaseResult:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NoReturn, Protocol
 
 from harness.session.run_request import RunRequest
 from harness.suite.discovery import UsageError
@@ -16,6 +16,18 @@ from harness.suite.selection import selects
 from harness.suite.shards import PlannedFile, Shard, ShardRecord
 from harness.suite.stream import file_hash
 from harness.suite.variation import Case, Variation
+
+
+class SampledConditions(Protocol):
+    """Samples that are known before a suite is planned."""
+
+    def check(self, files: Sequence[Path]) -> None:
+        """Refuse a file without samples with a UsageError."""
+        ...
+
+    def cases(self, file: Path, *, is_alone: bool) -> Iterable[Case]:
+        """The samples of a file."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -37,6 +49,7 @@ class SuiteRequest:
         strict: Whether a warning of a verdict fails a case.
         reporters: Names of other reporters that write into the reports.
         nodes: Commands by name that steps may start as ROS 2 nodes.
+        conditions: Samples to run instead of those that the files draw; all of them count.
     """
 
     expression: str = ""
@@ -52,6 +65,7 @@ class SuiteRequest:
     strict: bool = False
     reporters: Sequence[str] = ()
     nodes: Mapping[str, str] = field(default_factory=dict[str, str])
+    conditions: SampledConditions | None = None
 
 
 @dataclass(frozen=True)
@@ -96,6 +110,8 @@ def planned_cases(files: Sequence[Path], request: SuiteRequest) -> list[PlannedC
         UsageError: Nothing is selected, `-k` cannot be read, or there is nothing to sample.
         SpecError: There is nothing to sample in a file with mistakes.
     """
+    if request.conditions is not None:
+        request.conditions.check(files)
     found = cases_of([(file, read_header(file)) for file in files], request)
     if not found:
         option = f"-k '{request.expression}'" if request.expression else "--case"
@@ -120,12 +136,28 @@ def cases_of(
     root = request.report_root
     files = [file for file, _ in headers]
     folders = [None] * len(files) if root is None else report_folders(files, root)
+    headers = [(file, _header(header, request)) for file, header in headers]
     return [
         PlannedCase(_job(file, case, folder, request), header, case)
         for (file, header), folder in zip(headers, folders, strict=True)
-        for case in header.variation.cases(request.seed, request.samples)
+        for case in _cases(file, header, request, is_alone=len(files) == 1)
         if _is_selected(file, header, case, request)
     ]
+
+
+def _header(header: ScenarioHeader, request: SuiteRequest) -> ScenarioHeader:
+    """A file's header; given conditions are all run, so that two campaigns have the same."""
+    if request.conditions is None:
+        return header
+    return replace(header, variation=replace(header.variation, stop_early=False))
+
+
+def _cases(
+    file: Path, header: ScenarioHeader, request: SuiteRequest, *, is_alone: bool
+) -> Iterable[Case]:
+    if request.conditions is not None:
+        return request.conditions.cases(file, is_alone=is_alone)
+    return header.variation.cases(request.seed, request.samples)
 
 
 def _refuse_samples(files: Sequence[Path], request: SuiteRequest) -> NoReturn:

@@ -23,7 +23,7 @@ from harness.suite.stream import input_files
 LOCAL = "ray"
 CLIENT = "ray://"
 BATCH_SECONDS = 3.0
-"""Wall time that a batch is to take: long beside the millisecond that Ray adds."""
+"""Wall time that a batch is to take: long compared with the millisecond that Ray adds."""
 
 MOST_CASES = 100
 """Largest number of cases in a batch."""
