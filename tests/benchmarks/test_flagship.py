@@ -14,7 +14,7 @@ from tests.running import run_case
 
 FLAGSHIP = data_folder("scenarios") / "lessons/03_ur_sixteen_steps.scenario.yaml"
 PARTS = ("compile", "plan", "simulate", "judge", "write")
-GOAL = 1.15
+GOAL = 1.08
 REPETITIONS = 3
 
 

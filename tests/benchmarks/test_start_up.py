@@ -9,7 +9,7 @@ from harness.core.resources import data_folder
 from tests.benchmarks.interleaved import median_seconds
 
 FLAGSHIP = data_folder("scenarios") / "lessons/03_ur_sixteen_steps.scenario.yaml"
-GOALS = {"harness --help": 5, "harness check": 30}
+GOALS = {"harness --help": 5, "harness check": 15}
 REPETITIONS = 9
 
 

@@ -113,10 +113,10 @@ def test_a_step_without_duration_is_judged_at_its_one_sample(tmp_path):
 
 
 def test_a_run_that_would_take_too_long_ends_with_the_limit(tmp_path):
-    """At a time step of 20 ms: the limit is of time, not of samples."""
+    """At a time step of 20 ms: the limit is of time, not of samples. The ball falls slowly."""
     (tmp_path / "coarse.yaml").write_text(
-        "world: coarse\nphysics: {timestep: 0.02}\n"
-        "objects: [{name: ball, sphere: {radius: 0.1}, pose: {xyz: [2, 0, 1.0e+6]}}]\n"
+        "world: coarse\nphysics: {timestep: 0.02, gravity: [0, 0, -0.001]}\n"
+        "objects: [{name: ball, sphere: {radius: 0.1}, pose: {xyz: [2, 0, 1.0e+3]}}]\n"
     )
     steps = "- settle: {max_velocity: 1 um/s}\n  timeout: 1 hour"
     result, _ = run(tmp_path, steps, robot="{gripper: rh_p12_rn_a}", world="coarse.yaml")

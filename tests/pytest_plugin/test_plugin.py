@@ -214,7 +214,7 @@ def test_the_fixture_runs_scenarios_of_tests_written_by_hand(pytester, write):
 def test_other_plugins_work_next_to_it(pytester, write):
     write(holds=HOLDS, again=HOLDS.replace("0.1 s", "0.15 s"))
     words = ["-n", "2", "--randomly-seed=7", "--timeout=120", "--html=report.html",
-             "--self-contained-html", "--cov=harness", "--cov-report=json"]  # fmt: skip
+             "--self-contained-html", "--cov=harness.suite", "--cov-report=json"]  # fmt: skip
     done = pytester.runpytest_subprocess("-p", "no:cacheprovider", *words)
     done.assert_outcomes(passed=2)
     assert "Hold still" in (pytester.path / "report.html").read_text()

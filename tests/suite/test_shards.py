@@ -238,11 +238,11 @@ def test_a_part_that_is_none_is_refused(text):
 
 def test_a_part_without_cases_passes_and_can_be_merged(tmp_path):
     (tmp_path / "grid.scenario.yaml").write_text(GRID)
-    parts = [f"at{number}" for number in range(1, 9)]
+    parts = [f"at{number}" for number in range(1, 5)]
     for number, part in enumerate(parts, start=1):
         ran = harness(
             "run", ".", "--report-dir", part, "--no-page", "--shard", "auto",
-            cwd=tmp_path, CI_NODE_INDEX=str(number), CI_NODE_TOTAL="8",
+            cwd=tmp_path, CI_NODE_INDEX=str(number), CI_NODE_TOTAL="4",
         )  # fmt: skip
         assert ran.returncode in (0, 1), ran.stderr
     merged = harness("merge", *parts, "--report-dir", "out", "--json", cwd=tmp_path)
