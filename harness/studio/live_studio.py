@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import threading
 import time
 from collections.abc import Callable
@@ -85,6 +86,8 @@ class LiveStudio:
         self.server = server
         self.view = SceneView(server, self.on_drag)
         self.show_cell()
+        gc.collect()
+        gc.freeze()  # what is loaded stays; to walk through it would take 60 ms every few edits
         self.session.start()
 
     def close(self) -> None:

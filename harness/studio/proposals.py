@@ -88,9 +88,10 @@ def _about_objects(cell: LiveCell) -> list[Proposal]:
             continue
         below = _support(cell, name, forces)
         if below:
-            place = {"xyz": [round(float(value), 4) for value in pose.translation]}
+            vector = [round(float(value), 4) for value in pose.as_vector()]
+            place = {"xyz": vector[:3], "quat_wxyz": vector[3:]}
             keys: dict[str, Any] = {"object": name, "on": below, "pose": place}
-            keys["tolerance"] = {"position": "5 mm"}
+            keys["tolerance"] = {"position": "5 mm", "orientation": "3 deg"}
             found.append(Proposal(step_text("placed", keys), f"'{name}' stands on '{below}'"))
         tilt = float(np.arccos(np.clip(pose.rotation[2, 2], -1.0, 1.0)))
         if tilt < UPRIGHT:

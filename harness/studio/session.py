@@ -210,7 +210,8 @@ def guarded(action: Callable[[], Message]) -> Message:
     try:
         return action()
     except SpecError as error:
-        return {"error": "; ".join(problem.message for problem in error.problems)}
+        said = [": ".join(filter(None, (each.message, each.hint))) for each in error.problems]
+        return {"error": "; ".join(said)}
     except (HarnessError, ValueError, KeyError, TypeError) as error:
         text = str(error) if isinstance(error, HarnessError) else f"a bad request: {error!r}"
         return {"error": text}

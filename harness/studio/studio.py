@@ -37,7 +37,7 @@ class Studio(GoalActions):
         Raises:
             SpecError: The file's text has mistakes.
         """
-        files.refuse_outside(Document(text))
+        files.refuse_outside(Document(text, str(files.path)))
         studio = cls(files, text, notice)
         if unsaved is not None:
             studio.do_edit({"text": unsaved})
