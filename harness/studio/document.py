@@ -56,7 +56,7 @@ class Document:
     """A scenario's text, with the places of its steps and objects.
 
     Attributes:
-        text: The text.
+        text: The text as it is written.
         root: The values with their places.
     """
 

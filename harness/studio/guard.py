@@ -39,7 +39,7 @@ class Asset:
 
     Attributes:
         content: The bytes, compressed with gzip.
-        kind: The media type.
+        kind: The media type of the content.
         policy: The Content-Security-Policy; empty for what is no page.
     """
 

@@ -132,8 +132,14 @@ class LiveStudio:
         if is_due and self.session.viewers:
             self._frames += 1
             if self._frames % MEASURED_EVERY == 0 and not self.busy:
-                self.nearest = self.cell.nearest_pair()
+                self._measure_clearance()
             self.session.broadcast(self.state_message())
+
+    def _measure_clearance(self) -> None:
+        found = self.cell.nearest_pair()
+        self.nearest = None if found is None else found[0]
+        if self.view is not None:
+            self.view.show_clearance(None if found is None else found[1])
 
     def _go_on(self, seconds: float) -> None:
         if self.target is not None:

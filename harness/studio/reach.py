@@ -29,7 +29,7 @@ class Way:
     """Joint positions that reach a pose.
 
     Attributes:
-        positions: Of all joints, description order.
+        positions: The positions of all joints, in description order.
         name: The posture of the arm; empty where the solver has no branches.
         refusal: Why they cannot be taken; empty where they are free.
     """
@@ -83,7 +83,7 @@ class ReachStudy:
         """What a TCP pose needs.
 
         Args:
-            pose: T_world_tcp.
+            pose: The requested pose T_world_tcp.
             near: Joint positions in description order which the branch should continue; None:
                 where the arm stands.
             explain: Whether to look for the nearest pose that can be reached; it takes longer.

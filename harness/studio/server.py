@@ -1,4 +1,4 @@
-"""The web server: viser's, behind the guard, with the studio's page and its WebSocket."""
+"""The web server: viser's with the guard before it, the studio's page and its WebSocket."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def start_server(host: str, port: int, guard: Guard, handler: Handler) -> viser.
     Args:
         host: The address to bind.
         port: The port; 0 for any that is free.
-        guard: Answers requests.
+        guard: The guard that answers requests.
         handler: Speaks with the studio's own page.
 
     Raises:

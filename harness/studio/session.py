@@ -1,4 +1,4 @@
-"""The session behind the page: one cell, one controller, any number of spectators."""
+"""The session of all pages: one cell, one controller, any number of spectators."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ class Session:
         self.on_frame(is_due)
 
     def announce_control(self) -> None:
-        """Tell every page who controls."""
+        """Show every page who controls."""
         for viewer in tuple(self.viewers):
             viewer.send(
                 {
@@ -172,14 +172,14 @@ class Session:
             self._control(viewer, str(message.get("word", "")))
             return reply({})
         if viewer.name != self.controller and name not in ("complete", "hover", "check"):
-            return reply({"error": "another page controls the cell; ask for control first"})
+            return reply({"error": "another page controls the cell; request control first"})
         if name in self.at_once:
             return reply(guarded(lambda: self.at_once[name](message)))
         self.post(lambda: reply(guarded(lambda: self.on_request(name, message))))
         return None
 
     def _control(self, viewer: Viewer, word: str) -> None:
-        """Ask for control, pass it on, or take it where nobody has it."""
+        """Request control, pass it on, or take it where no page has it."""
         present = {each.name for each in self.viewers}
         if word == "request":
             if not self.controller or self.controller not in present:

@@ -245,7 +245,7 @@ class Studio(GoalActions):
 
     def _refuse_mistakes(self) -> None:
         if self.problems or self.text != self.cell.document.text:
-            raise RefusedError("the scenario has mistakes; mend the marked lines first")
+            raise RefusedError("the scenario has mistakes; correct the marked lines first")
 
     def _take_text(self, text: str) -> None:
         """Make a text the scenario's, and show it on every page."""
