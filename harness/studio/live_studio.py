@@ -58,6 +58,7 @@ class LiveStudio:
             self._frame,
             self._greeting,
             {"stop": self._stop, "play": self._play, "speed": self._set_speed},
+            self._recover,
         )
         self.view: SceneView | None = None
         self.server: viser.ViserServer | None = None
@@ -134,6 +135,11 @@ class LiveStudio:
             if self._frames % MEASURED_EVERY == 0 and not self.busy:
                 self._measure_clearance()
             self.session.broadcast(self.state_message())
+
+    def _recover(self) -> None:
+        """Stand still where the steps executed so far left the cell."""
+        self.is_playing, self.target = False, None
+        self.cell.restore(self.cell.steps_done)
 
     def _measure_clearance(self) -> None:
         found = self.cell.nearest_pair()

@@ -73,11 +73,11 @@ class ReachStudy:
             cell.scene, self._space, self._space.part(self._start), _padding(cell)
         )
 
-    def goal(self, pose: SE3, *, any_pitch: bool = False) -> PoseGoal | PositionGoal:
+    def goal(self, pose: SE3) -> PoseGoal | PositionGoal:
         """The goal that the arm can choose: a pose, or a position and a pitch."""
         if self._space.dof >= WHOLE_POSE_JOINTS:
             return PoseGoal(self._tcp, pose)
-        return PositionGoal(self._tcp, pose.translation, None if any_pitch else pitch_of(pose))
+        return PositionGoal(self._tcp, pose.translation, pitch_of(pose))
 
     def answer(self, pose: SE3, near: FloatArray | None = None, *, explain: bool = True) -> Reach:
         """What a TCP pose needs.

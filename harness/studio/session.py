@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import hashlib
 import json
 import queue
 import threading
 import time
+import traceback
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -15,6 +17,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 
 from harness.core.errors import HarnessError, SpecError
+from harness.core.printable import printable
 
 FRAME = 1 / 30
 """Time between two pictures of the scene [s]."""
@@ -67,12 +70,14 @@ class Session:
             numbers are due too.
         greeting: What a page that connects is sent, in the cell's thread.
         at_once: Requests that are answered while a step is being executed.
+        on_defect: Called after a defect of the program in the cell's thread.
     """
 
     on_request: Callable[[str, Message], Message]
     on_frame: Callable[[bool], None]
     greeting: Callable[[], list[Message]]
     at_once: dict[str, Callable[[Message], Message]]
+    on_defect: Callable[[], None]
     viewers: list[Viewer] = field(default_factory=list[Viewer])
     controller: str = ""
     _jobs: queue.SimpleQueue[Callable[[], None] | None] = field(
@@ -185,11 +190,11 @@ class Session:
             if not self.controller or self.controller not in present:
                 self.controller = viewer.name
             else:
-                self.broadcast({"type": "request", "page": viewer.name, "of": self.controller})
+                self.broadcast({"type": "request", "page": alias(viewer.name)})
         elif word == "release" and viewer.name == self.controller:
             self.controller = next((n for n in present if n != viewer.name), viewer.name)
-        elif viewer.name == self.controller and word in present:
-            self.controller = word
+        elif viewer.name == self.controller:
+            self.controller = next((name for name in present if alias(name) == word), viewer.name)
         self.announce_control()
 
     def _run(self) -> None:
@@ -197,12 +202,20 @@ class Session:
             try:
                 job = self._jobs.get(timeout=0.5 * FRAME)
             except queue.Empty:
-                self.frame()
-                continue
+                job = self.frame
             if job is None:
                 return
-            job()
-            self.frame()
+            try:
+                job()
+            except Exception:  # noqa: BLE001 - the thread goes on, and with it everyone's session
+                trace = traceback.format_exc()
+                self.broadcast({"type": "note", "kind": "failed", "text": printable(trace)})
+                self.on_defect()
+
+
+def alias(name: str) -> str:
+    """A name for a page that other pages may know; its own name is what it controls with."""
+    return hashlib.sha256(name.encode()).hexdigest()[:12]
 
 
 def guarded(action: Callable[[], Message]) -> Message:

@@ -2,6 +2,7 @@
 
 import asyncio
 import http.client
+import json
 
 import pytest
 import websockets
@@ -98,6 +99,37 @@ def test_files_outside_the_folder_are_neither_read_nor_written(served):
     [problem] = served.reply_to("edit", text=text)["document"]["problems"]
     assert (problem["line"], "is outside" in problem["text"]) == (3, True)
     served.reply_to("edit", text=served.studio.saved)
+
+
+def test_no_page_can_publish_the_studio_through_a_tunnel(served):
+    from viser._messages import ShareUrlRequest
+
+    handlers = served.server._websock_server._incoming_handlers  # noqa: SLF001 - viser has no other way
+    assert ShareUrlRequest not in handlers
+
+
+def test_a_page_does_not_learn_the_name_with_which_another_controls(served):
+    async def requested():
+        address = f"ws://127.0.0.1:{served.port}/studio/ws"
+        async with websockets.connect(address) as first, websockets.connect(address) as second:
+            await first.send(json.dumps({"page": "secret-of-the-first"}))
+            await first.recv()
+            await second.send(json.dumps({"page": "second"}))
+            await second.send(json.dumps({"do": "control", "word": "request", "number": 1}))
+            await second.send(json.dumps({"do": "reset", "number": 2}))
+            heard = ""
+            while '"number": 2' not in heard:
+                heard += await second.recv()
+            return heard
+
+    heard = asyncio.run(requested())
+    assert "secret-of-the-first" not in heard
+    assert "another page controls the cell" in heard
+
+
+def test_a_defect_in_an_action_does_not_end_the_session(served):
+    served.studio.session.post(lambda: 1 / 0)
+    assert served.reply_to("reset") == {}
 
 
 def test_a_bad_request_is_answered_and_harms_nothing(served):
