@@ -26,7 +26,7 @@ def _run(arguments: argparse.Namespace) -> int:
         raise UsageError(f"{EXTRA} ({error})") from error
     from harness.studio.files import StudioFiles
     from harness.studio.guard import LOOPBACK, Guard
-    from harness.studio.server import page_assets, start_server
+    from harness.studio.server import PortInUseError, page_assets, start_server
     from harness.studio.studio import Studio
 
     path, text, time = _start(arguments)
@@ -46,7 +46,10 @@ def _run(arguments: argparse.Namespace) -> int:
     host = arguments.host or LOOPBACK[0]
     is_open = host not in ("127.0.0.1", "localhost", "::1")
     guard = Guard.of(page_assets(), is_open=is_open)
-    server = start_server(host, arguments.port, guard, studio.session.handle)
+    try:
+        server = start_server(host, arguments.port, guard, studio.session.handle)
+    except PortInUseError as error:
+        raise UsageError(str(error)) from error
     studio.open(server)
     shown = f"[{host}]" if ":" in host else host
     address = f"http://{shown}:{server.get_port()}/"
@@ -93,39 +96,41 @@ def _start(arguments: argparse.Namespace) -> tuple[Path, str, float | None]:
 
 
 def _text(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
-    if word.endswith((".yaml", ".yml")) or Path(word).is_dir():
+    from harness.robot.load import robot_names
+    from harness.robot_tools.robot_source import RobotSource
+
+    kind = RobotSource(word).kind
+    is_robot = word in robot_names() or (kind not in ("model", "scenario") or _has_robot(word))
+    if not is_robot:
         return _scenario(word, arguments)
     from harness.studio.document import new_text
 
-    robot = _robot_keys(word, arguments.gripper)
+    robot = {kind: word, "gripper": arguments.gripper}
     stem = Path(word).name.partition(".")[0] or "robot"
     path = Path(f"{stem}_by_hand{SUFFIX}")
     if path.exists():
         return path, path.read_text(encoding="utf-8")
-    return path, new_text(f"{stem} by hand", robot, arguments.world or "empty")
+    given = {key: value for key, value in robot.items() if value}
+    return path, new_text(f"{stem} by hand", given, arguments.world or "empty")
 
 
-def _robot_keys(word: str, gripper: str) -> dict[str, str]:
-    from harness.robot.load import robot_names
-    from harness.robot_tools.robot_source import RobotSource
-
-    source = RobotSource(word)
-    if source.kind == "model" and word not in robot_names() and not Path(word).exists():
-        from harness.language.files.mistakes import did_you_mean
-
-        hint = did_you_mean(word, robot_names(), "robots")
-        raise UsageError(f"there is no robot and no scenario '{word}'; {hint}")
-    keys = {source.kind: word}
-    return {**keys, "gripper": gripper} if gripper else keys
+def _has_robot(word: str) -> bool:
+    return (Path(word) / "robot.yaml").is_file()
 
 
 def _scenario(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
+    from harness.language.files.mistakes import did_you_mean
     from harness.language.files.yaml_file import read_text
+    from harness.robot.load import robot_names
     from harness.suite.discovery import discover
 
     if arguments.gripper or arguments.world:
         raise UsageError("--gripper and --world are for a robot; a scenario has its own")
-    [file, *more] = discover([word])
+    try:
+        [file, *more] = discover([word])
+    except UsageError as error:
+        hint = did_you_mean(word, robot_names(), "robots")
+        raise UsageError(f"{error}; a robot is not called so either: {hint}") from error
     if more:
         raise UsageError(f"'{word}' has several scenarios; the studio opens one of them")
     text = read_text(file)

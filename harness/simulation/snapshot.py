@@ -62,12 +62,12 @@ class PhysicsState:
     """A snapshot of a simulator.
 
     Attributes:
-        integration: MuJoCo's integration state.
+        integration: The integration state of MuJoCo.
         model: Arrays of the model that change during a run, by name.
-        command: What is commanded.
+        command: The set points of the robot.
         samples: The number of samples recorded so far.
         history: Since when each object stands where it was put.
-        faults: The active faults.
+        faults: The state of the active faults.
     """
 
     integration: FloatArray

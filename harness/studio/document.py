@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -36,7 +37,8 @@ def flow(value: Plain) -> str:
     text = yaml.safe_dump(
         _rounded(value), default_flow_style=True, width=10**6, sort_keys=False, allow_unicode=True
     ).strip()
-    return text.removesuffix("...").strip()
+    # the writer quotes the words that were booleans in YAML 1.1
+    return re.sub(r"'(on|off|yes|no|y|n)':", r"\1:", text.removesuffix("...").strip())
 
 
 def _rounded(value: Plain) -> Plain:
@@ -54,19 +56,19 @@ class Document:
     """A scenario's text, with the places of its steps and objects.
 
     Attributes:
-        text: The text.
+        text: The text as it is written.
         root: The values with their places.
     """
 
-    def __init__(self, text: str) -> None:
-        """Read a text.
+    def __init__(self, text: str, name: str = "scenario") -> None:
+        """Read a text; messages call it by the name.
 
         Raises:
             SpecError: It is not YAML, or not a mapping.
         """
         self.text = text
         self.lines = text.splitlines()
-        self.root: Located = parse_yaml(text, Source.of_text("scenario", text), [])
+        self.root: Located = parse_yaml(text, Source.of_text(name, text), [])
 
     @property
     def step_count(self) -> int:

@@ -26,7 +26,7 @@ class StudioFiles:
 
     Attributes:
         root: The folder in which the studio was started; nothing outside is read or written.
-        path: The scenario's file.
+        path: The file of the scenario.
     """
 
     def __init__(self, root: Path, path: Path) -> None:

@@ -15,6 +15,7 @@ from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
 COOKIE = "harness_studio"
+SOCKET_PATH = "/studio/ws"
 LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 
 PAGE_POLICY = (
@@ -39,7 +40,7 @@ class Asset:
 
     Attributes:
         content: The bytes, compressed with gzip.
-        kind: The media type.
+        kind: The media type of the content.
         policy: The Content-Security-Policy; empty for what is no page.
     """
 
@@ -89,9 +90,10 @@ class Guard:
         refusal = self.refusal(request, port)
         if refusal:
             return _plain(http.HTTPStatus.FORBIDDEN, refusal)
-        if request.headers.get("Upgrade", "").lower() == "websocket":
-            return None
         path = urlsplit(request.path).path
+        is_socket = request.headers.get("Upgrade", "").lower() == "websocket"
+        if is_socket and (path == SOCKET_PATH or path.startswith("/scene/")):
+            return None
         asset = self.assets.get("/scene" if path.startswith("/scene/") else path)
         if asset is None:
             return _plain(http.HTTPStatus.NOT_FOUND, "there is no such page")

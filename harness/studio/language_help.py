@@ -26,9 +26,9 @@ class Option:
     """A completion.
 
     Attributes:
-        text: What is inserted.
-        kind: `key` or `value`.
-        help: Its description.
+        text: The text that is inserted.
+        kind: The kind of the text: `key` or `value`.
+        help: The description of the key.
     """
 
     text: str
@@ -97,7 +97,7 @@ def path_at(text: str, line: int, column: int) -> tuple[Path, bool]:
     Works on text that is not yet YAML: indentation, dashes and brackets decide.
 
     Args:
-        text: The text.
+        text: The text of the scenario.
         line: The line from 0.
         column: The column from 0.
     """

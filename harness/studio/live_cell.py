@@ -63,7 +63,7 @@ class Judged:
 
     Attributes:
         digest: The digest of the run; empty while steps remain, or after motions by hand.
-        outcome: `passed` or `failed`.
+        outcome: The outcome so far: `passed` or `failed`.
     """
 
     run: Run
@@ -159,7 +159,7 @@ class LiveCell:
 
     @property
     def is_run(self) -> bool:
-        """Whether a run of the file would have come to the same state."""
+        """Whether a run of the file would be in the same state."""
         return self.history[-1].is_run and not self.is_by_hand
 
     @property
@@ -311,7 +311,7 @@ class LiveCell:
         Args:
             target: Joint positions in description order.
             share: Share of the velocity limits, (0, 1].
-            seconds: The simulated time.
+            seconds: The simulated time that passes [s].
         """
         actuated = self.simulator.physics.actuated
         limits = np.array([joint.velocity for joint in self.description.movable_joints])
@@ -351,11 +351,10 @@ class LiveCell:
                 poses[name] = self.scene.object_pose(name, positions)
         return poses
 
-    def nearest_pair(self) -> Touch | None:
-        """The pair of bodies with the smallest clearance now, by the planner's scene."""
+    def nearest_pair(self) -> tuple[Touch, FloatArray] | None:
+        """The pair of bodies with the smallest clearance now, and its nearest points, (2, 3)."""
         self.cell.sync_scene()
-        found = self.scene.distances(self.joint_positions())
-        return found[0][0] if found else None
+        return self.scene.nearest_points(self.joint_positions())
 
     # -- verdicts -----------------------------------------------------------------------------
 

@@ -63,7 +63,7 @@ class LiveSimulator(TimedSimulator):
         """Move the set points of actuated joints towards a target.
 
         Args:
-            target: Where they are meant to be, shape (m,).
+            target: The set points that are requested, shape (m,).
             most: Farthest that each may move now, shape (m,).
         """
         self.command(self._command + np.clip(target - self._command, -most, most))

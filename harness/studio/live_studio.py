@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import threading
 import time
 from collections.abc import Callable
@@ -57,6 +58,7 @@ class LiveStudio:
             self._frame,
             self._greeting,
             {"stop": self._stop, "play": self._play, "speed": self._set_speed},
+            self._recover,
         )
         self.view: SceneView | None = None
         self.server: viser.ViserServer | None = None
@@ -85,6 +87,8 @@ class LiveStudio:
         self.server = server
         self.view = SceneView(server, self.on_drag)
         self.show_cell()
+        gc.collect()
+        gc.freeze()  # what is loaded stays; to walk through it would take 60 ms every few edits
         self.session.start()
 
     def close(self) -> None:
@@ -129,8 +133,19 @@ class LiveStudio:
         if is_due and self.session.viewers:
             self._frames += 1
             if self._frames % MEASURED_EVERY == 0 and not self.busy:
-                self.nearest = self.cell.nearest_pair()
+                self._measure_clearance()
             self.session.broadcast(self.state_message())
+
+    def _recover(self) -> None:
+        """Stand still where the steps executed so far left the cell."""
+        self.is_playing, self.target = False, None
+        self.cell.restore(self.cell.steps_done)
+
+    def _measure_clearance(self) -> None:
+        found = self.cell.nearest_pair()
+        self.nearest = None if found is None else found[0]
+        if self.view is not None:
+            self.view.show_clearance(None if found is None else found[1])
 
     def _go_on(self, seconds: float) -> None:
         if self.target is not None:

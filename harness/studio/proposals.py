@@ -16,6 +16,9 @@ AT_A_STATE = 0.01
 PRESSED = 0.05
 """Smallest force with which a finger side holds an object [N]."""
 
+MOVED = 0.005
+"""Largest distance from its start at which an object counts as not moved [m]."""
+
 UPRIGHT = 0.1
 """Largest angle from the vertical at which an object stands upright [rad]."""
 
@@ -26,7 +29,7 @@ class Proposal:
 
     Attributes:
         text: It, as a scenario has it.
-        why: What was seen.
+        why: The observation that it states.
     """
 
     text: str
@@ -61,7 +64,7 @@ def _about_robot(cell: LiveCell) -> list[Proposal]:
         keys = {
             "pose": {
                 "xyz": [round(float(value), 4) for value in pose.translation],
-                "quat_wxyz": [round(float(value), 5) for value in pose.as_vector()[3:]],
+                "quat_wxyz": [round(float(value), 4) for value in pose.as_vector()[3:]],
             },
             "tolerance": {"position": "3 mm", "orientation": "1 deg"},
         }
@@ -83,14 +86,18 @@ def _about_objects(cell: LiveCell) -> list[Proposal]:
         obj = cell.cell.presence[name].obj
         if obj.is_static or not obj.in_simulation:
             continue
+        start = cell.cell.presence[name].obj.pose
         if _is_held(cell, name, forces):
             found.append(Proposal(step_text("grasped", name), f"both finger sides press '{name}'"))
             continue
+        if start.distance_to(pose)[0] < MOVED:
+            continue
         below = _support(cell, name, forces)
         if below:
-            place = {"xyz": [round(float(value), 4) for value in pose.translation]}
+            vector = [round(float(value), 4) for value in pose.as_vector()]
+            place = {"xyz": vector[:3], "quat_wxyz": vector[3:]}
             keys: dict[str, Any] = {"object": name, "on": below, "pose": place}
-            keys["tolerance"] = {"position": "5 mm"}
+            keys["tolerance"] = {"position": "5 mm", "orientation": "3 deg"}
             found.append(Proposal(step_text("placed", keys), f"'{name}' stands on '{below}'"))
         tilt = float(np.arccos(np.clip(pose.rotation[2, 2], -1.0, 1.0)))
         if tilt < UPRIGHT:

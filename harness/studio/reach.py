@@ -29,7 +29,7 @@ class Way:
     """Joint positions that reach a pose.
 
     Attributes:
-        positions: Of all joints, description order.
+        positions: The positions of all joints, in description order.
         name: The posture of the arm; empty where the solver has no branches.
         refusal: Why they cannot be taken; empty where they are free.
     """
@@ -73,17 +73,17 @@ class ReachStudy:
             cell.scene, self._space, self._space.part(self._start), _padding(cell)
         )
 
-    def goal(self, pose: SE3, *, any_pitch: bool = False) -> PoseGoal | PositionGoal:
+    def goal(self, pose: SE3) -> PoseGoal | PositionGoal:
         """The goal that the arm can choose: a pose, or a position and a pitch."""
         if self._space.dof >= WHOLE_POSE_JOINTS:
             return PoseGoal(self._tcp, pose)
-        return PositionGoal(self._tcp, pose.translation, None if any_pitch else pitch_of(pose))
+        return PositionGoal(self._tcp, pose.translation, pitch_of(pose))
 
     def answer(self, pose: SE3, near: FloatArray | None = None, *, explain: bool = True) -> Reach:
         """What a TCP pose needs.
 
         Args:
-            pose: T_world_tcp.
+            pose: The requested pose T_world_tcp.
             near: Joint positions in description order which the branch should continue; None:
                 where the arm stands.
             explain: Whether to look for the nearest pose that can be reached; it takes longer.

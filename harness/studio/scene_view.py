@@ -142,6 +142,7 @@ class SceneView:
         self.handle: Any = None
         self._object_handle: Any = None
         self._path: Any = None
+        self._clearance: Any = None
         self._shapes: dict[str, list[Triangles]] = {}
 
     def show_cell(
@@ -150,7 +151,8 @@ class SceneView:
         """Draw another robot, without objects, and put the handle on its TCP."""
         scene = self._server.scene
         scene.reset()
-        self._objects, self._ghosts, self._path, self._object_handle = {}, [], None, None
+        self._objects, self._ghosts = {}, []
+        self._path = self._object_handle = self._clearance = None
         self._kinematics = kinematics
         self._shapes = robot_triangles(description)
         center = kinematics.link_pose(description.start_positions(), description.base_link)
@@ -235,6 +237,16 @@ class SceneView:
             segments = np.stack([points[:-1], points[1:]], axis=1)
             self._path = self._server.scene.add_line_segments(
                 "/path", segments, PLANNED, thickness=0.006
+            )
+
+    def show_clearance(self, points: FloatArray | None) -> None:
+        """Show a line between the nearest points of two bodies, shape (2, 3)."""
+        if self._clearance is not None:
+            self._clearance.remove()
+            self._clearance = None
+        if points is not None:
+            self._clearance = self._server.scene.add_line_segments(
+                "/clearance", points[None], REFUSED, thickness=0.003
             )
 
     def show_object_handle(self, name: str, pose: SE3 | None) -> None:

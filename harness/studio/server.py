@@ -1,4 +1,4 @@
-"""The web server: viser's, behind the guard, with the studio's page and its WebSocket."""
+"""The web server: viser's with the guard before it, the studio's page and its WebSocket."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from typing import Any
 
 import viser
 import websockets.asyncio.server
+from viser._messages import ShareUrlDisconnect, ShareUrlRequest
 from websockets.asyncio.server import ServerConnection
 from websockets.http11 import Request, Response
 
 from harness.core.errors import HarnessError
-from harness.studio.guard import PAGE_POLICY, SCENE_POLICY, Asset, Guard
+from harness.studio.guard import PAGE_POLICY, SCENE_POLICY, SOCKET_PATH, Asset, Guard
 
-SOCKET_PATH = "/studio/ws"
 EDITOR_FILES = (
     "ace.js",
     "mode-yaml.js",
@@ -70,7 +70,7 @@ def start_server(host: str, port: int, guard: Guard, handler: Handler) -> viser.
     Args:
         host: The address to bind.
         port: The port; 0 for any that is free.
-        guard: Answers requests.
+        guard: The guard that answers requests.
         handler: Speaks with the studio's own page.
 
     Raises:
@@ -93,9 +93,17 @@ def start_server(host: str, port: int, guard: Guard, handler: Handler) -> viser.
     websockets.asyncio.server.serve = guarded
     try:
         with contextlib.redirect_stdout(io.StringIO()):  # viser's banner has no token
-            return viser.ViserServer(host=host, port=port, verbose=False)
+            server = viser.ViserServer(host=host, port=port, verbose=False)
     finally:
         websockets.asyncio.server.serve = serve
+    _refuse_sharing(server)
+    return server
+
+
+def _refuse_sharing(server: viser.ViserServer) -> None:
+    """Take away a page's right to publish the studio through viser's tunnel."""
+    for message in (ShareUrlRequest, ShareUrlDisconnect):
+        server._websock_server.unregister_handler(message)  # noqa: SLF001 - viser has no option
 
 
 def _refuse_used_port(host: str, port: int) -> None:

@@ -1,12 +1,14 @@
-"""The session behind the page: one cell, one controller, any number of spectators."""
+"""The session of all pages: one cell, one controller, any number of spectators."""
 
 from __future__ import annotations
 
 import asyncio
+import hashlib
 import json
 import queue
 import threading
 import time
+import traceback
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -15,6 +17,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 
 from harness.core.errors import HarnessError, SpecError
+from harness.core.printable import printable
 
 FRAME = 1 / 30
 """Time between two pictures of the scene [s]."""
@@ -67,12 +70,14 @@ class Session:
             numbers are due too.
         greeting: What a page that connects is sent, in the cell's thread.
         at_once: Requests that are answered while a step is being executed.
+        on_defect: Called after a defect of the program in the cell's thread.
     """
 
     on_request: Callable[[str, Message], Message]
     on_frame: Callable[[bool], None]
     greeting: Callable[[], list[Message]]
     at_once: dict[str, Callable[[Message], Message]]
+    on_defect: Callable[[], None]
     viewers: list[Viewer] = field(default_factory=list[Viewer])
     controller: str = ""
     _jobs: queue.SimpleQueue[Callable[[], None] | None] = field(
@@ -110,7 +115,7 @@ class Session:
         self.on_frame(is_due)
 
     def announce_control(self) -> None:
-        """Tell every page who controls."""
+        """Show every page who controls."""
         for viewer in tuple(self.viewers):
             viewer.send(
                 {
@@ -172,24 +177,24 @@ class Session:
             self._control(viewer, str(message.get("word", "")))
             return reply({})
         if viewer.name != self.controller and name not in ("complete", "hover", "check"):
-            return reply({"error": "another page controls the cell; ask for control first"})
+            return reply({"error": "another page controls the cell; request control first"})
         if name in self.at_once:
             return reply(guarded(lambda: self.at_once[name](message)))
         self.post(lambda: reply(guarded(lambda: self.on_request(name, message))))
         return None
 
     def _control(self, viewer: Viewer, word: str) -> None:
-        """Ask for control, pass it on, or take it where nobody has it."""
+        """Request control, pass it on, or take it where no page has it."""
         present = {each.name for each in self.viewers}
         if word == "request":
             if not self.controller or self.controller not in present:
                 self.controller = viewer.name
             else:
-                self.broadcast({"type": "request", "page": viewer.name, "of": self.controller})
+                self.broadcast({"type": "request", "page": alias(viewer.name)})
         elif word == "release" and viewer.name == self.controller:
             self.controller = next((n for n in present if n != viewer.name), viewer.name)
-        elif viewer.name == self.controller and word in present:
-            self.controller = word
+        elif viewer.name == self.controller:
+            self.controller = next((name for name in present if alias(name) == word), viewer.name)
         self.announce_control()
 
     def _run(self) -> None:
@@ -197,12 +202,20 @@ class Session:
             try:
                 job = self._jobs.get(timeout=0.5 * FRAME)
             except queue.Empty:
-                self.frame()
-                continue
+                job = self.frame
             if job is None:
                 return
-            job()
-            self.frame()
+            try:
+                job()
+            except Exception:  # noqa: BLE001 - the thread goes on, and with it everyone's session
+                trace = traceback.format_exc()
+                self.broadcast({"type": "note", "kind": "failed", "text": printable(trace)})
+                self.on_defect()
+
+
+def alias(name: str) -> str:
+    """A name for a page that other pages may know; its own name is what it controls with."""
+    return hashlib.sha256(name.encode()).hexdigest()[:12]
 
 
 def guarded(action: Callable[[], Message]) -> Message:
@@ -210,7 +223,8 @@ def guarded(action: Callable[[], Message]) -> Message:
     try:
         return action()
     except SpecError as error:
-        return {"error": "; ".join(problem.message for problem in error.problems)}
+        said = [": ".join(filter(None, (each.message, each.hint))) for each in error.problems]
+        return {"error": "; ".join(said)}
     except (HarnessError, ValueError, KeyError, TypeError) as error:
         text = str(error) if isinstance(error, HarnessError) else f"a bad request: {error!r}"
         return {"error": text}

@@ -26,9 +26,9 @@ def pose_keys(description: RobotDescription, group: str, pose: SE3, frame: str) 
     """The goal keys of a TCP pose in a frame, which the arm's joints are enough for.
 
     Args:
-        description: The robot.
-        group: The planning group.
-        pose: T_frame_tcp.
+        description: The description of the robot.
+        group: The name of the planning group.
+        pose: The pose T_frame_tcp of the TCP.
         frame: The name of the frame.
     """
     place: dict[str, Any] = {} if frame == "world" else {"frame": frame}

@@ -37,7 +37,7 @@ class Studio(GoalActions):
         Raises:
             SpecError: The file's text has mistakes.
         """
-        files.refuse_outside(Document(text))
+        files.refuse_outside(Document(text, str(files.path)))
         studio = cls(files, text, notice)
         if unsaved is not None:
             studio.do_edit({"text": unsaved})
@@ -245,7 +245,7 @@ class Studio(GoalActions):
 
     def _refuse_mistakes(self) -> None:
         if self.problems or self.text != self.cell.document.text:
-            raise RefusedError("the scenario has mistakes; mend the marked lines first")
+            raise RefusedError("the scenario has mistakes; correct the marked lines first")
 
     def _take_text(self, text: str) -> None:
         """Make a text the scenario's, and show it on every page."""

@@ -29,7 +29,7 @@ class Served:
         self.port = self.server.get_port()
         self.address = f"http://127.0.0.1:{self.port}/"
 
-    def asked(self, action, **keys):
+    def reply_to(self, action, **keys):
         """The reply to a request, given in the cell's thread as one of a page is."""
         done, replies = threading.Event(), []
 

@@ -2,6 +2,7 @@
 
 import asyncio
 import http.client
+import json
 
 import pytest
 import websockets
@@ -88,23 +89,54 @@ def test_other_machines_need_the_token(shared):
 
 
 def test_files_outside_the_folder_are_neither_read_nor_written(served):
-    reply = served.asked("save", name="../other.scenario.yaml")
+    reply = served.reply_to("save", name="../other.scenario.yaml")
     assert "outside the folder" in reply["error"]
-    assert "ends in .scenario.yaml" in served.asked("save", name="x.py")["error"]
+    assert "ends in .scenario.yaml" in served.reply_to("save", name="x.py")["error"]
     text = served.studio.text.replace("robot: open_manipulator_x", "robot: {urdf: /etc/passwd}")
-    [problem] = served.asked("edit", text=text)["document"]["problems"]
+    [problem] = served.reply_to("edit", text=text)["document"]["problems"]
     assert "`/etc/passwd` is outside" in problem["text"]
     text = served.studio.saved.replace("world: empty", "world: ../../secret.yaml")
-    [problem] = served.asked("edit", text=text)["document"]["problems"]
+    [problem] = served.reply_to("edit", text=text)["document"]["problems"]
     assert (problem["line"], "is outside" in problem["text"]) == (3, True)
-    served.asked("edit", text=served.studio.saved)
+    served.reply_to("edit", text=served.studio.saved)
+
+
+def test_no_page_can_publish_the_studio_through_a_tunnel(served):
+    from viser._messages import ShareUrlRequest
+
+    handlers = served.server._websock_server._incoming_handlers  # noqa: SLF001 - viser has no other way
+    assert ShareUrlRequest not in handlers
+
+
+def test_a_page_does_not_learn_the_name_with_which_another_controls(served):
+    async def requested():
+        address = f"ws://127.0.0.1:{served.port}/studio/ws"
+        async with websockets.connect(address) as first, websockets.connect(address) as second:
+            await first.send(json.dumps({"page": "secret-of-the-first"}))
+            await first.recv()
+            await second.send(json.dumps({"page": "second"}))
+            await second.send(json.dumps({"do": "control", "word": "request", "number": 1}))
+            await second.send(json.dumps({"do": "reset", "number": 2}))
+            heard = ""
+            while '"number": 2' not in heard:
+                heard += await second.recv()
+            return heard
+
+    heard = asyncio.run(requested())
+    assert "secret-of-the-first" not in heard
+    assert "another page controls the cell" in heard
+
+
+def test_a_defect_in_an_action_does_not_end_the_session(served):
+    served.studio.session.post(lambda: 1 / 0)
+    assert served.reply_to("reset") == {}
 
 
 def test_a_bad_request_is_answered_and_harms_nothing(served):
-    assert "no action" in served.asked("shutdown")["error"]
-    assert "bad request" in served.asked("jog", joint="joint1")["error"]
-    assert "bad request" in served.asked("goal", xyz=["a"], rpy=[])["error"]
-    assert served.asked("reset") == {}
+    assert "no action" in served.reply_to("shutdown")["error"]
+    assert "bad request" in served.reply_to("jog", joint="joint1")["error"]
+    assert "bad request" in served.reply_to("goal", xyz=["a"], rpy=[])["error"]
+    assert served.reply_to("reset") == {}
 
 
 def test_unsaved_work_survives_a_crash(serve):
@@ -112,10 +144,10 @@ def test_unsaved_work_survives_a_crash(serve):
 
     first = serve()
     text = first.studio.text.replace("steps: []", "steps:\n  - wait: 1 s")
-    first.asked("edit", text=text)
+    first.reply_to("edit", text=text)
     assert first.files.restored() == text  # the process may end here
     again = Studio.opened(first.files, first.studio.saved, first.files.restored(), "found")
     assert again.text == text
     assert again.cell.document.step_count == 1
-    first.asked("save")
+    first.reply_to("save")
     assert first.files.restored() is None

@@ -177,7 +177,7 @@ def test_a_second_page_watches_until_it_is_given_control(browser, opened, served
     second.page.press('input[aria-label="joint1 number"]', "Enter")
     second.wait_text("#log", "another page controls the cell")
     second.page.click("#control")
-    opened.wait_text("#log", "Another page asks for control")
+    opened.wait_text("#log", "Another page requests control")
     opened.page.click("#log button:has-text('Hand over')")
     second.wait_text("#control-state", "you control")
     opened.wait_text("#control-state", "you watch")

@@ -327,6 +327,27 @@ class CoalScene:
         found.sort(key=lambda item: (item[0].distance, item[0].first, item[0].second))
         return found
 
+    def nearest_points(self, joint_positions: FloatArray) -> tuple[Touch, FloatArray] | None:
+        """The nearest pair, and its nearest points in the world, shape (2, 3).
+
+        Pairs with an object come first; two links are always near each other.
+        """
+        found = self.distances(joint_positions)
+        links = self.description.link_names
+        with_object = [each for each in found if not {each[0].first, each[0].second} <= {*links}]
+        if not found:
+            return None
+        touch, pair = (with_object or found)[0]
+        model = self.collision_model()
+        robot, geometry = model.robot, model.geometry
+        data = geometry.createData()
+        configuration = robot.configuration(np.asarray(joint_positions, dtype=float))
+        pin.updateGeometryPlacements(robot.model, robot.data, geometry, data, configuration)
+        results = [pin.computeDistance(geometry, data, row) for row in pair.pairs]
+        nearest = min(results, key=lambda each: each.min_distance)
+        points = np.stack([nearest.getNearestPoint1(), nearest.getNearestPoint2()])
+        return touch, points
+
     def is_allowed(self, first: str, second: str) -> bool:
         """Whether the robot's description or the scene lets two bodies touch."""
         links = self.description.link_names

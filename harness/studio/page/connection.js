@@ -11,7 +11,7 @@ export function on(type, listener) { (listeners[type] ??= []).push(listener); }
 
 function emit(type, message) { for (const listener of listeners[type] ?? []) listener(message); }
 
-export function ask(name, keys = {}) {
+export function request(name, keys = {}) {
   return new Promise((resolve) => {
     if (socket?.readyState !== WebSocket.OPEN) return resolve({ error: "not connected" });
     const own = ++number;

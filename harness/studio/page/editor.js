@@ -1,6 +1,6 @@
 // The scenario's text: marked mistakes, completion and descriptions, all of them from the program.
 
-import { ask, on } from "./connection.js";
+import { request, on } from "./connection.js";
 import { $, element } from "./dom.js";
 
 /* global ace */
@@ -27,7 +27,7 @@ export function start() {
   editor.completers = [{
     identifierRegexps: [/[\w./-]/],
     getCompletions: (_e, _s, at, _prefix, callback) =>
-      ask("complete", { text: text(), line: at.row, column: at.column }).then((reply) =>
+      request("complete", { text: text(), line: at.row, column: at.column }).then((reply) =>
         callback(null, (reply.options ?? []).map((each, index) => ({
           caption: each.text, value: each.kind === "key" ? `${each.text}: ` : each.text,
           meta: each.kind, docText: each.help, score: 1000 - index }))))
@@ -63,7 +63,7 @@ export function nextBreakpoint() {
 async function check() {
   sent = text();
   const began = performance.now();
-  const reply = await ask("edit", { text: sent });
+  const reply = await request("edit", { text: sent });
   window.lintMilliseconds = performance.now() - began;
   if (reply.document && text() === sent) show(reply.document);
   else if (reply.error) $("problems").textContent = reply.error;
@@ -94,7 +94,7 @@ function hover(event) {
   clearTimeout(hovering);
   const at = event.getDocumentPosition();
   hovering = setTimeout(async () => {
-    const reply = await ask("hover", { text: text(), line: at.row, column: at.column });
+    const reply = await request("hover", { text: text(), line: at.row, column: at.column });
     editor.container.title = reply.text ?? "";
   }, 250);
 }

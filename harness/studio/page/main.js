@@ -1,6 +1,6 @@
 // The page: what the buttons, sliders and keys do, and how the cell's numbers are shown.
 
-import { ask, connect, on, page } from "./connection.js";
+import { request, connect, on, page } from "./connection.js";
 import { $, element, log, numbers, options } from "./dom.js";
 import * as editor from "./editor.js";
 import { eulerOf } from "./turns.js";
@@ -11,7 +11,7 @@ const degrees = (value, joint) => (joint.slides ? `${(1000 * value).toFixed(1)} 
 
 async function act(name, keys = {}) {
   if (name !== "jog" && name !== "stop") await editor.flush();
-  const reply = await ask(name, keys);
+  const reply = await request(name, keys);
   if (reply.error) {
     log("failed", reply.error);
     for (const line of reply.explanation ?? []) log("explanation", line);
@@ -92,13 +92,13 @@ on("control", (message) => {
   document.body.classList.toggle("spectator", !isMine);
   $("control-state").textContent = isMine ? (message.pages > 1 ? `you control; ${message.pages} pages` : "") : "you watch";
   $("control").hidden = isMine && message.pages < 2;
-  $("control").textContent = isMine ? "Pass control on" : "Ask for control";
+  $("control").textContent = isMine ? "Pass control on" : "Request control";
 });
 
 on("request", (message) => {
   if (!isMine) return;
-  const line = element("div", { class: "entry warning", role: "alert" }, "Another page asks for control. ",
-    element("button", { onclick: () => { ask("control", { word: message.page }); line.remove(); } }, "Hand over"),
+  const line = element("div", { class: "entry warning", role: "alert" }, "Another page requests control. ",
+    element("button", { onclick: () => { request("control", { word: message.page }); line.remove(); } }, "Hand over"),
     element("button", { onclick: () => line.remove() }, "Keep"));
   $("log").prepend(line);
 });
@@ -167,7 +167,7 @@ click("run-next", () => act("run", { until: "next" }));
 click("back", () => act("back"));
 click("undo", () => act("undo"));
 click("step-run", () => run($("step-text").value));
-click("control", () => ask("control", { word: isMine ? "release" : "request" }));
+click("control", () => request("control", { word: isMine ? "release" : "request" }));
 click("goal-here", () => { if (state) { showGoal(state.tcp); setGoal(); } });
 click("goal-set", () => setGoal());
 click("camera-look", async () => {
