@@ -239,7 +239,7 @@ def verdict_line(verdict: Verdict) -> str:
     """Status, margin and reason in one line."""
     text = verdict.status
     if not math.isnan(verdict.margin):
-        text += f" by {abs(verdict.margin):.4g} {_unit(verdict.unit)}".rstrip()
+        text += f" by {abs(verdict.margin):.3g} {_unit(verdict.unit)}".rstrip()
     if not math.isnan(verdict.time):
         text += f" at t={verdict.time:.3f} s"
     return f"{text}: {verdict.reason}" if verdict.reason else text
