@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
+from rosbags.serde.errors import SerdeError
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
 FOLLOW = "control_msgs/action/FollowJointTrajectory"
 GRIPPER = "control_msgs/action/GripperCommand"
+PADDING = 32
+"""Bytes that may follow a message: rclpy's serialisation leaves some."""
+
 TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
 CANCEL = "action_msgs/action/CancelGoal"
 """The service action_msgs/srv/CancelGoal; rosbags takes no messages of the folder `srv`."""
@@ -108,6 +113,21 @@ def _default(kind: Any) -> Any:
     if element[0] == Nodetype.BASE and element[1][0] != "string":
         return np.zeros(size or 0, dtype=np.dtype(element[1][0].replace("octet", "uint8")))
     return [_default(element) for _ in range(size or 0)]
+
+
+def decoded(payload: bytes, kind: str) -> Any:
+    """The message of a serialised one, padding at its end left out.
+
+    Raises:
+        SerdeError: These bytes are no such message; other exceptions of rosbags are possible too.
+    """
+    try:
+        return _STORE.deserialize_cdr(payload, kind)
+    except SerdeError:
+        for cut in range(4, PADDING, 4):
+            with suppress(SerdeError):
+                return _STORE.deserialize_cdr(payload[:-cut], kind)
+        raise
 
 
 def stamp(seconds: float) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import importlib.util
 import os
 import time
 from collections.abc import Callable
@@ -10,8 +11,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from harness.ros.graph import Publisher, Reply, ServiceClient
-from harness.ros.interfaces import CANCEL, typestore
+from harness.ros.interfaces import CANCEL, decoded, typestore
 from harness.ros.rtps.participant import NetworkError
+
+OPTIONAL = "tf2_msgs/"
+"""A package that installations have and wheels lack; frames are left out without it."""
 
 _PARTS = ("SendGoal", "GetResult")
 
@@ -29,7 +33,16 @@ class _Codec:
         return self.serialization.deserialize_message(data, self.ros_type)
 
     def from_ros(self, content: Any) -> Any:
-        return typestore().deserialize_cdr(self.serialization.serialize_message(content), self.kind)
+        return decoded(self.serialization.serialize_message(content), self.kind)
+
+
+class _Silent:
+    """Stands for a topic whose message package is not installed."""
+
+    subscribers = 0
+
+    def publish(self, message: Any) -> None:
+        """Publish nothing."""
 
 
 @dataclass
@@ -100,6 +113,8 @@ class RclpyGraph:
         reliable: bool = True,
         depth: int = 10,
     ) -> Publisher:
+        if kind.startswith(OPTIONAL) and importlib.util.find_spec("tf2_msgs") is None:
+            return _Silent()
         codec = self._codec(kind)
         profile = self._profile(latched, reliable, depth)
         return _Publisher(self._node.create_publisher(codec.ros_type, topic, profile), codec)

@@ -11,8 +11,9 @@ from harness.language.expectation import ExpectationFields
 from harness.ports import ExternalRequest
 from harness.recording.run import ObjectRecord, RobotRecord, Run, Signals, StepRecord
 
-EVERY = 0.5
-"""Simulated time between two looks [s]: a number of the language, so that a replay ends alike."""
+EVERY, SHARE = 0.5, 0.05
+"""Simulated time between two looks [s], and at least this share of the step's time: a look reads
+the whole record. Wall time has no part in it, so that a replay ends alike."""
 
 
 class Recorder(Protocol):
@@ -37,7 +38,7 @@ class Watch:
     def __post_init__(self) -> None:
         self._begin = self.recorder.time
         self._first = max(0, self.recorder.sample_count - 1)
-        self._looks = 0
+        self._next = EVERY
 
     @property
     def elapsed(self) -> float:
@@ -45,12 +46,11 @@ class Watch:
         return self.recorder.time - self._begin
 
     def holds(self) -> bool:
-        """Whether the expectation passes now; looked up only every half second."""
+        """Whether the expectation passes now; False between two looks."""
         until = self.request.until
-        looks = int((self.elapsed + 1e-9) / EVERY)
-        if not isinstance(until, ExpectationFields) or looks == self._looks:
+        if not isinstance(until, ExpectationFields) or self.elapsed < self._next - 1e-9:
             return False
-        self._looks = looks
+        self._next = self.elapsed + max(EVERY, SHARE * self.elapsed)
         step = StepRecord(
             id=self.request.step,
             path=self.request.step,

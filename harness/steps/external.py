@@ -35,7 +35,8 @@ class External(Step):
     )
     until: AnyExpectation | None = Field(
         default=None,
-        description="The step ends when this holds; it is looked at twice a simulated second.",
+        description="The step ends when this holds. It is evaluated twice a simulated second, and "
+        "after ten seconds whenever the step has become a twentieth longer.",
     )
     launch: Name | None = Field(
         default=None,

@@ -144,3 +144,23 @@ def test_a_gripper_stalls_on_an_object(tmp_path):
         assert (closed.result.reached_goal, closed.result.stalled) == (False, True)
         refused = node.send(grip(0.5), node.gripper)
         assert refused.is_accepted is False
+
+
+@pytest.mark.determinism
+def test_twenty_recorded_sessions_replay_to_their_digests(tmp_path):
+    """Each session has commands at other moments: the wall clock chose them."""
+    digests = {}
+    for number in range(20):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        run = {"report_dir": folder / "run"}
+        with bridge(scenario(folder), waits=True, run=run) as (node, results):
+            node.ready()
+            first = node.arm.send(follow(point(0.5, [0.1, 0.1, 0, 0])))
+            node.sleep(0.01 * number)
+            node.arm.cancel(first)
+            node.gripper.send(grip(0.001 * number))
+            node.send(follow(point(0.4, END)))
+        digests[number] = results[0].case.digest
+        assert replay(folder / "run").digest == digests[number]
+    assert len(set(digests.values())) > 10

@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any
 
 from harness.ros.graph import Reply
-from harness.ros.interfaces import CANCEL, message, typestore
+from harness.ros.interfaces import CANCEL, decoded, message, typestore
 from harness.ros.rtps import wire
 from harness.ros.rtps.participant import Participant
 from harness.ros.rtps.reader import Received
@@ -172,7 +172,7 @@ class RtpsGraph:
     ) -> Any:
         def deliver(received: Received) -> None:
             try:
-                content = typestore().deserialize_cdr(received.payload, kind)
+                content = decoded(received.payload, kind)
             except Exception:  # noqa: BLE001 - bytes of another program; no content of them is certain
                 self.unreadable += 1
                 return

@@ -1,0 +1,114 @@
+"""The controllers as functions of time: no transport, and the physics where it is the subject."""
+
+import numpy as np
+import pytest
+from scipy.interpolate import BPoly
+
+from harness.core.spatial import SE3
+from harness.robot.description import Joint
+from harness.ros.control.goals import Code, GoalRefused
+from harness.ros.control.spline import Spline
+from harness.ros.control.trajectory import Defaults, TrajectoryController
+
+JOINTS = [
+    Joint(name, "revolute", "a", "b", SE3.identity(), np.array([0, 0, 1.0]), -2.0, 2.0)
+    for name in ("first", "second")
+]
+REST = (np.zeros((1, 2)), np.zeros((1, 2)), np.zeros((1, 2)))
+TIMES = np.arange(1, 201) * 0.01
+
+
+def content(*points, names=("first", "second"), **fields):
+    rows = [{"time": t, "positions": p, "velocities": v, "accelerations": []} for t, p, v in points]
+    return {"joint_names": list(names), "points": rows, **fields}
+
+
+def controller(**tolerances):
+    return TrajectoryController("arm", JOINTS, Defaults(**tolerances))
+
+
+def refused(**fields):
+    with pytest.raises(GoalRefused) as error:
+        controller().begin("g", fields, 1.0, REST)
+    return error.value.code
+
+
+@pytest.mark.parametrize("order", [1, 3, 5])
+def test_segments_are_those_of_hermite_interpolation(order):
+    rng = np.random.default_rng(order)
+    knots, data = np.array([0.0, 0.3, 1.0, 1.1]), rng.normal(size=(3, 4, 2))
+    given = data[: (order + 1) // 2]
+    reference = BPoly.from_derivatives(knots, np.moveaxis(given, 0, 1))
+    times = np.linspace(0.0, 1.0999, 57)
+    found = Spline(knots, *given).at(times)
+    for derivative, rows in enumerate(found):
+        assert np.allclose(rows, reference(times, nu=derivative), atol=1e-6 * 10**derivative)
+
+
+def test_joints_in_another_order_are_sorted_and_the_start_is_the_last_set_point():
+    arm = controller()
+    arm.begin("g", content((1.0, [0.4, 0.2], [0, 0]), names=("second", "first")), 0.0, REST)
+    positions, velocities, _ = arm.set_points(np.array([0.0, 0.5, 1.0, 2.0]))
+    assert np.allclose(positions, [[0, 0], [0.1, 0.2], [0.2, 0.4], [0.2, 0.4]])
+    assert np.allclose(velocities[[0, 2, 3]], 0)
+
+
+def test_points_that_are_over_are_left_out():
+    arm = controller()
+    late = content((0.5, [1, 1], [0, 0]), (2.0, [0.5, 0.5], [0, 0]), stamp=10.0)
+    arm.begin("g", late, 11.0, REST)
+    positions, _, _ = arm.set_points(np.array([11.0, 12.0]))
+    assert np.allclose(positions, [[0, 0], [0.5, 0.5]])
+
+
+def test_a_stamp_in_the_future_delays_and_one_of_another_clock_does_not():
+    arm = controller()
+    arm.begin("g", content((1.0, [1, 1], [0, 0]), stamp=15.0), 10.0, REST)
+    assert np.allclose(arm.set_points(np.array([16.0]))[0], 1.0)
+    assert (arm.set_points(np.array([15.0]))[0] < 0.99).all()
+    arm.begin("g", content((1.0, [1, 1], [0, 0]), stamp=1.79e9), 10.0, REST)
+    assert np.allclose(arm.set_points(np.array([11.0]))[0], 1.0)
+
+
+def test_each_mistake_has_its_error_code():
+    good = content((1.0, [0, 0], [0, 0]))
+    assert refused(**{**good, "joint_names": []}) is Code.INVALID_JOINTS
+    assert refused(**{**good, "joint_names": ["first", "third"]}) is Code.INVALID_JOINTS
+    assert refused(**{**good, "joint_names": ["first"]}) is Code.INVALID_JOINTS
+    assert refused(**{**good, "points": []}) is Code.INVALID_GOAL
+    assert refused(**content((0.0, [0, 0], []), (0.0, [0, 0], []))) is Code.INVALID_GOAL
+    assert refused(**content((1.0, [0, 2.1], []))) is Code.INVALID_GOAL
+    assert refused(**content((1.0, [0, np.inf], []))) is Code.INVALID_GOAL
+    assert refused(**content((1.0, [0, 0], [0, 1]))) is Code.INVALID_GOAL
+    assert refused(**content((0.1, [0, 0], []), stamp=0.5)) is Code.OLD_HEADER_TIMESTAMP
+    unknown = [{"name": "third", "position": 0.1, "velocity": 0.0}]
+    assert refused(**good, path_tolerance=unknown) is Code.INVALID_JOINTS
+
+
+def test_the_first_sample_beyond_the_path_tolerance_decides():
+    arm = controller(path=0.05)
+    arm.begin("g", content((2.0, [1, 0], [0, 0])), 0.0, REST)
+    desired = arm.set_points(TIMES)
+    lagging = desired[0].copy()
+    lagging[50:, 0] -= 0.06
+    ended = arm.judge(TIMES, desired, lagging, desired[1])
+    assert (ended.goal, ended.code) == ("g", Code.PATH_TOLERANCE_VIOLATED)
+    assert "'first' is off by 0.06 rad (tolerance 0.05 rad) at t=0.510 s" in ended.message
+    assert not arm.is_active
+
+
+@pytest.mark.parametrize(
+    ("bound", "code"), [(-1.0, Code.SUCCESSFUL), (0.0, None), (0.2, Code.SUCCESSFUL)]
+)
+def test_a_goal_s_own_tolerance_replaces_the_default(bound, code):
+    arm = controller(goal=0.01, goal_time=0.5)
+    own = [{"name": "first", "position": bound, "velocity": 0.0}]
+    arm.begin("g", content((2.0, [1, 0], [0, 0]), goal_tolerance=own), 0.0, REST)
+    desired = arm.set_points(TIMES)
+    off = desired[0] + [0.1, 0.0]
+    ended = arm.judge(TIMES, desired, off, desired[1])
+    assert (ended and ended.code) == code
+    if code is None:
+        later = TIMES + 0.5
+        ended = arm.judge(later, arm.set_points(later), off, desired[1])
+        assert ended.code is Code.GOAL_TOLERANCE_VIOLATED
