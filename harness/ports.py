@@ -359,7 +359,13 @@ class Kinematics(Protocol):
         ...
 
     def solve(
-        self, group: str, goal: PoseGoal | PositionGoal, seed_positions: FloatArray, seed: int
+        self,
+        group: str,
+        goal: PoseGoal | PositionGoal,
+        seed_positions: FloatArray,
+        seed: int,
+        *,
+        enough: int | None = None,
     ) -> Sequence[FloatArray]:
         """Every known solution within position limits, nearest to `seed_positions` first.
 
@@ -368,6 +374,7 @@ class Kinematics(Protocol):
             goal: What the link must do.
             seed_positions: Description order; joints outside the group stay there.
             seed: The seed of the restarts of numeric solvers.
+            enough: The number of solutions with which a numeric solver stops; None for a spread.
 
         Returns:
             Group joint positions, shape (dof,) each; empty when there is none.
@@ -514,6 +521,7 @@ class IkRequest:
         description: The robot, with its URDF and SRDF.
         link_pose: T_world_link of the goal's link at joint positions of shape (dof,).
         seed: The only source of randomness; the same request must give the same answer.
+        enough: The number of solutions with which a search may stop; None for a spread.
     """
 
     goal: PoseGoal | PositionGoal
@@ -522,6 +530,7 @@ class IkRequest:
     description: RobotDescription
     link_pose: Callable[[FloatArray], SE3]
     seed: int
+    enough: int | None = None
 
     @property
     def rng(self) -> np.random.Generator:

@@ -174,6 +174,18 @@ def test_any_chain_is_solved_numerically_and_the_same_every_time():
     assert max(shift, angle) < 1e-7
 
 
+def test_the_first_numeric_solution_alone_is_the_one_that_a_spread_begins_with():
+    description = replace(ur("ur3e"), ik_solver="numeric")
+    kinematics = PinocchioKinematics(description)
+    seed = np.zeros(len(description.joint_names))
+    reached = whole(description, [0.5, -1.0, 1.0, -0.7, -1.2, 0.3])
+    goal = PoseGoal("tool0", kinematics.link_pose(reached, "tool0"))
+    [first] = kinematics.solve(ARM, goal, seed, 5, enough=1)
+    spread = kinematics.solve(ARM, goal, seed, 5)
+    assert len(spread) > 1
+    assert any(np.allclose(first, other, atol=1e-9) for other in spread)
+
+
 def test_link_poses_of_many_samples_are_those_of_pinocchio():
     description = ur("ur3e")
     kinematics = PinocchioKinematics(description)

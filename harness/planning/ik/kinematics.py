@@ -57,14 +57,26 @@ class PinocchioKinematics:
         )
 
     def solve(
-        self, group: str, goal: PoseGoal | PositionGoal, seed_positions: FloatArray, seed: int
+        self,
+        group: str,
+        goal: PoseGoal | PositionGoal,
+        seed_positions: FloatArray,
+        seed: int,
+        *,
+        enough: int | None = None,
     ) -> Sequence[FloatArray]:
         """Every known solution within position limits, nearest to `seed_positions` first."""
         space = GroupSpace(self.robot, group, seed_positions)
-        return self.analyse(space, goal, seed_positions, seed).solutions
+        return self.analyse(space, goal, seed_positions, seed, enough=enough).solutions
 
     def analyse(
-        self, space: GroupSpace, goal: LinkGoal, seed_positions: FloatArray, seed: int
+        self,
+        space: GroupSpace,
+        goal: LinkGoal,
+        seed_positions: FloatArray,
+        seed: int,
+        *,
+        enough: int | None = None,
     ) -> IkAnswer:
         """Solve inverse kinematics and classify every candidate.
 
@@ -76,7 +88,7 @@ class PinocchioKinematics:
             point = goal.pose.translation
             goal = PositionGoal(goal.link, point, position_tolerance=goal.position_tolerance)
         reference = space.part(seed_positions)
-        request = self.request(space, goal, seed_positions, seed)
+        request = self.request(space, goal, seed_positions, seed, enough=enough)
         solver = self._solver(request)
         is_own = is_built_in(solver.name)
         result = solver().solve(request) if is_own else solve_with_third_party(solver, request)
@@ -98,7 +110,13 @@ class PinocchioKinematics:
         )
 
     def request(
-        self, space: GroupSpace, goal: LinkGoal, seed_positions: FloatArray, seed: int
+        self,
+        space: GroupSpace,
+        goal: LinkGoal,
+        seed_positions: FloatArray,
+        seed: int,
+        *,
+        enough: int | None = None,
     ) -> IkRequest:
         """What a solver is given for a goal; `seed_positions` in description order."""
         return IkRequest(
@@ -108,6 +126,7 @@ class PinocchioKinematics:
             self.description,
             lambda positions: self.link_pose(space.whole(positions), goal.link),
             seed,
+            enough,
         )
 
     def _solver(self, request: IkRequest) -> type[IkSolver]:

@@ -19,6 +19,11 @@ RESTARTS, MOST_RESTARTS = 24, 64
 Success rates of every bundled arm are in docs/reference/inverse_kinematics.md."""
 
 _CONVERGED = 1e-9  # [m, rad] error at which least squares stop
+_WINDOW = 8  # iterations over which progress is measured
+_CONVERGES = 0.8
+"""Share of the squared error that remains after a window, above which a restart is cheaper."""
+_MINIMUM = 1 - 1e-9
+"""The same share at a minimum, of a goal that cannot be reached."""
 _FOUND = 1e-8  # [m, rad] largest error of a solution
 _NO_HEADING = 1e-9  # [1] horizontal part below which the x axis is vertical
 _VERTICAL = 1e-6  # [1] cosine below which a pitch is a quarter turn
@@ -47,7 +52,10 @@ class LinkTask:
         self._turn = metres_per_radian
         self._robot = space.robot
         self._frame = space.robot.frame_id(goal.link)
-        self._columns = space.robot.velocity_columns
+        model = space.robot.model
+        self._drive = np.zeros((model.nv, space.dof))
+        self._drive[space.robot.velocity_columns] = space.matrix
+        self._goal_rotation = np.asarray(goal.pose.rotation) if isinstance(goal, PoseGoal) else None
 
     def link_pose(self, positions: FloatArray) -> SE3:
         """T_world_link at group positions."""
@@ -56,27 +64,25 @@ class LinkTask:
     def evaluate(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Error (m,) and Jacobian (m, dof) at positions; a step `pinv(J) @ error` closes in."""
         error, jacobian = self._evaluate(positions)
-        error[3:] *= self._turn
-        jacobian[3:] *= self._turn
+        if self._turn != 1.0:
+            error[3:] *= self._turn
+            jacobian[3:] *= self._turn
         return error, jacobian
 
     def _evaluate(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
         model, data = self._robot.model, self._robot.data
         configuration = self._robot.configuration(self.space.whole(positions))
-        pin.computeJointJacobians(model, data, configuration)
+        whole = pin.computeFrameJacobian(
+            model, data, configuration, self._frame, pin.LOCAL_WORLD_ALIGNED
+        )
         placement = pin.updateFramePlacement(model, data, self._frame)
-        whole = pin.getFrameJacobian(model, data, self._frame, pin.LOCAL_WORLD_ALIGNED)
-        whole = whole.reshape(6, -1)  # one joint gives a one-dimensional array
-        jacobian = whole[:, self._columns] @ self.space.matrix
+        jacobian = whole.reshape(6, -1) @ self._drive  # one joint gives a one-dimensional array
         rotation = placement.rotation
         goal = self.goal
         if isinstance(goal, PoseGoal):
-            error = np.concatenate(
-                [
-                    goal.pose.translation - placement.translation,
-                    pin.log3(goal.pose.rotation @ rotation.T),
-                ]
-            )
+            error = np.empty(6)
+            error[:3] = goal.pose.translation - placement.translation
+            error[3:] = pin.log3(self._goal_rotation @ rotation.T)
             return error, jacobian
         shift = goal.position - placement.translation
         if goal.pitch is None:
@@ -106,11 +112,19 @@ class LinkTask:
             positions, error, jacobian = candidate, new_error, new_jacobian
         return positions, float(np.linalg.norm(error))
 
-    def least_squares(self, seed: FloatArray, iterations: int = 100) -> tuple[FloatArray, float]:
+    def least_squares(
+        self, seed: FloatArray, iterations: int = 100, *, remaining: float = _MINIMUM
+    ) -> tuple[FloatArray, float]:
         """Damped least squares inside the position limits, from one seed.
 
         Levenberg-Marquardt with the damping proportional to the squared error [1]; joints
         at a limit that would exceed it are excluded from a step.
+
+        Args:
+            seed: The joint positions to start from, shape (dof,).
+            iterations: The largest number of iterations.
+            remaining: The share of the squared error above which the search ends, if it remains
+                after `_WINDOW` iterations.
 
         Returns:
             Joint positions and the norm of the error there.
@@ -119,36 +133,49 @@ class LinkTask:
             [1] T. Sugihara, "Solvability-Unconcerned Inverse Kinematics by the
                 Levenberg-Marquardt Method", IEEE T-RO 27(5), 2011.
         """
-        space = self.space
-        positions = np.clip(seed, space.lower, space.upper)
+        lower, upper = self.space.lower, self.space.upper
+        positions = np.minimum(np.maximum(seed, lower), upper)
         error, jacobian = self.evaluate(positions)
         cost, factor = float(error @ error), 1.0
+        earlier = [np.inf] * _WINDOW
         for _ in range(iterations):
-            if cost < _CONVERGED**2:
+            if cost < _CONVERGED**2 or cost > remaining * earlier[0]:
                 break
-            gradient = jacobian.T @ error
-            free = ~(
-                ((positions <= space.lower) & (gradient < 0))
-                | ((positions >= space.upper) & (gradient > 0))
-            )
+            earlier = [*earlier[1:], cost]
             damping = factor * 0.5 * cost + 1e-12
-            normal = jacobian[:, free].T @ jacobian[:, free] + damping * np.eye(int(free.sum()))
-            step = np.zeros(space.dof)
-            step[free] = np.linalg.solve(normal, gradient[free])
-            candidate = np.clip(positions + step, space.lower, space.upper)
+            candidate = _damped_step(positions, error, jacobian, damping, lower, upper)
             new_error, new_jacobian = self.evaluate(candidate)
             new_cost = float(new_error @ new_error)
             if new_cost < cost:
-                stalled = cost - new_cost < 1e-10 * cost
                 positions, error, jacobian, cost = candidate, new_error, new_jacobian, new_cost
                 factor = max(factor * 0.3, 1e-3)
-                if stalled:
-                    break
             else:
                 factor *= 10.0
                 if factor > 1e8:
                     break
         return positions, float(np.sqrt(cost))
+
+
+def _damped_step(
+    positions: FloatArray,
+    error: FloatArray,
+    jacobian: FloatArray,
+    damping: float,
+    lower: FloatArray,
+    upper: FloatArray,
+) -> FloatArray:
+    """The positions after a step of damped least squares; joints that exceed a limit stop there."""
+    transposed = jacobian.T
+    gradient, normal = transposed @ error, transposed @ jacobian
+    normal.ravel()[:: len(gradient) + 1] += damping
+    target = positions + np.linalg.solve(normal, gradient)
+    inside = np.minimum(np.maximum(target, lower), upper)
+    free = target == inside
+    if free.all() or not free.any():
+        return inside
+    step = np.linalg.solve(normal[np.ix_(free, free)], gradient[free])
+    inside[free] = np.minimum(np.maximum(positions[free] + step, lower[free]), upper[free])
+    return inside
 
 
 def sample_group_positions(space: GroupSpace, rng: np.random.Generator) -> FloatArray:
@@ -166,7 +193,7 @@ def solve_numeric(
     *,
     restarts: int = RESTARTS,
     most_restarts: int = MOST_RESTARTS,
-    enough: int = 1000,
+    enough: int | None = None,
 ) -> list[FloatArray]:
     """Find joint positions that bring a link to its goal, from the seed and from random restarts.
 
@@ -177,7 +204,7 @@ def solve_numeric(
         seed: The seed of the restarts; the same seed gives the same result.
         restarts: The number of searches from random positions after the first.
         most_restarts: The largest number of searches while no solution is found.
-        enough: The number of solutions that ends the search.
+        enough: The number of solutions that ends the search; None for a spread.
 
     Returns:
         Distinct solutions in order of finding, exact to 1e-9, inside the limits; may be empty.
@@ -187,9 +214,9 @@ def solve_numeric(
     found: list[FloatArray] = []
     start = np.asarray(seed_positions, dtype=float)
     for number in range(1 + max(restarts, most_restarts)):
-        if len(found) >= enough or (found and number > restarts):
+        if len(found) == enough or (found and number > restarts):
             break
-        positions, error = task.least_squares(start)
+        positions, error = task.least_squares(start, remaining=_CONVERGES)
         if error < _FOUND and all(space.distance(positions, other) > 1e-4 for other in found):
             found.append(positions)
         start = sample_group_positions(space, rng)

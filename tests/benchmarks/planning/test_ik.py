@@ -1,4 +1,4 @@
-"""All branches of a UR's inverse kinematics, against eaik's on the same poses."""
+"""Inverse kinematics: all branches of a UR against eaik's, and six arms without a closed form."""
 
 import statistics
 import time
@@ -9,9 +9,13 @@ from eaik.IK_HP import HPRobot
 
 from harness.language.scenario import RobotSpec
 from harness.planning.ik.kinematics import PinocchioKinematics
+from harness.planning.ik.numeric import sample_group_positions, solve_numeric
 from harness.planning.ik.ur import UrGeometry, solve_ur
+from harness.planning.model.robot_model import GroupSpace
 from harness.ports import PoseGoal
 from harness.robot.load import load_robot
+from tests.installed import is_installed
+from tests.packages.arms import ARMS
 
 GROUP = "ur_manipulator"
 POSES = 1000
@@ -59,6 +63,55 @@ def test_all_branches_of_a_ur_in_microseconds(model, print_row):
         print_row(heading, name, f"{1e6 * median:.1f}", f"{branches:.2f}")
     assert min(counts) >= 1
     assert ours <= LONGEST
+
+
+NUMERIC = (
+    "panda_description/urdf/panda.urdf",
+    "xarm_description/urdf/xarm7.urdf",
+    "kinova_description/robots/kinova.urdf",
+    "franka_robot_model/fr3.urdf",
+    "so_arm_description/urdf/so100.urdf",
+    "talos_data/robots/talos_left_arm.urdf",
+)
+"""Arms of six and seven joints in the packages of the extra `packages`."""
+
+NUMERIC_POSES, SPREADS = 1000, 100
+GOAL = "first 0.25 ms, 99.9 % solved, a spread 3 ms"
+
+
+@pytest.mark.benchmark
+@pytest.mark.skipif(not is_installed("example-robot-data"), reason="is in the extra `packages`")
+@pytest.mark.parametrize("file", NUMERIC)
+def test_numeric_solutions_of_random_reachable_poses(file, print_row):
+    arm = next(arm for arm in ARMS if arm.file == file)
+    description = load_robot(RobotSpec.model_validate(arm.words(with_srdf=False)))
+    kinematics, start = PinocchioKinematics(description), description.start_positions()
+    space = GroupSpace(kinematics.robot, description.arm_group, start)
+    rng, first, spread, solved, counts = np.random.default_rng(3), [], [], 0, []
+    for number in range(NUMERIC_POSES):
+        positions = space.whole(sample_group_positions(space, rng))
+        goal = PoseGoal(description.tcp_link, kinematics.link_pose(positions, description.tcp_link))
+        begin = time.process_time_ns()
+        solved += bool(solve_numeric(space, goal, space.part(start), number, enough=1))
+        first.append(time.process_time_ns() - begin)
+        if number < SPREADS:
+            begin = time.process_time_ns()
+            counts.append(len(solve_numeric(space, goal, space.part(start), number)))
+            spread.append(time.process_time_ns() - begin)
+    heading = f"numeric inverse kinematics, ms of CPU time (goal: {GOAL})"
+    if file == NUMERIC[0]:
+        print_row(heading, "arm", "joints", "solved", "first", "95 %", "spread", "solutions")
+    print_row(
+        heading,
+        file.split("/")[0],
+        f"{space.dof}",
+        f"{100 * solved / NUMERIC_POSES:.1f} %",
+        f"{1e-6 * statistics.median(first):.2f}",
+        f"{1e-6 * np.percentile(first, 95):.2f}",
+        f"{1e-6 * statistics.median(spread):.2f}",
+        f"{statistics.mean(counts):.1f}",
+    )
+    assert solved >= 0.99 * NUMERIC_POSES
 
 
 def _median(call, arguments) -> float:

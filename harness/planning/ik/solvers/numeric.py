@@ -18,10 +18,11 @@ class NumericSolver(IkSolver):
     def solve(self, request: IkRequest) -> IkResult:
         """Solve for the goal; an arm of few joints for the part of a pose that it can choose."""
         goal, space = request.goal, cast("GroupSpace", request.space)
-        found = solve_numeric(space, goal, request.seed_positions, request.seed)
+        enough = request.enough
+        found = solve_numeric(space, goal, request.seed_positions, request.seed, enough=enough)
         if isinstance(goal, PoseGoal) and not found and space.dof < WHOLE_POSE_JOINTS:
             part = reduced(space.dof, goal)
-            found = solve_numeric(space, part, request.seed_positions, request.seed)
+            found = solve_numeric(space, part, request.seed_positions, request.seed, enough=enough)
         return IkResult(tuple(found))
 
 
