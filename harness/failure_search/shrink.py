@@ -23,9 +23,10 @@ def shrink(space: SearchSpace, failing: Point, fails: Fails) -> Point:
     """Reduce a failing point: first the number of changed parameters, then the size of each change.
 
     The first part is delta debugging [1]: no changed parameter of the result can be given its
-    nominal value. In the second part every number moves to the nominal one, together and then each
-    alone, by bisection: none can move nearer by one more step and still fail. The order of all
-    trials is fixed, so that the result is the same every time.
+    nominal value. A single parameter may change more than in the failing point, up to the end of
+    its range, if that is enough. In the second part every number moves to the nominal one, together
+    and then each alone, by bisection: none can move nearer by one more step and still fail. The
+    order of all trials is fixed, so that the result is the same every time.
 
     Args:
         space: The parameters that vary, with their nominal values.
@@ -37,6 +38,9 @@ def shrink(space: SearchSpace, failing: Point, fails: Fails) -> Point:
             Transactions on Software Engineering 28(2), 2002.
     """
     shrinking = _Shrinking(space, fails)
+    alone = [shrinking.one_number(point, i) for i, point in shrinking.alone(failing)]
+    if alone:
+        return min(alone, key=space.distance)
     point = shrinking.with_fewest_changes(failing)
     point = shrinking.along_the_ray(point)
     for _ in range(MOST_ROUNDS):
@@ -53,12 +57,38 @@ class _Shrinking:
     space: SearchSpace
     fails: Fails
 
+    def alone(self, point: Point) -> list[tuple[int, Point]]:
+        """The points with one changed parameter that fail, with its index.
+
+        The parameter has the value of the failing point, else the end of its range beyond.
+        """
+        changed = self.space.changed(point)
+        found: list[tuple[int, Point]] = []
+        for values in (point, self._at_ends(point)):
+            candidates = [self._only(values, (index,)) for index in changed]
+            failed = self.fails(candidates)
+            found = [
+                (index, candidate)
+                for index, candidate, is_failing in zip(changed, candidates, failed, strict=True)
+                if is_failing
+            ]
+            if found:
+                break
+        return found
+
+    def _at_ends(self, point: Point) -> Point:
+        """The point with every changed number at the end of its range."""
+        values = list(point)
+        for index in self.space.changed(point):
+            parameter = self.space.parameters[index]
+            if parameter.is_number:
+                is_above = parameter.number(point[index]) > parameter.number(parameter.nominal)
+                values[index] = parameter.value(parameter.bounds[is_above])
+        return tuple(values)
+
     def with_fewest_changes(self, point: Point) -> Point:
         """Give as many parameters as possible their nominal value."""
         changed = self.space.changed(point)
-        alone = self._first_failing(point, [(index,) for index in changed])
-        if alone is not None:
-            return self._only(point, alone)
         parts = 2
         while len(changed) > 1:
             subsets = _split(changed, parts)

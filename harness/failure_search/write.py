@@ -112,12 +112,12 @@ def write_search(found: SearchResult, written: Sequence[WrittenFailure], folder:
     Raises:
         HarnessError: A file cannot be written.
     """
-    reports = {id(each.failure.nearest): each.result for each in written}
-    samples = [found.nominal, *found.exploration.samples, *(f.nearest for f in found.failures)]
-    cases = [
-        SuiteCase(_with_report(each, reports.get(id(each))), found.space.values(each.point))
-        for each in samples
+    runs = [
+        (replace(found.nominal.result, case="nominal"), found.nominal.point),
+        *((each.result, each.point) for each in found.exploration.samples),
+        *((_reported(each), each.failure.nearest.point) for each in written),
     ]
+    cases = [SuiteCase(result, found.space.values(point)) for result, point in runs]
     outcome = "failed" if is_failing(found) else "passed"
     start = found.exploration.start
     rates = [_sampled(found, failure_rate(start))] if start else []
@@ -130,10 +130,12 @@ def is_failing(found: SearchResult) -> bool:
     return found.nominal.result.outcome != "passed" or bool(found.failures)
 
 
-def _with_report(sample: Sample, reported: CaseResult | None) -> CaseResult:
-    if reported is None:
-        return sample.result
-    return replace(sample.result, report_dir=reported.report_dir, page=reported.page)
+def _reported(written: WrittenFailure) -> CaseResult:
+    """The run of a shrunk failure, with the name and the report of its scenario file."""
+    name = written.file.name.removesuffix(SUFFIX)
+    report, page = written.result.report_dir, written.result.page
+    result = written.failure.nearest.result
+    return replace(result, case=name, report_dir=report, page=page)
 
 
 def _sampled(found: SearchResult, rate: FailureRate) -> SampledRate:

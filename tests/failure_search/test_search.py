@@ -127,6 +127,17 @@ def test_a_scenario_that_fails_as_written_needs_no_search(tmp_path, capsys):
     assert "the scenario fails as its file has it" in capsys.readouterr().out
 
 
+def test_a_single_parameter_at_a_larger_change_is_preferred_to_two(tmp_path):
+    """A sample fails with x + z > 0.5; x alone is enough, further out."""
+    text = SAFE.replace("x(ball) < 3", "x(ball) + z(ball) < 0.95")
+    code, found = search(tmp_path, text, "--runs", "8", "--start", "8")
+    assert code == 1
+    [failure] = found["failures"]
+    assert failure["changed"] in (["x"], ["z"])
+    total = failure["values"]["x"] + failure["values"]["z"]
+    assert total == pytest.approx(0.95, abs=0.005)
+
+
 @pytest.mark.search
 def test_a_thin_failure_is_found_within_100_runs_in_18_of_20_seeds(tmp_path):
     found = []
