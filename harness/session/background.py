@@ -40,6 +40,7 @@ class Background(Generic[T]):
         self._reading, writing = Pipe(duplex=False)
         self._pid = os.fork()
         if self._pid == 0:
+            self._reading.close()  # so that writing fails once the parent is gone
             _compute(function, writing)
         writing.close()
 

@@ -1,6 +1,9 @@
-"""Simulated seconds per wall second of the flagship lesson, and of its physics alone."""
+"""The flagship lesson: command to verdict and report, its parts, and its physics alone."""
 
+import os
 import statistics
+import subprocess
+import sys
 import time
 
 import mujoco
@@ -36,9 +39,9 @@ class Raced(Recording):
             ("recorded", lambda: Recording.advance(self, controls, commands, command_velocities)),
         ]
         for name, race in races if Raced.races % 2 else reversed(races):
-            begin = time.perf_counter()
+            begin = time.process_time()
             race()
-            setattr(Raced, name, getattr(Raced, name) + time.perf_counter() - begin)
+            setattr(Raced, name, getattr(Raced, name) + time.process_time() - begin)
         Raced.steps += len(commands)
         Raced.races += 1
         assert np.array_equal(self._twin.qpos, self._data.qpos)
@@ -78,7 +81,35 @@ def test_flagship_lesson_by_parts_against_bare_physics(print_row, tmp_path, monk
     row("all", statistics.median(sum(run.wall_times.values()) for run in runs))
 
     heading = f"physics alone, {steps:.0f} steps in turns, medians of {REPETITIONS}"
-    print_row(heading, "loop", "wall", "us a step", "x bare", "goal")
+    print_row(heading, "loop", "processor", "us a step", "x bare", "goal")
     for name, wall, goal in (("bare mj_step", bare, ""), ("recorded", recorded, f"{GOAL}x")):
         cells = (f"{wall:.2f} s", f"{1e6 * wall / steps:.1f}", f"{wall / bare:.3f}x", goal)
         print_row(heading, name, *cells)
+
+
+@pytest.mark.benchmark
+def test_command_to_verdict_and_to_the_finished_report(print_row, tmp_path):
+    """Wall seconds, and the largest process of all; for a machine that does nothing else."""
+    rows = []
+    for number in range(REPETITIONS):
+        folder = tmp_path / str(number)
+        command = [sys.executable, "-m", "harness.cli", "run", str(FLAGSHIP)]
+        begin = time.perf_counter()
+        with subprocess.Popen(
+            [*command, "--report-dir", str(folder)], stdout=subprocess.PIPE, text=True
+        ) as process:
+            while "passed" not in process.stdout.readline():
+                assert process.poll() is None
+            verdict = time.perf_counter() - begin
+            process.stdout.read()
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+        report = time.perf_counter() - begin
+        rows.append((verdict, report, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024))
+    verdict, report, processor, memory = map(statistics.median, zip(*rows, strict=True))
+    heading = f"harness run of the flagship, medians of {REPETITIONS}"
+    print_row(heading, "figure", "measured", "goal")
+    print_row(heading, "verdict on the terminal", f"{verdict:.2f} s", "2.0 s")
+    print_row(heading, "finished report", f"{report:.2f} s", "2.5 s")
+    print_row(heading, "processor time of all processes", f"{processor:.2f} s", "")
+    print_row(heading, "largest process", f"{memory:.0f} MB", "300 MB")

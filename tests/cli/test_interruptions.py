@@ -72,6 +72,7 @@ def test_an_interrupted_suite_counts_what_is_missing(folder):
     assert "--resume" in lines
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_at_any_moment_ends_a_command_without_a_traceback(folder, number):
     for delay in (0.02, 0.05, 0.1, 0.15, 0.3, 0.6, 1.2):

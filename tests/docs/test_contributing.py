@@ -65,12 +65,14 @@ def commands(section):
     return [line for block in COMMANDS.findall(SECTIONS[section]) for line in block.splitlines()]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("section", ["Add a step", "Add an expectation", "Add a planner"])
 def test_a_worked_example_runs(tree, section):
     printed = [carry_out(tree, command) for command in commands(section)]
     assert "passed" in printed[-1]
 
 
+@pytest.mark.slow
 def test_what_was_added_reaches_every_output(tree):
     carry_out(tree, ".venv/bin/python -m docs.generate")
     assert "turn_joint  armharness  Turn one joint by an angle" in re.sub(
@@ -91,6 +93,7 @@ def test_what_was_added_reaches_every_output(tree):
     assert "turn_joint joint1 by 0.523599 rad" in explained
 
 
+@pytest.mark.slow
 def test_what_was_added_satisfies_the_checks_of_the_page(tree):
     checks = [command for command in commands("Checks") if "pyright" not in command]
     assert len(checks) == 3
@@ -98,6 +101,7 @@ def test_what_was_added_satisfies_the_checks_of_the_page(tree):
         carry_out(tree, command)
 
 
+@pytest.mark.slow
 def test_an_expectation_without_evidence_is_named(tree):
     file = tree / "tests/expectations/test_tcp_height.py"
     text = file.read_text(encoding="utf-8")
