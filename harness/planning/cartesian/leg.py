@@ -126,7 +126,8 @@ def transition(first: Leg, second: Leg, radius: float, checker: MotionChecker) -
 
     The link's pose is a mean of where both legs have it, whose weight goes over from the first to
     the second by 6 u^5 - 15 u^4 + 10 u^3, so that it joins both with the same velocity and
-    acceleration.
+    acceleration. A redundant arm has many joint positions for a pose: it takes those next to the
+    same mean of the joint positions of both legs, so that it arrives where the second leg is.
 
     Raises:
         PlanningFailed: INVALID_MOTION_PLAN, when the sphere is larger than a leg or something is
@@ -147,8 +148,13 @@ def transition(first: Leg, second: Leg, radius: float, checker: MotionChecker) -
     count = max(10, int(np.ceil(2 * radius / BLEND_STEP)))
     positions = [first.at(np.array([leaves]))[0]]
     for u in np.linspace(0.0, 1.0, count + 1)[1:]:
-        pose = _between(first.pose(leaves + u * (1 - leaves)), second.pose(u * enters), u)
-        positions.append(_follow(first, pose, positions, checker))
+        before, after = leaves + u * (1 - leaves), u * enters
+        pose = _between(first.pose(before), second.pose(after), u)
+        guess = 2 * positions[-1] - positions[-2] if len(positions) > 1 else positions[-1]
+        if _is_redundant(checker.space.dof):
+            start, end = first.at(np.array([before]))[0], second.at(np.array([after]))[0]
+            guess = start + _weight(u) * (end - start)
+        positions.append(_follow(first, pose, guess, checker))
     last = second.at(np.array([enters]))[0]
     if float(np.abs(positions[-1] - last).max()) > _SAME:
         raise PlanningFailed(
@@ -161,8 +167,17 @@ def transition(first: Leg, second: Leg, radius: float, checker: MotionChecker) -
     return Transition(leaves, enters, np.array(positions))
 
 
+def _is_redundant(dof: int) -> bool:
+    """Whether an arm has more joints than `link_goal` fixes: a pose, or a position and a pitch."""
+    return dof > 6 or dof == 5
+
+
+def _weight(u: float) -> float:
+    return ((6 * u - 15) * u + 10) * u**3
+
+
 def _between(first: SE3, second: SE3, u: float) -> SE3:
-    weight = ((6 * u - 15) * u + 10) * u**3
+    weight = _weight(u)
     turn = pin.log3(second.rotation @ first.rotation.T)
     return SE3(
         pin.exp3(weight * turn) @ first.rotation,
@@ -170,10 +185,9 @@ def _between(first: SE3, second: SE3, u: float) -> SE3:
     )
 
 
-def _follow(leg: Leg, pose: SE3, before: list[FloatArray], checker: MotionChecker) -> FloatArray:
-    """The free joint positions that bring the link to a pose, from those just before."""
+def _follow(leg: Leg, pose: SE3, guess: FloatArray, checker: MotionChecker) -> FloatArray:
+    """The free joint positions that bring the link to a pose, next to a guess."""
     task = LinkTask(checker.space, link_goal(leg.link, pose, checker.space.dof))
-    guess = 2 * before[-1] - before[-2] if len(before) > 1 else before[-1]
     found, error = task.polish(guess, iterations=20)
     space = checker.space
     if error > _SOLVED or np.any(found < space.lower) or np.any(found > space.upper):

@@ -76,7 +76,7 @@ DIRECTIONS = np.concatenate([NORMALS, -NORMALS, _spread_directions(78)])
 """Directions whose farthest points stand for a hull where cuts are compared."""
 
 MOST_EMPTY = 20_000
-"""Largest number of voxels that stand for the empty space around a mesh."""
+"""Largest number of points that stand for the surface of a mesh, and for the space around it."""
 
 FEW_SAMPLES, MANY_SAMPLES = 200, 2_000
 """Numbers of points with which cuts are compared, first all and then the best."""
@@ -174,13 +174,13 @@ class _Search:
 
     def __init__(self, grid: SolidGrid, tolerance: float) -> None:
         self.edge = grid.edge
-        self._surface = grid.surface
+        self._surface = _thinned(grid.surface, MOST_EMPTY)
         empty, depth = grid.deeper_than(tolerance)
         self._empty, self._depth = _thinned(empty, MOST_EMPTY), _thinned(depth, MOST_EMPTY)
 
     def piece(self, triangles: FloatArray) -> _Piece:
         """A piece with its measures."""
-        return self._measured(np.unique(triangles.reshape(-1, 3), axis=0), triangles)
+        return self._measured(triangles.reshape(-1, 3), triangles)
 
     def union(self, first: _Piece, second: _Piece) -> _Piece:
         """Two pieces as one, without its triangles."""
@@ -189,25 +189,28 @@ class _Search:
     def _measured(self, points: FloatArray, triangles: FloatArray) -> _Piece:
         hull = _hull(points)
         if hull is None:
-            return _Piece(triangles, points, 0.0, np.zeros((0, 3)), 0.0)
-        inside = _inside(hull, self._empty)
-        excess = float(self._depth[inside].max(initial=0.0))
+            return _Piece(triangles, np.unique(points, axis=0), 0.0, np.zeros((0, 3)), 0.0)
         corners = points[hull.vertices]
-        return _Piece(triangles, corners, excess, self._empty[inside], float(hull.volume))
+        small = _hull(_extreme(corners)) or hull  # a hull of fewer faces, slightly smaller
+        inside = _inside(small, self._empty)
+        excess = float(self._depth[inside].max(initial=0.0))
+        return _Piece(triangles, corners, excess, self._empty[inside], float(small.volume))
 
     def best_cut(self, piece: _Piece) -> tuple[FloatArray, float] | None:
         """Normal and offset of the cut that leaves the least empty space in convex hulls.
 
         All cuts are compared with few points, and the best of them again with many.
         """
-        inside = self._surface[_inside(ConvexHull(piece.points), self._surface, 1e-6)]
+        corners = _extreme(piece.points)
+        hull = _hull(corners) or ConvexHull(piece.points)
+        inside = self._surface[_inside(hull, self._surface, 1e-6)]
         cuts = [
             (normal, offset)
             for normal in NORMALS
             for offset in _offsets(piece.points @ normal, piece.empty @ normal, self.edge)
         ]
         for samples, kept in ((FEW_SAMPLES, GOOD_CUTS), (MANY_SAMPLES, 1)):
-            points = np.concatenate([_thinned(inside, samples), piece.points])
+            points = np.concatenate([_thinned(inside, samples), corners])
             empty = _thinned(piece.empty, samples)
             costs = [_cost(points, empty, *cut, PEEL / piece.volume) for cut in cuts]
             cuts = [cuts[number] for number in np.argsort(costs, kind="stable")[:kept]]
