@@ -47,6 +47,13 @@ def test_the_digest_of_the_studio_is_that_of_a_run_of_the_saved_file(cell):
     assert [each.margin for each in judged.verdicts] == [each.margin for each in result.verdicts]
 
 
+def test_the_nearest_points_of_robot_and_object_are_as_far_apart_as_the_two(cell):
+    touch, points = cell.nearest_pair()
+    assert touch.second == "box"
+    assert touch.distance > 0.01
+    assert np.linalg.norm(points[1] - points[0]) == pytest.approx(touch.distance, abs=1e-6)
+
+
 def test_a_step_back_restores_the_state_to_the_bit(cell):
     cell.run_steps(1)
     before, samples = full_state(cell)

@@ -338,13 +338,8 @@ class CoalScene:
         if not found:
             return None
         touch, pair = (with_object or found)[0]
-        model = self.collision_model()
-        robot, geometry = model.robot, model.geometry
-        data = geometry.createData()
-        configuration = robot.configuration(np.asarray(joint_positions, dtype=float))
-        pin.updateGeometryPlacements(robot.model, robot.data, geometry, data, configuration)
-        results = [pin.computeDistance(geometry, data, row) for row in pair.pairs]
-        nearest = min(results, key=lambda each: each.min_distance)
+        results = self.collision_model().shared.geometry_data.distanceResults
+        nearest = min((results[row] for row in pair.rows), key=lambda each: each.min_distance)
         points = np.stack([nearest.getNearestPoint1(), nearest.getNearestPoint2()])
         return touch, points
 
