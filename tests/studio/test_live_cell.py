@@ -49,7 +49,7 @@ def test_the_digest_of_the_studio_is_that_of_a_run_of_the_saved_file(cell):
 
 def test_the_nearest_points_of_robot_and_object_are_as_far_apart_as_the_two(cell):
     touch, points = cell.nearest_pair()
-    assert touch.second == "box"
+    assert (touch.first, touch.second) == ("link2", "ground_plane")
     assert touch.distance > 0.01
     assert np.linalg.norm(points[1] - points[0]) == pytest.approx(touch.distance, abs=1e-6)
 
