@@ -66,7 +66,8 @@ def open_graph(adapter: str, domain: int, *, node: str, is_local: bool = True) -
     """Join a domain.
 
     Raises:
-        NetworkError: The domain cannot be joined, or the adapter is not installed.
+        SpecError: There is no such domain, or the adapter is not installed.
+        NetworkError: The domain cannot be joined.
     """
     if adapter == "rclpy":
         from harness.ros.rclpy_graph import RclpyGraph

@@ -10,6 +10,7 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
 
+from harness.core.errors import Problem, SpecError
 from harness.ros.rtps.participant import NetworkError
 
 VARIABLE = "ROS_DOMAIN_ID"
@@ -21,13 +22,13 @@ def domain_of_user(given: int | None) -> int:
     """The domain that an option names, else that of ROS_DOMAIN_ID, else 0.
 
     Raises:
-        NetworkError: ROS_DOMAIN_ID is no number.
+        SpecError: ROS_DOMAIN_ID is no number.
     """
     if given is not None:
         return given
     text = os.environ.get(VARIABLE, "").strip() or "0"
     if not text.isdigit():
-        raise NetworkError(f"{VARIABLE} is {text!r}, which is no number")
+        raise SpecError([Problem(VARIABLE, 0, 0, f"{text!r} is no number")])
     return int(text)
 
 

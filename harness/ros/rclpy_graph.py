@@ -10,9 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from harness.core.errors import Problem, SpecError
 from harness.ros.graph import Publisher, Reply, ServiceClient
 from harness.ros.interfaces import CANCEL, decoded, typestore
-from harness.ros.rtps.participant import NetworkError
 
 OPTIONAL = "tf2_msgs/"
 """A package that installations have and wheels lack; frames are left out without it."""
@@ -85,7 +85,7 @@ class RclpyGraph:
             is_local: Whether it talks to this machine alone.
 
         Raises:
-            NetworkError: rclpy cannot be imported.
+            SpecError: rclpy or a message package cannot be imported.
         """
         if is_local:
             os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
@@ -95,7 +95,8 @@ class RclpyGraph:
             self._qos = importlib.import_module("rclpy.qos")
             task = importlib.import_module("rclpy.task")
         except ImportError as error:
-            raise NetworkError(f"--adapter rclpy: rclpy cannot be imported: {error}") from error
+            said = f"rclpy cannot be imported: {error}"
+            raise SpecError([Problem("--adapter rclpy", 0, 0, said)]) from error
         self._context = rclpy.Context()
         rclpy.init(context=self._context, domain_id=domain)
         self._node = rclpy.create_node(node, context=self._context)
@@ -184,7 +185,7 @@ class RclpyGraph:
             package, folder, name = kind.split("/")
             action, _, part = name.partition("_")
             if part not in _PARTS:
-                raise NetworkError(f"{kind} is no service of an action")
+                raise ValueError(f"{kind} is no service of an action")
             service = getattr(
                 getattr(_imported(f"{package}.{folder}"), action).Impl, f"{part}Service"
             )
@@ -197,4 +198,5 @@ def _imported(module: str) -> Any:
     try:
         return importlib.import_module(module)
     except ImportError as error:
-        raise NetworkError(f"--adapter rclpy needs the package `{module}`: {error}") from error
+        said = f"the package `{module}` cannot be imported: {error}"
+        raise SpecError([Problem("--adapter rclpy", 0, 0, said)]) from error

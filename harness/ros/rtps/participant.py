@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
 
-from harness.core.errors import HarnessError
+from harness.core.errors import HarnessError, Problem, SpecError
 from harness.ros.rtps import wire
 from harness.ros.rtps.reader import Reader, Received
 from harness.ros.rtps.writer import Address, Qos, Writer
@@ -74,10 +74,12 @@ class Participant:
             is_local: Whether it talks to this machine alone.
 
         Raises:
-            NetworkError: There is no such domain, or no free port.
+            SpecError: There is no such domain.
+            NetworkError: It has no free port.
         """
         if not 0 <= domain <= MOST_DOMAINS:
-            raise NetworkError(f"ROS domain {domain}: domains are 0 to {MOST_DOMAINS}")
+            said = f"domains are 0 to {MOST_DOMAINS}"
+            raise SpecError([Problem(f"ROS domain {domain}", 0, 0, said)])
         self.domain, self.name, self.is_local = domain, name, is_local
         self.prefix = wire.VENDOR + os.urandom(10)
         self._addresses = set(local_addresses().values()) | {LOOPBACK}
