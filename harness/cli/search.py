@@ -128,6 +128,8 @@ def _show(
     say(f"{found.request.file}: {len(exploration.samples)} runs over {names}")
     if exploration.start:
         say(failure_rate(exploration.start).sentence)
+    if found.uncounted:
+        say(f"{found.uncounted} runs are invalid or begin with an overlap, and do not count")
     if not written:
         say(f"{style.mark(True)} no failure was found")
     elif exploration.first_failure:

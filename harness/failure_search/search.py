@@ -76,6 +76,7 @@ class SearchResult:
         nominal: The run of the scenario as its file has it.
         exploration: Every run of the search.
         failures: One for each kind of failure; if the nominal scenario fails, none.
+        uncounted: Runs that are no evidence: invalid values, or overlaps where the file redraws.
     """
 
     request: SearchRequest
@@ -84,6 +85,7 @@ class SearchResult:
     nominal: Sample
     exploration: Exploration
     failures: tuple[Failure, ...]
+    uncounted: int = 0
 
 
 def search(
@@ -149,12 +151,19 @@ def search(
         seed=variation.seed if request.seed is None else request.seed,
     )
     if not exploration.start:
-        raise SpecError(exploration.samples[0].result.problems)
+        problems = [each for s in exploration.samples for each in s.result.problems]
+        if problems:
+            raise SpecError(problems[:1])
+        raise UsageError(
+            f"'{request.file}': bodies overlap at the start of every sample, so that none counts;"
+            " move them, widen the ranges, or leave out `redraw_overlaps`"
+        )
     failures: list[Failure] = []
     for kind, samples in exploration.kinds.items():
         on_stage(f"shrinking: {kind}")
         failures.append(_shrunk(space, evaluate, kind, samples))
-    return SearchResult(request, overrides, space, nominal, exploration, tuple(failures))
+    uncounted = sum(not is_counted(each) for each in exploration.samples)
+    return SearchResult(request, overrides, space, nominal, exploration, tuple(failures), uncounted)
 
 
 def _case_overrides(request: SearchRequest, variation: Variation) -> dict[str, str]:

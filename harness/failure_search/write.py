@@ -170,6 +170,7 @@ def search_document(found: SearchResult, written: Sequence[WrittenFailure]) -> d
             for each in found.space.parameters
         },
         "runs": len(exploration.samples),
+        "uncounted": found.uncounted,
         "first_failure": exploration.first_failure or None,
         "rate": failure_rate(exploration.start) if exploration.start else None,
         "failures": [

@@ -89,6 +89,8 @@ class RayCluster:
         Raises:
             HarnessError: The cluster cannot be reached, or a node has another installation.
         """
+        if all(is_needless(index) for index in range(len(jobs))):
+            return
         with _connected(self._name, self._workers) as ray:
             yield from _Batches(ray, self, jobs, hard_cap, is_needless).run()
 

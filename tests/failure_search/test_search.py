@@ -120,6 +120,26 @@ def test_what_cannot_be_searched_is_refused(tmp_path, capsys, text, options, mes
     assert not list(tmp_path.rglob("search.json"))
 
 
+def test_starts_with_overlaps_do_not_count_where_the_file_redraws_them(tmp_path, capsys):
+    post = (
+        "  - {name: post, box: {size: [0.4, 0.9, 0.7]}, pose: {xyz: [0.3, 0, 0.8]}, static: true}\n"
+    )
+    text = SAFE.replace("steps:", f"{post}redraw_overlaps: true\nsteps:")
+    text = text.replace(", static: true}\n  - {n", "}\n  - {n")
+    code, found = search(tmp_path, text, "--runs", "8", "--start", "8")
+    assert code == 0
+    assert found["uncounted"] > 0
+    assert found["rate"]["total"] == 8 - found["uncounted"]
+    assert f"{found['uncounted']} runs are invalid or begin with an overlap" in (
+        capsys.readouterr().out
+    )
+    everywhere = text.replace("[0.4, 0.9, 0.7]", "[3, 3, 3]")
+    file = tmp_path / "thin.scenario.yaml"
+    file.write_text(everywhere)
+    assert main(["search", str(file), "--runs", "2", "--report-dir", str(tmp_path / "no")]) == 2
+    assert "bodies overlap at the start of every sample" in capsys.readouterr().err
+
+
 def test_a_scenario_that_fails_as_written_needs_no_search(tmp_path, capsys):
     code, found = search(tmp_path, TWO_KINDS.replace("x: 0.0", "x: 0.4"))
     assert code == 1

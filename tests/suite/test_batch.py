@@ -128,3 +128,12 @@ def test_a_cluster_that_does_not_exist_is_refused(tmp_path, monkeypatch, capsys)
     Path("wait.scenario.yaml").write_text(SCENARIO)
     assert main(["run", "wait.scenario.yaml", "--on", "kubernetes"]) == 2
     assert "write ray, or ray://HOST:PORT" in capsys.readouterr().err
+
+
+def test_a_missing_ray_is_named_with_the_way_to_install_it(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(sys.modules, "ray", None)
+    Path("wait.scenario.yaml").write_text(SCENARIO)
+    assert main(["run", "wait.scenario.yaml", "--on", "ray"]) == 2
+    assert "pip install 'armharness[cluster]'" in capsys.readouterr().err
+    assert not Path("reports").exists()
