@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import signal
 import threading
 from pathlib import Path
 
@@ -59,18 +58,10 @@ def _run(arguments: argparse.Namespace) -> int:
     if not arguments.no_open:
         _open_browser(address)
     try:
-        _wait()
+        threading.Event().wait()  # until Ctrl-C or SIGTERM
     finally:
         studio.close()
     return 0
-
-
-def _wait() -> None:
-    """Wait for Ctrl-C or SIGTERM, which end the session and are no failure."""
-    over = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: over.set())
-    over.wait()
 
 
 def _open_browser(address: str) -> None:

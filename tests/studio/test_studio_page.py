@@ -143,6 +143,17 @@ def test_one_step_back_and_to_the_cursor(opened, served):
     assert served.studio.cell.is_run
 
 
+def test_a_breakpoint_stops_before_its_step(opened):
+    opened.page.click("#reset")
+    opened.wait_text("#status", "0 of 5 steps executed")
+    opened.page.evaluate("ace.edit('editor').gotoLine(10)")
+    opened.page.keyboard.press("F9")
+    opened.page.keyboard.press("F5")
+    opened.wait_text("#status", "2 of 5 steps executed")
+    opened.page.keyboard.press("F5")
+    opened.wait_text("#status", "5 of 5 steps executed")
+
+
 def test_a_mistake_is_marked_at_its_place_with_advice(opened):
     good = opened.editor()
     opened.type_scenario(good.replace("gripper: open", "gripper: opne"))

@@ -54,10 +54,11 @@ export function toggleBreakpoint(row) {
   else session.setBreakpoint(row);
 }
 
-/** The first line with a breakpoint that is in a step after those executed; 0 without one. */
+/** The first line of the next step with a breakpoint that is not the very next one; 0 without one. */
 export function nextBreakpoint() {
-  const rows = Object.keys(session.getBreakpoints()).map((row) => Number(row) + 1).filter((n) => session.getBreakpoints()[n - 1]);
-  return rows.sort((a, b) => a - b).find((n) => stepLines.filter((first) => first <= n).length > done) ?? 0;
+  const marked = Object.keys(session.getBreakpoints()).filter((row) => session.getBreakpoints()[row]).map((row) => Number(row) + 1);
+  const steps = marked.map((line) => stepLines.filter((first) => first <= line).length - 1).filter((step) => step > done);
+  return steps.length ? stepLines[Math.min(...steps)] : 0;
 }
 
 async function check() {

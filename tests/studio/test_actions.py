@@ -1,0 +1,103 @@
+"""What a page's requests do: objects, handles, cameras, reach, undo."""
+
+import base64
+
+import cv2
+import numpy as np
+import pytest
+
+from harness.core.resources import data_folder
+from harness.core.spatial import SE3
+from harness.studio.document import new_text
+from harness.studio.files import StudioFiles
+from harness.studio.session import guarded
+
+studio_module = pytest.importorskip("harness.studio.studio")
+ARM = {"model": "open_manipulator_x"}
+BOX = {"name": "box", "kind": "box", "size": [0.03, 0.03, 0.08], "xyz": [0.2, 0, 0.04]}
+
+
+@pytest.fixture
+def studio(tmp_path):
+    return opened(tmp_path, new_text("by hand", ARM, "empty"))
+
+
+def opened(folder, text):
+    files = StudioFiles(folder, folder / "x.scenario.yaml")
+    studio = studio_module.Studio.opened(files, text, None, "")
+    studio.speed = 0.0
+    return studio
+
+
+def reply(studio, action, **keys):
+    return guarded(lambda: studio.do(action, keys))
+
+
+def goal(studio, xyz, pitch):
+    return reply(studio, "goal", xyz=xyz, rpy=[0, pitch, 0], unit="deg", frame="world")
+
+
+def test_objects_are_added_resized_and_deleted_in_the_text(studio):
+    reply(studio, "add_object", **BOX)
+    assert studio.cell.object_poses()["box"].translation[2] == pytest.approx(0.04)
+    reply(studio, "add_object", **{**BOX, "kind": "sphere", "size": [0.05]})
+    assert "sphere: {radius: 0.025}" in studio.text
+    assert "box: {size" not in studio.text
+    assert "belongs to the world" in reply(studio, "delete_object", name="ground_plane")["error"]
+    assert reply(studio, "delete_object", name="box") == {}
+    assert "objects" not in studio.text
+
+
+def test_an_object_is_moved_in_the_text_at_the_start_and_live_afterwards(studio):
+    reply(studio, "add_object", **BOX)
+    turned = SE3.from_xyz_rpy([0.25, 0.1, 0.04], [0, 0, np.pi / 2])
+    studio.put_object("box", turned)
+    assert "xyz: [0.25, 0.1, 0.04], quat_wxyz: [0.70711, 0, 0, 0.70711]" in studio.text
+    reply(studio, "execute", step="gripper: open")
+    text = studio.text
+    studio.put_object("box", SE3.from_xyz_rpy([0.2, -0.1, 0.04], [0, 0, 0]))
+    assert studio.text == text
+    assert studio.cell.object_poses()["box"].translation[1] == pytest.approx(-0.1, abs=1e-3)
+    assert not studio.cell.is_run
+
+
+def test_objects_that_overlap_are_shown_before_anything_moves(studio):
+    reply(studio, "add_object", **{**BOX, "xyz": [0.2, 0, 0.03]})
+    [overlap] = studio_module.robot_message(studio.cell)["overlaps"]
+    assert overlap == "box and ground_plane overlap by 10.0 mm"
+
+
+def test_a_refusal_names_the_limit_the_pair_or_the_distance(studio):
+    reply(studio, "add_object", **BOX)
+    assert "joint4 at" in goal(studio, [0.2, 0, 0.02], 0)["refusal"]
+    assert "mm deep" in goal(studio, [0.2, 0, 0.015], 60)["refusal"]
+    assert "m away" in goal(studio, [0.9, 0, 0.1], 0)["refusal"]
+    assert goal(studio, [0.2, 0, 0.15], 60) == {"refusal": "", "ways": 1}
+
+
+def test_a_goal_is_recorded_in_the_chosen_frame(studio):
+    reply(studio, "add_object", **BOX)
+    goal(studio, [0.2, 0, 0.15], 60)
+    done = reply(studio, "execute", verb="move_to", frame="box")
+    assert done["step"] == ("move_to: {position: {frame: box, xyz: [0, 0, 0.11]}, pitch: 1.0472}")
+    assert studio.cell.tcp_pose().translation == pytest.approx([0.2, 0, 0.15], abs=2e-3)
+
+
+def test_undo_takes_the_step_out_of_the_text_and_the_state(studio):
+    before, start = studio.text, studio.cell.joint_positions()
+    reply(studio, "execute", step="ptp: {joints: {joint1: 0.4}}")
+    assert studio.cell.document.step_count == 1
+    reply(studio, "undo")
+    assert studio.text == before
+    assert np.array_equal(studio.cell.joint_positions(), start)
+
+
+def test_a_camera_shows_the_cell_as_it_is(tmp_path):
+    file = data_folder("scenarios") / "cameras/01_gripper_camera.scenario.yaml"
+    studio = opened(tmp_path, file.read_text())
+    [name, *_] = studio.cell.prepared.program.cameras
+    encoded = base64.b64decode(reply(studio, "camera", name=name)["image"])
+    picture = cv2.imdecode(np.frombuffer(encoded, np.uint8), cv2.IMREAD_COLOR)
+    camera = studio.cell.prepared.program.cameras[name]
+    assert picture.shape == (camera.height, camera.width, 3)
+    assert picture.std() > 5
