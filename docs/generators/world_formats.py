@@ -41,6 +41,21 @@ rigid body can have and a mass of 0 are refused. A camera sensor becomes a camer
 that object with the sensor's name, or `model::sensor` when several sensors have the same name;
 `capture` and `sees` refer to it."""
 
+AGREEMENT = """## Agreement with SDFormat
+
+As in SDFormat, every pose, frame and joint of a file is checked, whether something refers to it or
+not: unknown frames, frames in a cycle, a joint whose parent is its child, the world as a joint's
+child, two elements of one name, and two worlds of one name are errors. These files are valid for
+SDFormat and are treated differently:
+
+| file | treatment | reason |
+| --- | --- | --- |
+| a second world of another name | left out, with a note | a scenario has one world |
+| an included actor; a light that a model includes | left out, with a note | see the elements |
+| a step outside 0.1 to 20 ms | taken as 1 ms, with a note | contacts need short steps |
+| frames on each other more than 50 deep | refused | it bounds the time that a file takes |
+| SDF 1.3 and older | refused | `gz sdf -p` converts it |"""
+
 WORDS_HEAD = """## Elements of SDF
 
 SDF 1.4 to 1.11. *Read* elements have an effect. *Ignored* elements lead to a note, unless they
@@ -102,6 +117,7 @@ def formats_page() -> str:
         HEAD,
         MODELS.format(variables=variables),
         BECOMES,
+        AGREEMENT,
         WORDS_HEAD,
         sdf_table(),
         SCENES,

@@ -130,7 +130,7 @@ URDF_ROWS = (
         read(f"`<mesh>` of {suffix.upper()}", meaning, CYLINDER, MESH.format(f"part.{suffix}"),
               lambda arm: shape(arm) == "Mesh")
         for suffix, meaning in (
-            ("stl", "its convex hull touches; `scale` counts"),
+            ("stl", "its convex parts touch; `scale` counts"),
             ("obj", "the same"),
             ("dae", "the same; `unit` counts, `up_axis` does not, as in RViz"),
         )

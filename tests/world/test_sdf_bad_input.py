@@ -83,7 +83,7 @@ BOMB = "<!DOCTYPE b [<!ENTITY a 'aaaaaaaaaa'>" + "".join(
             "is outside the folders that may be read",
         ),
         (text_with("include", "\n<uri>model://crat</uri>"), 27, "`model://crat` is not found"),
-        (text_with("physics", "\n<max_step_size>1</max_step_size>"), 5, "a physics step of 1 s"),
+        (text_with("physics", "\n<max_step_size>0</max_step_size>"), 5, "longer than 0 s, not 0 s"),
     ],
 )
 def test_a_mistake_is_reported_at_its_line(tmp_path, text, line, message):

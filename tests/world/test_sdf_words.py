@@ -192,7 +192,7 @@ READ = {
     ("material", "ambient"): None,  # below: where there is no diffuse
     ("material", "script"): None,
     ("joint", "parent"): ("<parent>world</parent>", lambda w: the(w, "m::lid").static),
-    ("joint", "child"): ("<child>world</child>", lambda w: the(w, "m::l").static),
+    ("joint", "child"): ("<parent>world</parent><child>l</child>", lambda w: the(w, "m::l").static),
     ("joint", "pose"): None,  # below: a frame
     ("frame", "pose"): ("<pose>0 0 2 0 0 0</pose>", lambda w: xyz(w)[2] == 1.75),
     ("light", "pose"): (

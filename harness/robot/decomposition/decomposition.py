@@ -72,7 +72,7 @@ def _spread_directions(count: int) -> FloatArray:
     return np.column_stack([radius * np.cos(turn), radius * np.sin(turn), height])
 
 
-DIRECTIONS = np.concatenate([NORMALS, -NORMALS, _spread_directions(78)])
+DIRECTIONS = np.concatenate([NORMALS, -NORMALS, _spread_directions(160)])
 """Directions whose farthest points stand for a hull where cuts are compared."""
 
 MOST_EMPTY = 20_000

@@ -157,7 +157,7 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
         "sphere": _read("radius"),
         "capsule": _read("radius, and length without the round ends"),
         "plane": _read("solid below its surface, unbounded"),
-        "mesh": _read("its convex hull, with `scale`"),
+        "mesh": _read("its convex parts, with `scale`"),
         "empty": _read("no shape"),
         "ellipsoid": _refused("in a collision; not drawn in a visual"),
         "cone": _refused("in a collision; not drawn in a visual"),
@@ -169,7 +169,7 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
         "uri": _read("as in an include, or relative to the file"),
         "scale": _read("factor of the file's coordinates"),
         "submesh": _ignored("the whole mesh is used"),
-        "convex_decomposition": _ignored("the convex hull collides"),
+        "convex_decomposition": _ignored("`collision` of the scenario chooses"),
     },
     "surface": {
         "friction": _read("see friction"),
@@ -236,7 +236,9 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
         "visualize": _ignored("lights are not drawn"),
     },
     "physics": {
-        "max_step_size": _read("the physics step, 0.1 ms to 20 ms"),
+        "max_step_size": _read(
+            "the physics step, 0.1 ms to 20 ms; others are taken as 1 ms, with a note"
+        ),
         "gravity": _read("as before SDF 1.5, m/s^2"),
         "real_time_factor": _ignored("there is no wall clock"),
         "real_time_update_rate": _ignored("there is no wall clock"),

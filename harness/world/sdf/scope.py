@@ -10,7 +10,7 @@ from harness.core.errors import SpecError
 from harness.core.spatial import SE3
 from harness.language.files.mistakes import did_you_mean
 from harness.language.files.xml_file import XmlElement
-from harness.world.sdf.values import PlacedPose
+from harness.world.sdf.values import PlacedPose, text_of
 
 OWN = ("", "__model__")
 WORLD = "world"
@@ -138,3 +138,25 @@ class SdfScope:
         known = [*self.named, *(f"{name}::" for name in self.nested)]
         hint = did_you_mean(name, known, "frames")
         raise SpecError([element.problem(f"there is no frame '{name}' here", hint)])
+
+
+def check_frames(scope: SdfScope) -> None:
+    """Check every pose and joint of a scope and of its models, needed or not, as SDFormat does.
+
+    Raises:
+        SpecError: A frame is unknown or relative to itself, or a joint connects what it cannot.
+    """
+    for name, item in scope.named.items():
+        scope.locate(name, item.element)
+        if item.kind == "joint":
+            _check_joint(item.element)
+        elif item.kind == "model":
+            check_frames(scope.nested[name])
+
+
+def _check_joint(joint: XmlElement) -> None:
+    parent, child = text_of(joint, "parent"), text_of(joint, "child")
+    if child == WORLD:
+        (joint.find("child") or joint).refuse("the child of a joint cannot be the world")
+    if parent == child:
+        (joint.find("child") or joint).refuse(f"'{child}' is parent and child of this joint")

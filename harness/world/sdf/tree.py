@@ -10,7 +10,7 @@ from harness.language.files.xml_file import XmlElement, read_xml
 from harness.world.notes import Notes
 from harness.world.sdf.elements import note_unread_elements
 from harness.world.sdf.model_path import ModelPath, model_file
-from harness.world.sdf.scope import WORLD, Named, SdfScope
+from harness.world.sdf.scope import WORLD, Named, SdfScope, check_frames
 from harness.world.sdf.values import PlacedPose, is_flag, is_true, pose_of, text_of
 
 OLDEST, NEWEST = (1, 4), (1, 11)
@@ -50,6 +50,8 @@ class SdfTree:
         sdf = self._sdf(path)
         worlds = sdf.findall("world")
         for other in worlds[1:]:
+            if other.get("name") == worlds[0].get("name"):
+                other.refuse("another <world> has this name", at="name")
             self.notes.add(other.place, "a second <world> is left out")
         self.root = worlds[0] if worlds else sdf
         note_unread_elements(sdf, "sdf", self.notes)
@@ -58,6 +60,7 @@ class SdfTree:
         self.world = SdfScope("", self.root, path.parent)
         self.lights = [SdfLight(light, pose_of(light)) for light in self.root.findall("light")]
         self._fill(self.world, (path.resolve(),))
+        check_frames(self.world)
 
     def _sdf(self, path: Path) -> XmlElement:
         """The `<sdf>` of a file."""
@@ -173,6 +176,11 @@ class SdfTree:
                 self.lights.append(SdfLight(light, pose_of(element if given else light)))
             if sdf.findall("light"):
                 return
+        if not sdf.findall("model"):
+            for tag in ("actor", "light"):
+                if sdf.find(tag) is not None:
+                    self.notes.add(element.place, f"an included <{tag}> is left out")
+                    return
         model = self._model_of(sdf, path, uri)
         name = text_of(element, "name") or model.need("name").strip()
         is_merged = is_true(element, element.get("merge", "false"))

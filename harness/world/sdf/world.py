@@ -84,10 +84,14 @@ def _physics(root: XmlElement, notes: Notes) -> PhysicsSpec:
         step = physics.find("max_step_size")
         if step is not None:
             (value,) = numbers_of(step, 1)
-            if not SHORTEST_STEP <= value <= LONGEST_STEP:
-                limits = f"{SHORTEST_STEP:g} to {LONGEST_STEP:g} s"
-                step.refuse(f"a physics step of {value:g} s is not supported", f"steps: {limits}")
-            words["timestep"] = value
+            if value <= 0:
+                step.refuse(f"a physics step is longer than 0 s, not {value:g} s")
+            if SHORTEST_STEP <= value <= LONGEST_STEP:
+                words["timestep"] = value
+            else:
+                supported = f"{SHORTEST_STEP:g} to {LONGEST_STEP:g} s are supported"
+                taken = PhysicsSpec().timestep
+                notes.add(step.place, f"a step of {value:g} s is taken as {taken:g} s: {supported}")
         gravity = gravity or physics.find("gravity")
     if gravity is not None:
         words["gravity"] = numbers_of(gravity, 3)
