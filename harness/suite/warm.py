@@ -27,12 +27,15 @@ RUN_MODULES = (
     "harness.session.run_case",
     "harness.session.timed_simulator",
     "harness.observation.clearance",
+    "harness.observation.link_overlaps",
+    "harness.observation.looks_differ",
     "harness.cameras.stills",
+    "harness.reporting.html.write",
     "pinocchio",
     "coal",
     "ompl.base",
 )
-"""Everything that a run imports."""
+"""What every run imports."""
 
 STOP_SECONDS = 5.0
 LOG_TAIL_BYTES = 4000
