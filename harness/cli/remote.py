@@ -77,7 +77,7 @@ class _Confirmation:
             trajectory.joint_names, trajectory.positions[0], trajectory.positions[-1], strict=True
         )
         for name, begin, end in ends:
-            say(f"  {name}: {begin:.4f} to {end:.4f}")
+            say(f"  {name}: {round(begin, 4) + 0.0:.4f} to {round(end, 4) + 0.0:.4f}")
         if not self._is_agreed:
             output().clear()
             complain("Move the robot along this plan, and along those of the steps after it? [y/N]")
