@@ -163,7 +163,7 @@ class _Compiler:
     def _world_objects(self) -> dict[str, WorldObject]:
         """The world's own objects; what is wrong with one is reported at the scenario's `world`."""
         resolved: dict[str, WorldObject] = {}
-        world, problems = self.sources.world, list[str]()
+        world, problems, hint = self.sources.world, list[str](), ""
         replaced = {spec.name for spec in self.sources.scenario.objects if spec.replace}
         for spec in world.objects:
             self.object_locs[spec.name] = ("world",)
@@ -187,14 +187,14 @@ class _Compiler:
                 if spec.name in replaced:
                     resolved[spec.name] = _unusable(spec.name, pose)
                     continue
-                problems.append(
-                    f"object '{spec.name}': {unusable}; an object of this name with"
-                    " `replace: true` in `objects` takes its place"
+                problems.append(f"object '{spec.name}': {unusable}")
+                hint = (
+                    "an object of the same name with `replace: true` in `objects` takes its place"
                 )
                 self.problems.add_unusable(spec.name)
         if problems:
             self.problems.add(
-                ("world",), f"world '{world.world}': " + "; ".join(problems), needs=("world",)
+                ("world",), f"world '{world.world}': " + "; ".join(problems), hint, needs=("world",)
             )
         return resolved
 

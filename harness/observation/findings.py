@@ -6,9 +6,14 @@ from collections.abc import Sequence
 
 from harness.cell.program import Program
 from harness.core.errors import Problem
+from harness.core.geometry import Box, Capsule, Cylinder, Sphere
+from harness.core.world import WorldObject
 from harness.ports import Touch
 from harness.recording.explanation import lowered_margins_of
 from harness.recording.run import Finding, StepRecord
+
+LARGE = 5.0
+"""Size from which a movable object is probably given in millimetres [m]."""
 
 NOTHING_EXPECTED = (
     "the scenario expects nothing, so it passes whatever happens, as long as no step fails;"
@@ -24,10 +29,32 @@ def about_file(program: Program, notes: Sequence[Problem]) -> tuple[Finding, ...
         notes: Places in the file, as the language found them.
     """
     found = [Finding("note", noted(problem)) for problem in notes]
+    found += [Finding("note", text) for obj in _added(program) if (text := _too_large(obj))]
     expects_errors = any(step.spec.expect_error for step in program.all_steps())
     if not program.expectations and not expects_errors:
         found.append(Finding("nothing_expected", NOTHING_EXPECTED))
     return tuple(found)
+
+
+def _added(program: Program) -> tuple[WorldObject, ...]:
+    return (*program.world.objects, *program.later_objects.values())
+
+
+def _too_large(obj: WorldObject) -> str:
+    """A remark on a movable object that is as large as a house; empty for others."""
+    sizes = [shape.geometry.size for shape in obj.shapes if isinstance(shape.geometry, Box)]
+    sizes += [
+        (2 * shape.geometry.radius,) * 3
+        for shape in obj.shapes
+        if isinstance(shape.geometry, Sphere | Cylinder | Capsule)
+    ]
+    largest = max((max(size) for size in sizes), default=0.0)
+    if obj.is_static or largest < LARGE:
+        return ""
+    return (
+        f"'{obj.name}' measures {largest:g} m: a number without a unit is in metres, "
+        f"write `{largest:g} mm` for millimetres"
+    )
 
 
 def noted(problem: Problem) -> str:

@@ -66,3 +66,15 @@ def test_a_joint_goal_in_degrees_is_out_of_reach_with_a_hint(tmp_path, capsys):
     path = written(tmp_path, "  - move_to: {joints: {joint1: 90}}\nexpect: [within_limits]\n")
     assert main(["check", str(path)]) == 1
     assert "4:32: 90 is an angle in radians" in capsys.readouterr().out
+
+
+def test_a_movable_box_of_fifty_metres_gets_a_hint_to_millimetres(tmp_path, capsys):
+    box = "objects:\n  - {{name: a, box: {{size: {}}}, pose: {{xyz: [60, 0, 60]}}}}\n"
+    text = "  - wait: 0.05 s\n{}expect: [within_limits]\n"
+    path = written(tmp_path, text.format(box.format("[50, 50, 50]")))
+    assert main(["check", str(path)]) == 0
+    said = "'a' measures 50 m: a number without a unit is in metres, write `50 mm` for millimetres"
+    assert said in capsys.readouterr().out
+    path = written(tmp_path, text.format(box.format("[50 mm, 50 mm, 50 mm]")))
+    assert main(["check", str(path)]) == 0
+    assert "measures" not in capsys.readouterr().out

@@ -140,5 +140,5 @@ def test_an_object_with_a_missing_mesh_can_be_replaced(tmp_path):
     words = {"robot": ARM, "world": "bench.world.yaml"}
     [problem] = check(tmp_path, "- wait: 1 s", **words).problems
     assert "object 'jug': there is no mesh file 'gone.stl'" in problem.message
-    assert "with `replace: true` in `objects` takes its place" in problem.message
+    assert "with `replace: true` in `objects` takes its place" in problem.hint
     assert not check(tmp_path, "- wait: 1 s", rest=JUG, **words).problems
