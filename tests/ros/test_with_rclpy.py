@@ -14,21 +14,18 @@ import pytest
 
 from harness.cli.main import main
 from harness.ros.replay import replay
-from tests.ros.bridging import bridge, scenario
+from tests.ros.bridging import PYTHON, bridge, require_control_msgs, scenario
 
 pytestmark = pytest.mark.ros
 STUDENT = Path(__file__).parent / "student"
-PYTHON = os.environ.get("HARNESS_ROS_PYTHON", sys.executable)
 
 
-@pytest.fixture(scope="module", autouse=True)
-def _environment():
-    words = "import rclpy, control_msgs.action"
-    done = subprocess.run([PYTHON, "-c", words], capture_output=True, text=True, check=False)
-    if done.returncode:
-        pytest.fail(f"-m ros needs rclpy and control_msgs in {PYTHON}: {done.stderr}")
+@pytest.fixture(scope="module")
+def _control_msgs():
+    require_control_msgs()
 
 
+@pytest.mark.usefixtures("_control_msgs")
 def test_action_clients_of_rclpy_get_feedback_results_and_cancellation(tmp_path):
     with bridge(scenario(tmp_path, "- external: {}")) as (node, _):
         done = subprocess.run(
@@ -51,6 +48,7 @@ def test_action_clients_of_rclpy_get_feedback_results_and_cancellation(tmp_path)
     assert {"bridge", "student"} <= set(said["nodes"])
 
 
+@pytest.mark.usefixtures("_control_msgs")
 def test_a_student_s_node_lifts_the_red_box_and_replays(tmp_path, capsys):
     command = f"{PYTHON} {STUDENT / 'lift_the_box.py'}"
     box = "ros2/01_lift_the_red_box"
@@ -68,6 +66,7 @@ def test_joint_angles_that_are_sent_ten_times_a_second_arrive(tmp_path):
     assert main(["grade", str(file), "--node", command, "--no-report"]) == 0
 
 
+@pytest.mark.usefixtures("_control_msgs")
 @pytest.mark.skipif(sys.executable != PYTHON, reason="rclpy is in another environment")
 def test_the_bridge_itself_can_speak_through_rclpy(tmp_path, capsys):
     command = f"{PYTHON} {STUDENT / 'lift_the_box.py'}"
