@@ -1,6 +1,7 @@
 """RRT-Connect and shortcuts of the wheel `roboplan` (C++), on the same meshes and things."""
 
 import time
+from dataclasses import replace
 from itertools import combinations, pairwise
 
 import numpy as np
@@ -85,7 +86,12 @@ def _plan(scene: core.Scene, problem: Problem, spacing: float, seed: int) -> cor
 def _robot(problem: Problem) -> core.Scene:
     """A scene with the arm alone."""
     description = arm(exact=True)
-    urdf = write_urdf("arm", description.links, description.joints)
+    arm_joints = description.groups[ARM_GROUP].joint_names
+    joints = [  # the gripper stays open, as it does for the others
+        joint if joint.name in arm_joints else replace(joint, kind="fixed", mimic=None)
+        for joint in description.joints
+    ]
+    urdf = write_urdf("arm", description.links, joints)
     folders = [str(place.parent) for place in packages().values()]
     scene = core.Scene("arm", core.loadUrdfSceneDescriptionFromXml(urdf, folders))
     scene.addGroup(ARM_GROUP, list(problem.space.joint_names))
