@@ -58,5 +58,5 @@ def _is_compiled() -> bool:
     certify: Any = _load()
     if certify is None:
         return False
-    folder = Path(certify._cache.cache_path)  # noqa: SLF001 (numba has no other way to tell)
+    folder = Path(certify._cache.cache_path)  # noqa: SLF001 (numba offers no public way)
     return any(folder.glob("edge_kernel.certify-*.nbi"))
