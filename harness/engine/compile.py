@@ -314,7 +314,7 @@ class _Compiler:
             if len(self.step_locs) > MOST_STEPS:
                 self.problems.add(
                     loc,
-                    f"the file comes to more than {MOST_STEPS} steps, repeated ones counted",
+                    f"the file contains more than {MOST_STEPS} steps, repeated ones counted",
                     needs=(),
                 )
                 break

@@ -130,12 +130,12 @@ class ProgramExecution:
         """Put the world's objects into the scene.
 
         Args:
-            program: What to do.
+            program: The program that is executed.
             scene: Empty; the world's objects are added here.
             kinematics: The kinematics of the program's robot.
-            planner: Plans in `scene`.
-            simulator: At the start state, with every object of the program prepared and the world's
-                present.
+            planner: The motion planner, which plans in `scene`.
+            simulator: The simulator at the start state, with every object of the program prepared
+                and the world's objects present.
             on_step: Called before and after each step.
             keep_going: Whether a failed step of the file lets the next one begin all the same; a
                 step made of others ends with the first of them that fails.
@@ -214,7 +214,7 @@ def execute_program(
 
 
 def _own(failure: StepFailed | _RunEndedError | None) -> StepFailed | None:
-    """A step's failure; one of a step inside it is told there, and here only where it is."""
+    """A step's failure; of a failed step inside it, only its name, since that step has its own."""
     if isinstance(failure, _RunEndedError):
         return StepFailed(failure.failure.code, f"its step `{failure.summary}` failed")
     return failure

@@ -29,7 +29,7 @@ def merged_options(
     """Options with every number known.
 
     Args:
-        scenario: The scenario's `planning`.
+        scenario: The key `planning` of the scenario.
         step: The step's, which wins key by key.
         seed: The seed of the step.
         checks_per_second: State checks that a second of `planning_time` buys.
@@ -79,9 +79,9 @@ def check_planning(
     """Report a planner that there is not, what it does not take, two budgets.
 
     Args:
-        planning: The scenario's, or a step's.
-        loc: Where it is said.
-        problems: Added to.
+        planning: The key `planning` of the scenario or of a step.
+        loc: The location of the key in the file.
+        problems: The list to which the problems are added.
         check_planner: Checks the name and the parameters of a planner.
         scenario: What a step's goes before.
     """

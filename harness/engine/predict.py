@@ -59,8 +59,8 @@ def touches_at_start(program: Program, scene: PlanningScene) -> tuple[Touch, ...
     it away all the same.
 
     Args:
-        program: Whose start.
-        scene: Empty; so it is left.
+        program: The program whose start state is checked.
+        scene: An empty scene, which is empty again afterwards.
     """
     objects = [obj for obj in program.world.objects if obj.in_planning]
     for obj in objects:
@@ -76,8 +76,8 @@ def touches_at_start(program: Program, scene: PlanningScene) -> tuple[Touch, ...
 def unexpected(records: Sequence[StepRecord]) -> tuple[StepRecord, ...]:
     """Predicted failures that the file does not expect, each once, at the innermost step it hits.
 
-    What fails inside a step that expects to fail so is expected; what fails inside any other is not
-    told again of the step around it. That an expected failure stays away cannot be known without
+    What fails inside a step that expects this failure is expected; what fails inside any other step
+    is not reported again for the step that contains it. That an expected failure stays away cannot be known without
     physics.
     """
     expected = [record.path for record in records if record.status == "expected_error"]

@@ -1,4 +1,4 @@
-"""Who commands the robot in the step `external`: nodes, a recording, or nobody."""
+"""Who commands the robot in the step `external`: ROS 2 nodes, a recording, or no program."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ MakeSession = Callable[[Prepared, "TimedSimulator"], ExternalSession]
 
 
 class NoPrograms:
-    """Nobody is there."""
+    """The session of a run without external programs."""
 
     commands: tuple[CommandRecord, ...] = ()
 
@@ -56,6 +56,6 @@ class NoPrograms:
 
 
 def no_programs(prepared: Prepared, simulator: TimedSimulator) -> ExternalSession:
-    """A session in which nobody is there."""
+    """A session without external programs."""
     del prepared, simulator
     return NoPrograms()

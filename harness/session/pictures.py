@@ -52,7 +52,7 @@ class Pictures:
         """Begin to draw what the verdicts read, and what is certain to be kept.
 
         Args:
-            request: Of the case.
+            request: The request of the case.
             prepared: The scenario: its expectations, its videos, and the visuals of its bodies.
             run: What was executed and recorded.
         """

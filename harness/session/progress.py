@@ -22,7 +22,7 @@ class Progress:
 
     Attributes:
         notify: Called with every event.
-        program: What is executed.
+        program: The program that is executed.
     """
 
     notify: Notify

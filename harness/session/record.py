@@ -110,8 +110,8 @@ def executed_run(
     """What was executed and recorded, without what is observed on it afterwards.
 
     Args:
-        request: Of the case.
-        prepared: The scenario.
+        request: The request of the case.
+        prepared: The scenario, ready to be executed.
         execution: What its steps did.
         signals: What the physics recorded, with distances.
         overlaps: Bodies that overlap at the start.

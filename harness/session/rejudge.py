@@ -19,7 +19,7 @@ def judge_run(run_dir: Path, with_file: Path | None = None) -> tuple[Verdict, ..
     """Verdicts of a saved run.
 
     Args:
-        run_dir: The run's folder.
+        run_dir: The folder of the run.
         with_file: A scenario whose expectations are judged instead of the run's own.
 
     Raises:

@@ -25,7 +25,7 @@ class Start(NamedTuple):
     """A scenario that is about to be executed.
 
     Attributes:
-        simulator: At the start state.
+        simulator: The simulator at the start state.
         draw: Number of the sample's draw; 0 for the first.
     """
 
@@ -60,7 +60,7 @@ def start_physics(
     """Build the physics and record its start state.
 
     Args:
-        prepared: The scenario.
+        prepared: The scenario, ready to be executed.
         clock: Takes the wall time of what moves; None where it is not reported.
         frames: Links whose poses are recorded besides the TCP's.
         kind: The class of the simulator.

@@ -1,4 +1,4 @@
-"""The simulator with its wall time told."""
+"""The simulator, with a measurement of the wall time that it takes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from harness.simulation.mujoco_simulator import MujocoSimulator
 
 
 class TimedSimulator(MujocoSimulator):
-    """The simulator, with the wall time of what moves told apart from planning."""
+    """The simulator, which measures the wall time of what moves apart from that of planning."""
 
     def __init__(self, clock: Clock, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)

@@ -1,4 +1,4 @@
-"""Wall time of the parts of a case; told, never judged."""
+"""Wall time of the parts of a case; reported, never judged."""
 
 from __future__ import annotations
 
