@@ -77,8 +77,8 @@ def unexpected(records: Sequence[StepRecord]) -> tuple[StepRecord, ...]:
     """Predicted failures that the file does not expect, each once, at the innermost step it hits.
 
     What fails inside a step that expects this failure is expected; what fails inside any other step
-    is not reported again for the step that contains it. That an expected failure stays away cannot be known without
-    physics.
+    is not reported again for the step that contains it. That an expected failure stays away cannot
+    be known without physics.
     """
     expected = [record.path for record in records if record.status == "expected_error"]
     failed = [record for record in records if record.error_code and record.status == "failed"]
