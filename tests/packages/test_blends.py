@@ -5,7 +5,7 @@ import pytest
 
 from harness.core.spatial import SE3
 from harness.language.scenario import RobotSpec
-from harness.ports import PlanningOptions, PoseGoal, SequenceItem
+from harness.ports import MotionRequest, MotionSequence, PlanningOptions, PoseGoal, SequenceItem
 from harness.robot.load import load_robot
 from tests.planning.lesson import Cell
 
@@ -37,6 +37,8 @@ def test_lines_blend_from_5_to_149_mm(package, radius):
         SequenceItem("lin", moved(0, 0.2, 0), None, radius),
         SequenceItem("lin", moved(-0.05, -0.1, -0.2)),
     ]
-    plan = cell.planner.plan_sequence(description.arm_group, state, items, SLOW)
+    plan = cell.planner.plan(
+        MotionRequest(description.arm_group, state, MotionSequence(items), SLOW)
+    )
     speeds = np.abs(plan.trajectory.velocities[5:-5]).max(axis=1)
     assert speeds.min() > 0.001

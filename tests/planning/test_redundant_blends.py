@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 
 from harness.core.spatial import SE3
-from harness.ports import ArcPoint, JointGoal, PlanningOptions, PoseGoal, SequenceItem
+from harness.ports import (
+    ArcPoint,
+    JointGoal,
+    MotionRequest,
+    MotionSequence,
+    PlanningOptions,
+    PoseGoal,
+    SequenceItem,
+)
 from tests.planning.lesson import Cell
 from tests.planning.seven_joints import seven_joints
 
@@ -39,17 +47,19 @@ def items(cell, radius):
 @pytest.mark.parametrize("radius", [0.005, 0.02, 0.035])
 def test_seven_joints_blend_without_a_stop_and_stay_on_the_lines(cell, radius):
     planner = cell.planner
-    plan = planner.plan_sequence("arm", cell.state, items(cell, radius), SLOW)
+    plan = planner.plan(MotionRequest("arm", cell.state, MotionSequence(items(cell, radius)), SLOW))
     moving = np.abs(plan.trajectory.velocities[5:-5]).max(axis=1)
     assert moving.min() > 0.005
     assert plan.trajectory.positions[-1] == pytest.approx(BENT, abs=1e-6)
-    stopped = planner.plan_sequence("arm", cell.state, items(cell, 0.0), SLOW)
+    stopped = planner.plan(MotionRequest("arm", cell.state, MotionSequence(items(cell, 0.0)), SLOW))
     assert plan.trajectory.duration < stopped.trajectory.duration
 
 
 def test_the_plan_is_the_same_every_time(cell):
     first, second = (
-        cell.planner.plan_sequence("arm", cell.state, items(cell, 0.02), SLOW).trajectory
+        cell.planner.plan(
+            MotionRequest("arm", cell.state, MotionSequence(items(cell, 0.02)), SLOW)
+        ).trajectory
         for _ in range(2)
     )
     assert np.array_equal(first.positions, second.positions)
