@@ -33,6 +33,7 @@ def _run(arguments: argparse.Namespace) -> int:
         plugins=(),
         strict=record.strict,
         reporters=record.reporters,
+        nodes=[f"{name}={command}" for name, command in record.nodes.items()],
         overrides=list(record.overrides.items()),
         seed=record.seed,
         samples=record.samples,

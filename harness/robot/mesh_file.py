@@ -18,7 +18,7 @@ import numpy as np
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh
 from harness.core.types import FloatArray, IntArray
-from harness.robot.decomposition.decomposition import Decomposition
+from harness.robot.decomposition.convex_parts import Decomposition
 from harness.robot.decomposition.parts_cache import stored_decomposition
 
 SUFFIXES = (".stl", ".obj", ".dae")

@@ -108,7 +108,7 @@ class CameraTopics:
     def _connection(self) -> Connection:
         if self._painter is None:
             ours, theirs = multiprocessing.Pipe()
-            context = multiprocessing.get_context("fork")
+            context = multiprocessing.get_context("spawn")  # a fork inherits locks and OpenGL
             process = context.Process(target=_paint, args=(theirs, ours, *self._scene), daemon=True)
             process.start()
             theirs.close()

@@ -246,4 +246,5 @@ def record_of(
         request.samples,
         request.strict,
         tuple(request.reporters),
+        dict(request.nodes),
     )

@@ -137,6 +137,7 @@ class ShardRecord:
         samples: Number of samples that replaced the files' numbers.
         strict: Whether a warning of a verdict fails a case.
         reporters: Names of other reporters that write into the reports.
+        nodes: Commands by name that steps may start as ROS 2 nodes.
         version: The version of the program that ran the part.
     """
 
@@ -150,6 +151,7 @@ class ShardRecord:
     samples: int | None = None
     strict: bool = False
     reporters: tuple[str, ...] = ()
+    nodes: Mapping[str, str] = field(default_factory=dict[str, str])
     version: str = __version__
 
     @property

@@ -182,6 +182,7 @@ def fingerprint(job: RunRequest) -> str:
     said = [__version__, file_hash(job.file), job.case, str(job.seed), *_sorted(job.overrides)]
     said += ["strict"] if job.strict else []
     said += [f"reporter {name}" for name in sorted(job.reporters)]
+    said += [f"node {name}={command}" for name, command in sorted(job.nodes.items())]
     return hashlib.sha256("\0".join(said).encode()).hexdigest()
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
 from harness.core.types import BoolArray, FloatArray
+from harness.robot.decomposition.convex_parts import Decomposition
 from harness.robot.decomposition.solid_grid import SolidGrid, solid_grid
 
 HULL_TOLERANCE = 0.01
@@ -86,23 +87,6 @@ GOOD_CUTS = 10
 
 PEEL = 0.5
 """What a volume that is not cut into convex parts yet costs, next to that of its empty space."""
-
-
-@dataclass(frozen=True, eq=False)
-class Decomposition:
-    """Convex parts of a mesh.
-
-    Attributes:
-        parts: Points whose convex hulls are the parts, each of shape (N, 3) [m].
-        excess: The largest distance of a point of a part from the mesh [m].
-        hull_excess: The same for the convex hull of the whole mesh [m].
-        is_closed: Whether the mesh encloses a volume.
-    """
-
-    parts: tuple[FloatArray, ...]
-    excess: float
-    hull_excess: float
-    is_closed: bool
 
 
 def decompose(triangles: FloatArray) -> Decomposition:

@@ -9,13 +9,13 @@ import platform
 import tempfile
 import zipfile
 from collections.abc import Callable
+from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
-import scipy
 
 from harness.core.types import FloatArray
-from harness.robot.decomposition.decomposition import Decomposition, decompose
+from harness.robot.decomposition.convex_parts import Decomposition
 
 METHOD = 1
 """Version of the decomposition; parts of another version are computed again."""
@@ -42,11 +42,13 @@ def stored_decomposition(
         triangles: Reads the corners [m], shape (M, 3, 3).
     """
     key = hashlib.sha256(content)
-    versions = (METHOD, np.__version__, scipy.__version__, platform.machine())
+    versions = (METHOD, np.__version__, version("scipy"), platform.machine())
     key.update(repr((factors.tolist(), *versions)).encode())
     path = cache_folder() / f"{key.hexdigest()}.npz"
     found = _read(path)
     if found is None:
+        from harness.robot.decomposition.decomposition import decompose  # here: imports SciPy
+
         found = decompose(triangles())
         _write(path, found)
     return found
