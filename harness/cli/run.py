@@ -85,6 +85,11 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
     from harness.suite.shards import shard_of, write_shard_record
     from harness.suite.suite_run import SuiteOptions, SuiteRun
 
+    if arguments.yes or arguments.velocity_scaling != 1.0:
+        raise UsageError(
+            "--yes and --velocity-scaling need --robot ros2; in a file the speed is"
+            " `planning: {max_velocity_scaling_factor: 0.5}`"
+        )
     if arguments.history and not Path(arguments.history).is_dir():
         raise UsageError(f"--history '{arguments.history}' is no folder")
     for name in arguments.reporters:

@@ -131,6 +131,8 @@ class CoalClearance:
             return replace(signals, clearance_cutoff=cutoff)
         samples = knots(signals.times, objects, attachments)
         found = self._measured(at_samples(signals, samples), objects, attachments, cutoff)
+        if not found.distances:
+            return replace(signals, clearance_cutoff=cutoff)
         near = np.union1d(
             around_smallest(found.distances, samples, count),
             inside_of(samples, largest_dip(found.dips()) > LARGEST_ERROR),

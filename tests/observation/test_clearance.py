@@ -12,6 +12,7 @@ from harness.observation.sampled_clearance import LARGEST_ERROR
 from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
 from harness.robot.forward_kinematics import LinkPoses, quats_wxyz
 from tests.planning.lesson import TCP, Cell, at, boxes, tables, thing, ur
+from tests.running import run_case
 
 CUTOFF = 0.15
 STEP = 0.002
@@ -214,3 +215,24 @@ def test_what_flies_past_between_samples_is_seen_as_near_as_it_came(scene, speed
     found, true = closest_pass(scene, "ball", speed, offset)
     assert true < 0.5
     assert true - 1e-5 <= found <= true + LARGEST_ERROR
+
+
+BARE = """<robot name="bare"><link name="base"/><link name="tip"><inertial><mass value="1"/>
+<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="turn" type="revolute"><parent link="base"/><child link="tip"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="1" velocity="1" effort="10"/></joint></robot>"""
+
+
+def test_a_robot_without_shapes_in_an_empty_world_has_no_clearances(tmp_path):
+    (tmp_path / "bare.urdf").write_text(BARE)
+    (tmp_path / "bare.srdf").write_text(
+        '<robot name="bare"><group name="arm"><chain base_link="base" tip_link="tip"/></group>'
+        "</robot>"
+    )
+    path = tmp_path / "bare.scenario.yaml"
+    path.write_text(
+        "scenario: bare\nrobot: {urdf: bare.urdf, srdf: bare.srdf}\n"
+        "world: empty\nsteps:\n  - ptp: {joints: {turn: 0.2}}\nexpect: [within_limits]\n"
+    )
+    result = run_case(path)
+    assert result.outcome == "passed", (result.problems, result.message, result.verdicts)
