@@ -72,12 +72,18 @@ def present(run: Run, name: str) -> BoolArray:
     """Samples at which an object is in the scene, shape (N,).
 
     The record of its coming and going says so, not whether its pose is known: an object that is
-    there and whose pose is missing is not absent.
+    there and whose pose is missing is not absent. A step that adds an object ends one sample before
+    the physics has its first pose.
     """
-    times = run.signals.times
+    times, poses = run.signals.times, run.signals.object_poses.get(name)
     mask = np.zeros(len(times), dtype=bool)
     for begin, end in object_record(run, name).present:
-        mask |= (times >= begin - TIME_RESOLUTION) & (times <= end + TIME_RESOLUTION)
+        there = (times >= begin - TIME_RESOLUTION) & (times <= end + TIME_RESOLUTION)
+        first = int(np.argmax(there))
+        is_added = there[first] and first > 0 and not mask[first - 1]
+        if is_added and poses is not None and np.isnan(poses[first, 0]):
+            there[first] = False
+        mask |= there
     return mask
 
 

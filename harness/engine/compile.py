@@ -85,7 +85,7 @@ class _Compiler:
         self.problems = Problems(sources.lines, sources.missing)
         self.scope = Scope(sources.description, self.problems, sources.kinematics.link_pose)
         self.later: dict[str, WorldObject] = {}
-        self.later_specs: dict[str, ObjectSpec] = {}  # without poses
+        self.object_specs: dict[str, ObjectSpec] = {}  # of the start and of steps, without poses
         self.step_locs: dict[str, Loc] = {}
         self.object_locs: dict[str, Loc] = {}
         self.expectations: list[ProgramExpectation] = []
@@ -155,6 +155,7 @@ class _Compiler:
                     (*loc, "name"), "object of the world", spec.name, resolved, needs=("world",)
                 )
             here.add(spec.name)
+            self.object_specs.setdefault(spec.name, _without_pose(spec))
             obj = self._resolve(spec, loc, self._start_pose(spec, loc, resolved))
             if obj is not None:
                 resolved[spec.name] = obj
@@ -260,18 +261,18 @@ class _Compiler:
         obj = self._resolve(spec, loc, spec.pose.se3())
         if obj is None:
             return
-        known = self.later.get(spec.name)
-        if known is None and spec.name not in self.scope.objects:
+        if spec.name not in self.scope.objects:
             self.later[spec.name] = obj
             self.scope.add_object(obj)
-        elif known is None or self.later_specs[spec.name] != _without_pose(spec):
+        elif self.object_specs.get(spec.name) != _without_pose(spec):
             self.problems.add(
                 (*loc, "name"),
                 f"another object is called '{spec.name}'",
-                "every object has a name of its own",
+                "a name stands for one object: only what was removed may come back, with the same"
+                " keys but for `pose`",
                 needs=("world",),
             )
-        self.later_specs.setdefault(spec.name, _without_pose(spec))
+        self.object_specs.setdefault(spec.name, _without_pose(spec))
 
     # -- steps --------------------------------------------------------------------------------
 
@@ -353,4 +354,4 @@ def _unusable(name: str, pose: SE3) -> WorldObject:
 
 
 def _without_pose(spec: ObjectSpec) -> ObjectSpec:
-    return spec.model_copy(update={"pose": type(spec.pose)()})
+    return spec.model_copy(update={"pose": type(spec.pose)(), "replace": False})

@@ -50,4 +50,5 @@ class AddObject(Step):
             presence = cell.presence.get(spec.name)
             if presence is not None and presence.is_there:
                 raise StepFailed("INVALID_OBJECT_NAME", f"'{spec.name}' is in the scene already")
-            cell.add_to_scene(cell.later_objects[spec.name], cell.world_pose(spec.pose))
+            obj = presence.obj if presence is not None else cell.later_objects[spec.name]
+            cell.add_to_scene(obj, cell.world_pose(spec.pose))

@@ -1,0 +1,64 @@
+"""Objects that steps add and remove are judged from the moment they appear."""
+
+import pytest
+
+from tests.running import run_case
+
+BOX = "name: box, box: {size: [0.03, 0.03, 0.03]}"
+
+
+def result_of(folder, text):
+    path = folder / "objects.scenario.yaml"
+    path.write_text(f"scenario: objects\nrobot: open_manipulator_x\n{text}", encoding="utf-8")
+    return run_case(path)
+
+
+def test_an_added_object_has_its_start_where_it_appeared(tmp_path):
+    result = result_of(
+        tmp_path,
+        f"""steps:
+  - wait: 0.1 s
+  - add_object: {{{BOX}, pose: {{xyz: [0.2, 0.1, 0.03]}}}}
+  - wait: 0.3 s
+expect:
+  - displaced: {{object: box, at_least: 5 mm}}
+  - on: {{object: box, support: ground_plane}}
+  - eventually: {{lifted: {{object: box, above: 1 cm}}}}
+""",
+    )
+    assert [each.status for each in result.verdicts] == ["passed", "passed", "failed"]
+    assert result.verdicts[0].margin == pytest.approx(0.01, abs=1e-3), "it fell by 15 mm"
+
+
+def test_a_removed_object_of_the_start_comes_back_elsewhere(tmp_path):
+    result = result_of(
+        tmp_path,
+        f"""objects:
+  - {{{BOX}, pose: {{xyz: [0.2, 0, 0.015]}}}}
+steps:
+  - remove_object: box
+  - wait: 0.1 s
+  - add_object: {{{BOX}, pose: {{xyz: [0.2, 0.1, 0.016]}}}}
+  - wait: 0.2 s
+expect:
+  - on: {{object: box, support: ground_plane}}
+""",
+    )
+    assert result.outcome == "passed", (result.problems, result.verdicts)
+
+
+@pytest.mark.parametrize(
+    "other", ["size: [0.02, 0.02, 0.02]}, mass: 0.1", "size: [0.02, 0.02, 0.02]}"]
+)
+def test_another_object_of_the_same_name_is_refused(other, tmp_path):
+    result = result_of(
+        tmp_path,
+        f"""objects:
+  - {{{BOX}, pose: {{xyz: [0.2, 0, 0.015]}}}}
+steps:
+  - remove_object: box
+  - add_object: {{name: box, box: {{{other}, pose: {{xyz: [0.2, 0.1, 0.016]}}}}
+""",
+    )
+    assert result.outcome == "invalid"
+    assert "a name stands for one object" in result.problems[0].hint
