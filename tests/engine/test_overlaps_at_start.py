@@ -78,3 +78,13 @@ def test_a_collision_by_an_overlap_is_measured_by_its_depth_and_not_by_a_force(t
     assert verdict.margin == pytest.approx(-deepest)
     assert "overlap by" in verdict.reason
     assert " N" not in verdict.reason
+
+
+@pytest.mark.parametrize(("count", "more"), [(2, ""), (3, "; and 1 more pairs")])
+def test_a_collision_by_overlaps_names_two_pairs_and_counts_the_others(tmp_path, count, more):
+    block = "box: {size: [2 cm, 2 cm, 2 cm]}, static: true, pose: {xyz: [0, 0, 0.15]}"
+    blocks = [f"{{name: b{number}, {block}}}" for number in range(count)]
+    result = run_case(scene(tmp_path, "\n  - ".join(blocks), "expect: [{never: collision}]"))
+    reason = result.verdicts[0].reason
+    assert reason.count("overlap by") == 2
+    assert ("more pairs" in reason, more in reason) == (bool(more), True)
