@@ -31,9 +31,11 @@ TESTS = (
     "tests/engine",
     "tests/recording",
     "tests/adversarial",
+    "tests/planning/test_efforts.py",
     "tests/planning/test_verification.py",
     "tests/planning/test_path_constraints.py",
     "tests/planning/test_linear_motion.py",
+    "tests/system/test_findings.py",
 )
 # Tests that execute a line are run, shortest first, until they add up to this [s].
 LONGEST = 150.0

@@ -92,6 +92,16 @@ def test_efforts_and_constraints_are_part_of_it(task, good):
     assert broken(task, good, held=HeldConstraints(held, task.space)) == "path constraints"
 
 
+@pytest.mark.parametrize(("share", "found"), [(0.97, True), (0.995, False), (1.03, False)])
+def test_efforts_may_exceed_their_limits_by_a_hundredth(task, good, share, found):
+    dynamics = task.limits.dynamics
+    efforts = dynamics.efforts(good.positions, good.velocities, good.accelerations)
+    limits = np.full(6, np.inf)
+    limits[1] = share * np.abs(efforts[:, 1]).max()
+    tight = replace(task.limits, dynamics=replace(dynamics, limits=limits))
+    assert (broken(task, good, limits=tight) is not None) == found
+
+
 def test_what_is_in_the_way_is_found_with_its_time(good):
     cell = Cell(ur("ur3e"))
     cell.state = cell.with_arm(START)
