@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from typing import Any
 
 import numpy as np
@@ -61,9 +62,9 @@ class GoalActions(LiveStudio):
         elif phase == "end":
             self.put_object(name, pose)
 
+    @abstractmethod
     def put_object(self, name: str, pose: SE3) -> None:
         """An object's handle was let go."""
-        raise NotImplementedError
 
     def do_follow(self, message: Message) -> Message:
         """Let the arm follow the handle, or not."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import threading
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any
 
@@ -38,7 +39,7 @@ MEASURED_EVERY = 5
 """Updates of the page between two measurements of the smallest clearance."""
 
 
-class LiveStudio:
+class LiveStudio(ABC):
     """The cell's thread: physics that goes on, joints that are moved by hand, what pages see."""
 
     def __init__(self, files: StudioFiles, text: str, notice: str = "") -> None:
@@ -240,9 +241,9 @@ class LiveStudio:
             {"type": "reach", "pose": None, "refusal": "", "ways": [], "best": -1}
         )
 
+    @abstractmethod
     def on_drag(self, client: int, phase: str, pose: SE3, name: str) -> None:
         """A handle was moved on a page; called in the server's thread."""
-        raise NotImplementedError
 
     # -- at once ------------------------------------------------------------------------------
 
