@@ -43,6 +43,7 @@ from harness.assertions.temporal import bridged, episodes
 from harness.assertions.text import amount, amounts
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import Run
+from harness.recording.step_results import AllowedCollisions
 
 GRIPPING_VERBS = ("gripper", "grasp", "release")
 RESTING_VERBS = (*GRIPPING_VERBS, "wait", "settle")
@@ -111,7 +112,8 @@ def _allowed(run: Run, pair: Pair) -> BoolArray:
     mask = np.zeros(len(run.signals.times), dtype=bool)
     mask |= any(_names(run, allowed, pair) for allowed in run.allowed_contacts)
     for step in run.steps:
-        if any(_names(run, allowed, pair) for allowed in step.result.get("allowed_collisions", ())):
+        allowed = step.result.find(AllowedCollisions)
+        if allowed and any(_names(run, each, pair) for each in allowed.allowed_collisions):
             mask[step.start_index : step.end_index] = True
     return mask
 

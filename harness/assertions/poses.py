@@ -9,6 +9,7 @@ from harness.assertions.window import NotObservable, object_record
 from harness.core.pose_arrays import IDENTITY
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import Run
+from harness.recording.step_results import SceneChange
 
 UP = np.array([0.0, 0.0, 1.0])
 STILL = 0.05
@@ -108,7 +109,9 @@ def start_poses(run: Run, name: str) -> FloatArray:
     for step in run.steps:
         if step.verb in SCENE_VERBS and step.status != "not_reached":
             moved = slice(step.start_index, step.end_index + 1)
-            starts[moved] |= jumps[moved] > (0.0 if name in step.result.get("moved", ()) else JUMP)
+            change = step.result.find(SceneChange)
+            is_moved = change is not None and name in (change.moved or ())
+            starts[moved] |= jumps[moved] > (0.0 if is_moved else JUMP)
     latest = np.maximum.accumulate(np.where(starts, np.arange(len(poses)), -1))
     return np.where((latest >= 0)[:, None], poses[np.maximum(latest, 0)], np.nan)
 

@@ -8,6 +8,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
+from harness.core.details import Detail
 from harness.core.errors import ErrorCode
 from harness.core.registry import Registry, registry
 from harness.language.base import Name, PositiveDuration, SpecModel
@@ -47,11 +48,14 @@ class Step(SpecModel):
         verb: The key of the step in a file; empty in classes that several steps share.
         moves_arm: Whether the step is one motion of the arm, which `parallel` can combine with a
             `gripper` step.
+        results: The types of the parts that the step reports with `cell.report`, besides those of
+            the cell's own methods; a saved run is read back with them.
     """
 
     plugin_kind: ClassVar[str] = "step"
     verb: ClassVar[str] = ""
     moves_arm: ClassVar[bool] = False
+    results: ClassVar[tuple[type[Detail], ...]] = ()
 
     id: Name | None = Field(
         default=None,

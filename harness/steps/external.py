@@ -13,7 +13,7 @@ from harness.core.errors import StepFailed
 from harness.language.base import Name, PositiveDuration
 from harness.language.expectation import AnyExpectation
 from harness.language.step import Step
-from harness.ports import ExternalRequest
+from harness.ports import ExternalRequest, ExternalResult
 from harness.recording.execution_failures import TimeoutFailure
 
 DEFAULT_TIMEOUT = 60.0  # [s] of simulation
@@ -28,6 +28,7 @@ class External(Step):
     """
 
     verb: ClassVar[str] = "external"
+    results = (ExternalResult,)
 
     timeout: PositiveDuration | None = Field(
         default=DEFAULT_TIMEOUT,
@@ -75,9 +76,7 @@ class External(Step):
         begin = cell.simulator.time
         request = ExternalRequest(step.id, step.line, timeout, self.until, self.launch or "")
         result = cell.external.hand_over(request)
-        cell.notes.result.update(
-            ended_by=result.ended_by, commands=result.commands, detail=result.detail
-        )
+        cell.report(result)
         if self.until is None or result.ended_by == "until":
             return
         spent = cell.simulator.time - begin

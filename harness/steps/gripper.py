@@ -26,6 +26,7 @@ class Gripper(Step):
     short = "named_target"
 
     verb: ClassVar[str] = "gripper"
+    results = (GripperOutcome,)
 
     named_target: Name | None = Field(
         default=None, description="The gripper moves to this SRDF group state."
@@ -132,7 +133,7 @@ def note_result(cell: Cell, target: float, result: GripperResult) -> GripperOutc
         reached_goal=result.reached_goal,
         contacts=result.contacts,
     )
-    cell.notes.result.update(outcome.plain())
+    cell.report(outcome)
     return outcome
 
 

@@ -31,4 +31,3 @@ class MoveObject(Step):
     def execute(self, cell: Cell) -> None:
         """Put the object somewhere else, at rest, in planning scene and physics."""
         cell.move_in_scene(self.object, cell.world_pose(self.pose))
-        cell.notes.result["moved"] = [self.object]

@@ -39,7 +39,7 @@ def trajectories_of(run, file):
     for number, step in enumerate(run.steps):
         name = f"{step.verb}{number}"
         if step.verb == "gripper":
-            arrays[name] = step.result["target"]
+            arrays[name] = step.result.plain()["target"]
         elif step.trajectory is not None:
             arrays[f"{name}_joints"] = np.array(step.trajectory["joint_names"])
             arrays[f"{name}_t"] = step.trajectory["times"]
