@@ -20,6 +20,7 @@ class Capture(Step):
     short = "camera"
 
     verb: ClassVar[str] = "capture"
+    synonyms = ("photo", "take_picture", "snapshot")
     results = (TakenPicture,)
 
     camera: Name = Field(description="The name of the camera.")

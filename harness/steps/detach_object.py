@@ -27,6 +27,7 @@ class DetachObject(Step):
     short = "object"
 
     verb: ClassVar[str] = "detach_object"
+    detaches_object: ClassVar[bool] = True
     results = (Detached,)
 
     object: Name = Field(description="The name of the object.")

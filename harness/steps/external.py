@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import ClassVar
 
 from pydantic import Field
@@ -11,7 +12,7 @@ from harness.cell.cell import Cell
 from harness.cell.scope import At
 from harness.core.errors import StepFailed
 from harness.language.base import Name, PositiveDuration
-from harness.language.expectation import AnyExpectation
+from harness.language.expectation import AnyExpectation, ExpectationFields
 from harness.language.step import Step
 from harness.ports import ExternalRequest, ExternalResult
 from harness.recording.execution_failures import TimeoutFailure
@@ -47,6 +48,10 @@ class External(Step):
 
     def summary(self) -> str:
         return f"nodes, up to {self.timeout or DEFAULT_TIMEOUT:g} s"
+
+    def ends(self) -> Iterator[ExpectationFields]:
+        if self.until is not None:
+            yield self.until
 
     def check(self, at: At) -> None:
         at.scope.take_time(self.timeout or DEFAULT_TIMEOUT, at.key("timeout"))

@@ -28,6 +28,8 @@ class Grasp(Step):
     short = "object"
 
     verb: ClassVar[str] = "grasp"
+    moves_gripper: ClassVar[bool] = True
+    keeps_arm_still: ClassVar[bool] = True
     results = (GripperOutcome, GraspMode)
 
     object: Name = Field(description="The name of the object.")

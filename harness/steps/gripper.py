@@ -26,6 +26,9 @@ class Gripper(Step):
     short = "named_target"
 
     verb: ClassVar[str] = "gripper"
+    synonyms = ("open_gripper", "close_gripper", "hand")
+    moves_gripper: ClassVar[bool] = True
+    keeps_arm_still: ClassVar[bool] = True
     results = (GripperOutcome,)
 
     named_target: Name | None = Field(

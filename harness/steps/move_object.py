@@ -17,6 +17,7 @@ class MoveObject(Step):
     """Put an object somewhere else, at rest."""
 
     verb: ClassVar[str] = "move_object"
+    moves_objects: ClassVar[bool] = True
 
     object: Name = Field(description="The name of the object.")
     pose: Pose = Field(description="The object's new pose.")

@@ -30,6 +30,9 @@ class Release(Step):
     short = "object"
 
     verb: ClassVar[str] = "release"
+    moves_gripper: ClassVar[bool] = True
+    keeps_arm_still: ClassVar[bool] = True
+    detaches_object: ClassVar[bool] = True
     results = (GripperOutcome, Released)
 
     object: Name | None = Field(
