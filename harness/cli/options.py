@@ -33,6 +33,7 @@ LISTS = (
     "planners",
     "pipelines",
     "ik-solvers",
+    "controllers",
     "world-formats",
     "reporters",
 )
