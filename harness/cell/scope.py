@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Iterable
 from typing import Literal
 
 from harness.core.camera import Camera
 from harness.core.errors import Problem, SpecError
 from harness.core.spatial import SE3
+from harness.core.suggestion import did_you_mean
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.language.files.mistakes import MistakeError
@@ -17,8 +17,6 @@ from harness.language.poses import Pose
 from harness.language.units import in_si
 from harness.ports import LONGEST_RUN
 from harness.robot.description import RobotDescription
-
-LISTED = 12  # names in a hint
 
 Prerequisite = Literal["robot", "world"]
 EVERYTHING: tuple[Prerequisite, ...] = ("robot", "world")
@@ -83,12 +81,7 @@ class Problems:
         """
         if self._missing.intersection(needs) or name in self._unusable:
             return
-        names = list(dict.fromkeys(known))
-        near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-        rest = ", ".join(names[:LISTED]) + (", ..." if len(names) > LISTED else "")
-        parts = [f"did you mean '{near[0]}'?"] if near else []
-        parts.append(f"known: {rest}" if names else "there is none here")
-        message, hint = f"there is no {what} '{name}'", " ".join(parts)
+        message, hint = f"there is no {what} '{name}'", did_you_mean(name, known, "known")
         if start is not None:
             problem = self._lines.problem_in_text(loc, start, len(name), message, hint)
             self._found.setdefault((*loc, start), problem)

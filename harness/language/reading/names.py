@@ -7,8 +7,9 @@ from typing import NamedTuple
 
 from harness.core.errors import Problem
 from harness.core.registry import broken_plugins
+from harness.core.suggestion import did_you_mean, nearest
 from harness.language.annotations import is_model, keys_of
-from harness.language.files.mistakes import did_you_mean, nearest, value_text
+from harness.language.files.mistakes import value_text
 from harness.language.files.source import Entry, Located, Place
 from harness.language.language import EXPECTATIONS, PREDICATES, UNTIL
 
