@@ -10,6 +10,7 @@ from collections.abc import Collection
 
 import numpy as np
 
+from harness.assertions.facts import fact
 from harness.assertions.poses import present
 from harness.assertions.temporal import trailing_max
 from harness.assertions.window import NotObservable
@@ -77,6 +78,7 @@ def bodies_touching(
     return {other: debounced(run, force_between(run, {name}, {other})) for other in others}
 
 
+@fact
 def side_forces(run: Run, name: str) -> dict[str, FloatArray]:
     """Debounced force of each finger side on an object, by side name [N], shape (N,) each."""
     sides = gripper_of(run).sides

@@ -12,6 +12,7 @@ from harness.assertions.contacts import (
     gripper_of,
     side_forces,
 )
+from harness.assertions.facts import fact
 from harness.assertions.poses import object_poses
 from harness.assertions.temporal import TIME_RESOLUTION, bridged, episodes
 from harness.assertions.text import amount
@@ -58,6 +59,7 @@ def held_by_fingers(run: Run, name: str, min_force: float = TOUCH_FORCE) -> Bool
     return held & ~cradled(run, name) if held.any() else held
 
 
+@fact
 def between_fingers(run: Run, name: str) -> BoolArray:
     """Samples at which an object that all sides touch is between them, shape (N,).
 
@@ -153,6 +155,7 @@ def carried_weight(run: Run, name: str) -> FloatArray | None:
     return np.where(welded(run, name), np.inf, carried)
 
 
+@fact
 def cradled(run: Run, name: str) -> BoolArray:
     """Samples at which an object lies on fingers that do not press it, shape (N,).
 
