@@ -36,7 +36,7 @@ def test_a_can_with_its_origin_at_the_foot_is_picked_and_placed(tmp_path):
         *(f"steps[1].{part}" for part in ("open", "reach", "approach", "grasp", "lift")),
         *(f"steps[2].{part}" for part in ("reach", "lower", "release", "retreat")),
     ]
-    messages = [step.message for step in record.steps if step.status == "expected_error"]
+    messages = [step.message for step in record.steps if step.status == "expected error"]
     assert messages[0] == "nothing is held, so nothing can be placed"
     assert messages[1] == (
         "'beer_0' is too wide for the gripper: 110.0 mm across its narrowest level side, and the"
