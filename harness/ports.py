@@ -338,8 +338,8 @@ class PlanningScene(Protocol):
         """Pairs closer than allowed at a state, nearest first."""
         ...
 
-    def link_corners(self, link: str) -> FloatArray:
-        """Corners of the boxes around a link's shapes, in its frame, shape (n, 3) [m]."""
+    def corners(self, body: str) -> FloatArray:
+        """Corners of the boxes around a body's shapes, in its frame, shape (n, 3) [m]."""
         ...
 
     def distance_to_link(self, link: str, point: FloatArray) -> float:
