@@ -122,7 +122,7 @@ def _has_robot(word: str) -> bool:
 
 
 def _scenario(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
-    from harness.language.files.mistakes import did_you_mean
+    from harness.core.suggestion import did_you_mean
     from harness.language.files.yaml_file import read_text
     from harness.robot.load import robot_names
     from harness.suite.discovery import discover

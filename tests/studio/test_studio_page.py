@@ -162,7 +162,7 @@ def test_a_mistake_is_marked_at_its_place_with_advice(opened):
     opened.wait("document.querySelectorAll('#problems button').length === 1")
     problem = opened.page.inner_text("#problems")
     assert re.match(r"\d+:\d+: there is no named state of gripper called 'opne'", problem)
-    assert "did you mean 'open'" in problem
+    assert "did you mean `open`" in problem
     [annotation] = opened.page.evaluate("ace.edit('editor').session.getAnnotations()")
     assert "opne'" in annotation["text"]
     opened.page.click("#run-all")
