@@ -29,17 +29,23 @@ class Problems:
     cannot be judged, but a planner's name can.
     """
 
-    def __init__(self, lines: SourceMap, missing: frozenset[Prerequisite] = frozenset()) -> None:
+    def __init__(
+        self,
+        lines: SourceMap,
+        missing: frozenset[Prerequisite] = frozenset(),
+        doubtful: frozenset[str] = frozenset(),
+    ) -> None:
         """Collect nothing yet.
 
         Args:
             lines: The lines of the file.
             missing: What could not be loaded; something stands in for it.
+            doubtful: Names in what could not be read; problems with them may follow from that.
         """
         self._lines = lines
         self._missing = missing
         self._found: dict[Loc, Problem] = {}
-        self._unusable: set[str] = set()
+        self._unusable = set(doubtful)
 
     def add(
         self,
@@ -50,8 +56,13 @@ class Problems:
         needs: tuple[Prerequisite, ...] = EVERYTHING,
     ) -> None:
         """Note a problem at a place of the file; others at the same place follow from the first."""
-        if not self._missing.intersection(needs):
+        if not self._missing.intersection(needs) and not self._is_unusable(loc):
             self._found.setdefault(loc, self._lines.problem(loc, message, hint))
+
+    def _is_unusable(self, loc: Loc) -> bool:
+        """Whether the file has a name at a place whose own problem is reported."""
+        value = self._lines.find(loc).item.value
+        return isinstance(value, str) and value in self._unusable
 
     def add_unusable(self, name: str) -> None:
         """Note that an object's own problem is reported: uses of its name follow from that."""

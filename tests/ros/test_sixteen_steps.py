@@ -21,7 +21,7 @@ def motions_of(run):
     motions = []
     for step in run.steps:
         if step.verb == "gripper":
-            motions.append({"gripper": float(step.result["target"])})
+            motions.append({"gripper": float(step.result.plain()["target"])})
         elif step.trajectory is not None:
             times, positions, velocities = (
                 step.trajectory[key].tolist() for key in ("times", "positions", "velocities")
