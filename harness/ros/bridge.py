@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
-from harness.ports import LONGEST_RUN
+from harness.ports.simulation import LONGEST_RUN
 from harness.reporting.result import CaseResult
 from harness.ros.domain import free_domain
 from harness.ros.graph import Graph

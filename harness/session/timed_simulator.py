@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from harness.core.trajectory import JointTrajectory
-from harness.ports import GripperResult
+from harness.ports.simulation import GripperResult
 from harness.session.timing import Clock
 from harness.simulation.mujoco_simulator import MujocoSimulator
 

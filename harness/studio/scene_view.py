@@ -15,7 +15,7 @@ from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sp
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
-from harness.ports import Kinematics
+from harness.ports.kinematics import Kinematics
 from harness.robot.description import RobotDescription
 
 MOST_TRIANGLES = 20_000
