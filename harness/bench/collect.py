@@ -15,7 +15,8 @@ from harness.engine.dry_run import DryPlanner, DrySimulator
 from harness.engine.execute import execute_program
 from harness.planning.collision.scene import CoalScene
 from harness.planning.search.find_pipeline import with_planner
-from harness.ports import FreeMotion, MotionPlan, MotionRequest
+from harness.ports.motion_planning import MotionPlan, MotionRequest
+from harness.ports.motions import FreeMotion
 from harness.recording.run import StepRecord
 from harness.session.prepare import Prepared, prepare
 

@@ -12,7 +12,7 @@ import numpy as np
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.planning.collision.scene import CoalScene
-from harness.ports import MotionPlanner, MotionRequest
+from harness.ports.motion_planning import MotionPlanner, MotionRequest
 from harness.recording.motion_failures import SearchFailure
 
 SPACING = 0.05

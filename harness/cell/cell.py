@@ -17,17 +17,12 @@ from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.language.poses import Direction, Pose
 from harness.language.step import Step
-from harness.ports import (
-    ExternalControl,
-    Kinematics,
-    MotionPlan,
-    MotionPlanner,
-    MotionRequest,
-    PlannedMotion,
-    PlanningOptions,
-    PlanningScene,
-    Simulator,
-)
+from harness.ports.external import ExternalControl
+from harness.ports.kinematics import Kinematics
+from harness.ports.motion_planning import MotionPlan, MotionPlanner, MotionRequest, PlanningOptions
+from harness.ports.motions import PlannedMotion
+from harness.ports.scene import PlanningScene
+from harness.ports.simulation import Simulator
 from harness.recording.execution_failures import TimeoutFailure
 from harness.recording.run import AttachmentRecord
 from harness.recording.step_results import CELL_RESULTS, Attachment, SceneChange

@@ -14,8 +14,7 @@ from harness.core.types import FloatArray
 from harness.language.goals import ArcFields, CartesianLimitsSpec, GoalFields, GoalTolerance
 from harness.language.planning import PathConstraintsSpec as ConstraintsSpec
 from harness.language.poses import Pose, Position
-from harness.ports import (
-    ArcPoint,
+from harness.ports.goals import (
     Goal,
     JointBand,
     JointGoal,
@@ -25,7 +24,8 @@ from harness.ports import (
     PositionBox,
     PositionGoal,
 )
-from harness.ports import CartesianLimits as LinkLimits
+from harness.ports.motions import ArcPoint
+from harness.ports.motions import CartesianLimits as LinkLimits
 from harness.robot.description import RobotDescription
 
 DEFAULT_TOLERANCE = GoalTolerance()

@@ -13,7 +13,9 @@ from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.language.goals import GoalFields
-from harness.ports import FreeMotion, JointGoal, LinearMotion, MotionRequest, PlanningOptions
+from harness.ports.goals import JointGoal
+from harness.ports.motion_planning import MotionRequest, PlanningOptions
+from harness.ports.motions import FreeMotion, LinearMotion
 from harness.recording.explanation import ApproachFailure
 
 MOST_BRANCHES = 2

@@ -11,7 +11,7 @@ from harness.core.world import World, WorldObject
 from harness.language.expectation import ExpectationFields
 from harness.language.files.source import Loc
 from harness.language.step import Step
-from harness.ports import PlanningOptions
+from harness.ports.motion_planning import PlanningOptions
 from harness.robot.description import RobotDescription
 
 

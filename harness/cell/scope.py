@@ -15,7 +15,7 @@ from harness.language.files.mistakes import MistakeError
 from harness.language.files.source import Loc, SourceMap
 from harness.language.poses import Pose
 from harness.language.units import in_si
-from harness.ports import LONGEST_RUN
+from harness.ports.simulation import LONGEST_RUN
 from harness.robot.description import RobotDescription
 from harness.robot.tree import is_rigid
 

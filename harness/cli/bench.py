@@ -18,7 +18,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run(arguments: argparse.Namespace) -> int:
     from harness.planning.search.find_pipeline import planner_names, with_planner
-    from harness.ports import PlanningOptions
+    from harness.ports.motion_planning import PlanningOptions
 
     planners = arguments.planners or list(planner_names())
     for planner in planners:

@@ -23,7 +23,8 @@ from harness.language.planning import Planning
 from harness.language.scenario import Scenario
 from harness.language.step import Step
 from harness.language.world import ObjectSpec, WorldSpec
-from harness.ports import Kinematics, PlanningOptions
+from harness.ports.kinematics import Kinematics
+from harness.ports.motion_planning import PlanningOptions
 from harness.robot.description import RobotDescription
 from harness.world.objects import ObjectUnusableError, resolve_object, resolve_world
 

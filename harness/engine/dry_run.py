@@ -15,16 +15,10 @@ from harness.cell.program import Program, ProgramStep
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.ports import (
-    CheckedGoal,
-    FreeMotion,
-    GripperResult,
-    JointGoal,
-    JointMotion,
-    MotionPlan,
-    MotionPlanner,
-    MotionRequest,
-)
+from harness.ports.goals import JointGoal
+from harness.ports.motion_planning import CheckedGoal, MotionPlan, MotionPlanner, MotionRequest
+from harness.ports.motions import FreeMotion, JointMotion
+from harness.ports.simulation import GripperResult
 from harness.recording.run import Signals, StepRecord
 from harness.robot.description import RobotDescription
 

@@ -11,7 +11,11 @@ from harness.cell.program import Program, ProgramStep
 from harness.core.details import Details
 from harness.core.errors import StepFailed
 from harness.engine.advice import advice
-from harness.ports import ExternalControl, Kinematics, MotionPlanner, PlanningScene, Simulator
+from harness.ports.external import ExternalControl
+from harness.ports.kinematics import Kinematics
+from harness.ports.motion_planning import MotionPlanner
+from harness.ports.scene import PlanningScene
+from harness.ports.simulation import Simulator
 from harness.recording.execution_failures import TimeoutFailure
 from harness.recording.explanation import Explanation
 from harness.recording.run import AttachmentRecord, ObjectRecord, StepRecord, StepStatus

@@ -11,7 +11,7 @@ from harness.core.printable import printable
 from harness.core.spatial import SE3, xyzw_from_wxyz
 from harness.core.world import World
 from harness.language.expectation import ExpectationFields
-from harness.ports import PlanningOptions
+from harness.ports.motion_planning import PlanningOptions
 from harness.recording.run import StepRecord
 from harness.robot.description import RobotDescription
 

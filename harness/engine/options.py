@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from harness.cell.scope import Problems
 from harness.language.files.source import Loc
 from harness.language.planning import Planning
-from harness.ports import PlanningOptions
+from harness.ports.motion_planning import PlanningOptions
 
 CheckPlanner = Callable[[str, str, Mapping[str, float]], str]
 """Normalises the name of a pipeline's planner; ValueError, with what there is, for it or its

@@ -9,7 +9,9 @@ from harness.cell.program import Program, ProgramStep
 from harness.core.spatial import SE3
 from harness.engine.dry_run import DryPlanner, DrySimulator
 from harness.engine.execute import execute_program
-from harness.ports import Kinematics, MotionPlanner, PlanningScene, Touch
+from harness.ports.kinematics import Kinematics
+from harness.ports.motion_planning import MotionPlanner
+from harness.ports.scene import PlanningScene, Touch
 from harness.recording.run import StepRecord
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from harness.cell.cell import Belief
 from harness.core.pose_arrays import compose
 from harness.core.types import FloatArray
-from harness.ports import Kinematics
+from harness.ports.kinematics import Kinematics
 
 
 def believed_poses(

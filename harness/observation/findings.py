@@ -8,7 +8,7 @@ from harness.cell.program import Program
 from harness.core.errors import Problem
 from harness.core.geometry import Box, Capsule, Cylinder, Sphere
 from harness.core.world import WorldObject
-from harness.ports import Touch
+from harness.ports.scene import Touch
 from harness.recording.explanation import lowered_margins_of
 from harness.recording.run import Finding, StepRecord
 

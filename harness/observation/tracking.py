@@ -14,7 +14,7 @@ from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, NotReached
 from harness.core.pose_arrays import compose
 from harness.core.types import FloatArray, IntArray
-from harness.ports import Kinematics
+from harness.ports.kinematics import Kinematics
 from harness.recording.run import AttachmentRecord, Finding, Pair, Run, Signals, StepRecord
 from harness.recording.step_results import AllowedCollisions
 

@@ -20,7 +20,7 @@ from harness.planning.timing.limits import TimingError
 from harness.planning.timing.timing import time_stopping, time_straight
 from harness.planning.verification.path_constraints import HeldConstraints
 from harness.planning.verification.verify import FINAL_RESOLUTION, Defect
-from harness.ports import MotionPlan
+from harness.ports.motion_planning import MotionPlan
 from harness.recording.motion_failures import SearchFailure
 
 PLANNER_ID = "RRTConnect, projected"

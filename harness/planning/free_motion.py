@@ -29,7 +29,8 @@ from harness.planning.verification.verify import (
     path_collision,
     verified_resolution,
 )
-from harness.ports import MotionPlan, PathPlanner, PlanningOptions
+from harness.ports.motion_planning import MotionPlan, PlanningOptions
+from harness.ports.path_planning import PathPlanner
 from harness.recording.goal_failures import IkStudy
 from harness.recording.motion_failures import BlockedWay, PipelineFailure, SearchFailure
 

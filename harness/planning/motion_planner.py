@@ -23,16 +23,14 @@ from harness.planning.task import PlanningTask, make_task
 from harness.planning.timing.limits import Limits, TimingError
 from harness.planning.timing.profiles import cubic_curve, on_grid, quintic_curve, sample
 from harness.planning.timing.timing import time_straight
-from harness.ports import (
-    CheckedGoal,
+from harness.ports.goals import PathConstraints
+from harness.ports.motion_planning import CheckedGoal, MotionPlan, MotionRequest
+from harness.ports.motions import (
     CircularMotion,
     FreeMotion,
     JointMotion,
     LinearMotion,
-    MotionPlan,
-    MotionRequest,
     MotionSequence,
-    PathConstraints,
     RelativeMotion,
     WaypointMotion,
 )

@@ -20,7 +20,8 @@ from harness.planning.timing.limits import Limits
 from harness.planning.timing.profiles import SAMPLE_PERIOD
 from harness.planning.verification.path_constraints import HeldConstraints
 from harness.planning.verification.verify import Defect, find_defect
-from harness.ports import MotionPlan, PathConstraints, PlanningOptions
+from harness.ports.goals import PathConstraints
+from harness.ports.motion_planning import MotionPlan, PlanningOptions
 from harness.recording.explanation import LoweredMargins
 from harness.recording.goal_failures import StartLimitFailure
 

@@ -13,7 +13,8 @@ from harness.core.types import FloatArray
 from harness.planning.ik.kinematics import PinocchioKinematics, is_built_in
 from harness.planning.ik.numeric import LinkGoal
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import IkRequest, IkSolver, PoseGoal, PositionGoal
+from harness.ports.goals import PoseGoal, PositionGoal
+from harness.ports.kinematics import IkRequest, IkSolver
 from harness.robot.chain import Chain
 from harness.robot_tools.robot_source import RobotSource, load_source
 from harness.strategies.tasks import natural_task

@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass, replace
 
 from harness.core.errors import Problem, SpecError
-from harness.ports import LONGEST_RUN
+from harness.ports.simulation import LONGEST_RUN
 from harness.reporting.result import CaseResult
 from harness.ros.domain import free_domain
 from harness.ros.graph import Graph

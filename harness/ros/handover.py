@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from harness.core.world import WorldObject
-from harness.ports import ExternalRequest, ExternalResult
+from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
 from harness.recording.run import ObjectRecord
 from harness.ros.control.cell import ExternalCell, controller_names

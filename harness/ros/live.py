@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.ports import ExternalRequest, ExternalResult
+from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
 from harness.ros.camera_topics import CameraTopics
 from harness.ros.graph import Graph

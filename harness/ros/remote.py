@@ -14,7 +14,8 @@ from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.ports import GripperResult, Kinematics
+from harness.ports.kinematics import Kinematics
+from harness.ports.simulation import GripperResult
 from harness.recording.execution_failures import ControlFailure
 from harness.recording.run import Signals
 from harness.ros.action_client import ActionClient, ClientGoal

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from harness.core.errors import HarnessError
-from harness.ports import ExternalRequest, ExternalResult
+from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
 from harness.recording.store import RESOLVED, read_run
 from harness.reporting.result import CaseResult

@@ -8,7 +8,7 @@ from typing import Protocol
 from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
 from harness.language.expectation import ExpectationFields
-from harness.ports import ExternalRequest
+from harness.ports.external import ExternalRequest
 from harness.recording.run import ObjectRecord, RobotRecord, Run, Signals, StepRecord
 
 EVERY, SHARE = 0.5, 0.05

@@ -14,7 +14,7 @@ from harness.engine.predict import predict, predict_with_poses, touches_at_start
 from harness.language.files.source import Loc
 from harness.language.reading.load import LoadedScenario
 from harness.language.reading.varied_paths import as_json, choices
-from harness.ports import Touch
+from harness.ports.scene import Touch
 from harness.recording.execution_failures import not_held_object
 from harness.reporting.explanation import explanation_lines
 from harness.session.prepare import prepare

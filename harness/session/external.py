@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Protocol
 
 from harness.core.errors import StepFailed
-from harness.ports import ExternalControl, ExternalRequest, ExternalResult
+from harness.ports.external import ExternalControl, ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
 from harness.session.prepare import Prepared
 

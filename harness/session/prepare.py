@@ -29,7 +29,9 @@ from harness.observation.findings import about_file
 from harness.planning.backend import make_planning
 from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
 from harness.planning.search.find_pipeline import check_planner
-from harness.ports import Kinematics, MotionPlanner, PlanningScene
+from harness.ports.kinematics import Kinematics
+from harness.ports.motion_planning import MotionPlanner
+from harness.ports.scene import PlanningScene
 from harness.recording.run import Finding
 from harness.robot.collision_shapes import parts_notes
 from harness.robot.description import RobotDescription

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from harness.cell.program import Program, ProgramStep
-from harness.ports import Simulator
+from harness.ports.simulation import Simulator
 from harness.recording.run import StepRecord
 from harness.recording.store import StoredRun
 from harness.reporting.result import CaseResult, ProgressEvent

@@ -10,7 +10,8 @@ from harness.engine.execute import Execution
 from harness.language.reading.resolve import resolved_text
 from harness.observation.fault_effects import with_receipts
 from harness.observation.findings import findings_of, notes_of_files, overlap_findings
-from harness.ports import Kinematics, Touch
+from harness.ports.kinematics import Kinematics
+from harness.ports.scene import Touch
 from harness.recording.run import (
     GripperRecord,
     JointRecord,

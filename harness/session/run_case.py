@@ -11,7 +11,7 @@ from pathlib import Path
 from harness.assertions.judge import judge
 from harness.core.errors import HarnessError, SpecError
 from harness.engine.execute import execute_program
-from harness.ports import Touch
+from harness.ports.scene import Touch
 from harness.recording.digest import digest
 from harness.recording.run import Run
 from harness.recording.store import PAGE, StoredRun

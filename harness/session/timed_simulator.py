@@ -7,7 +7,7 @@ from typing import Any
 
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.ports import GripperResult
+from harness.ports.simulation import GripperResult
 from harness.session.timing import Clock
 from harness.simulation.mujoco_simulator import MujocoSimulator
 from harness.simulation.set_points import SetPoints

@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.core.antipodal import combined_press, is_antipodal, least_thickness
 from harness.core.types import FloatArray, IntArray
-from harness.ports import GripperResult
+from harness.ports.simulation import GripperResult
 from harness.robot.description import Gripper, RobotDescription
 from harness.simulation.model import PhysicsModel
 from harness.simulation.recording import Recording

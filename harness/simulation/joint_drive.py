@@ -13,7 +13,7 @@ import numpy as np
 from harness.core.errors import StepFailed
 from harness.core.registry import described, raised, registry
 from harness.core.types import FloatArray
-from harness.ports import ControlRequest, ControlResult, JointController
+from harness.ports.joint_control import ControlRequest, ControlResult, JointController
 from harness.simulation.model import PhysicsModel
 from harness.simulation.robot_mjcf import coupling
 from harness.simulation.servo import FeedForward

@@ -14,7 +14,7 @@ from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
-from harness.ports import GripperResult
+from harness.ports.simulation import GripperResult
 from harness.recording.execution_failures import ContactForce, ControlFailure, UnrestFailure
 from harness.recording.run import Signals
 from harness.robot.description import RobotDescription

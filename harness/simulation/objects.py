@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.ports import Touch
+from harness.ports.scene import Touch
 from harness.simulation.model import ObjectPlace, PhysicsModel, set_presence
 from harness.simulation.recording import Recording, refresh
 from harness.simulation.world_mjcf import weld_name

@@ -11,7 +11,7 @@ import numpy as np
 
 from harness.core.errors import SimulationDiverged, StepFailed
 from harness.core.types import FloatArray
-from harness.ports import LONGEST_RUN
+from harness.ports.simulation import LONGEST_RUN
 from harness.recording.execution_failures import LengthFailure
 from harness.recording.run import Signals
 from harness.simulation.contact_record import BYTES, ROWS, BodyPair, ContactRecord, doubled

@@ -12,7 +12,7 @@ import mujoco
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.ports import JointController
+from harness.ports.joint_control import JointController
 from harness.simulation.recording import refresh
 from harness.simulation.set_points import SetPoints
 

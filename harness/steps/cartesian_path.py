@@ -15,14 +15,9 @@ from harness.language.base import Angle, Fraction, Length, Name, PositiveLength,
 from harness.language.goals import CartesianLimitsSpec, GoalFields
 from harness.language.poses import Pose, Position
 from harness.language.step import Step
-from harness.ports import (
-    CartesianPathOptions,
-    JointGoal,
-    PoseGoal,
-    PositionGoal,
-    WaypointMotion,
-)
-from harness.ports import JumpThreshold as PlannedJumpThreshold
+from harness.ports.goals import JointGoal, PoseGoal, PositionGoal
+from harness.ports.motions import CartesianPathOptions, WaypointMotion
+from harness.ports.motions import JumpThreshold as PlannedJumpThreshold
 from harness.recording.step_results import CartesianPathResult
 
 

@@ -11,7 +11,7 @@ from harness.cell.goals import arc_point, group_of, link_limits, resolve_goal
 from harness.cell.scope import At
 from harness.language.goals import ArcFields
 from harness.language.step import Step
-from harness.ports import CircularMotion
+from harness.ports.motions import CircularMotion
 
 
 class Circ(ArcFields, Step):

@@ -14,7 +14,7 @@ from harness.core.errors import StepFailed
 from harness.language.base import Name, PositiveDuration
 from harness.language.expectation import AnyExpectation, ExpectationFields
 from harness.language.step import Step
-from harness.ports import ExternalRequest, ExternalResult
+from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.execution_failures import TimeoutFailure
 
 DEFAULT_TIMEOUT = 60.0  # [s] of simulation

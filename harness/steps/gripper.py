@@ -13,7 +13,7 @@ from harness.cell.scope import At
 from harness.core.errors import StepFailed
 from harness.language.base import JointEffort, JointValue, Name, NonNegativeLength
 from harness.language.step import Step
-from harness.ports import GripperResult
+from harness.ports.simulation import GripperResult
 from harness.recording.execution_failures import GripperOutcome
 from harness.robot.description import Gripper as GripperDescription
 

@@ -11,7 +11,7 @@ from harness.cell.goals import group_of, link_limits, resolve_goal
 from harness.cell.scope import At
 from harness.language.goals import LineFields
 from harness.language.step import Step
-from harness.ports import LinearMotion
+from harness.ports.motions import LinearMotion
 
 
 class Lin(LineFields, Step):

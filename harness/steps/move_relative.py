@@ -14,7 +14,8 @@ from harness.core.types import FloatArray
 from harness.language.base import Angle, Length, Name, PositiveLength
 from harness.language.poses import Direction
 from harness.language.step import Step
-from harness.ports import MotionPlan, MotionRequest, PlanningOptions, RelativeMotion
+from harness.ports.motion_planning import MotionPlan, MotionRequest, PlanningOptions
+from harness.ports.motions import RelativeMotion
 
 
 class MoveRelative(Step):

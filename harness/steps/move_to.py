@@ -13,7 +13,8 @@ from harness.cell.scope import At
 from harness.language.goals import GOAL_KEYS, GoalFields
 from harness.language.planning import PathConstraintsSpec
 from harness.language.step import Step
-from harness.ports import AnyGoal, FreeMotion
+from harness.ports.goals import AnyGoal
+from harness.ports.motions import FreeMotion
 
 
 class MoveTo(GoalFields, Step):

@@ -23,7 +23,8 @@ from harness.core.types import FloatArray
 from harness.language.base import Name
 from harness.language.poses import Direction, Pose, Position
 from harness.language.step import Step
-from harness.ports import PositionGoal, Touch
+from harness.ports.goals import PositionGoal
+from harness.ports.scene import Touch
 from harness.recording.execution_failures import NotHeldFailure
 from harness.recording.explanation import Explanation
 from harness.recording.goal_failures import CollisionFailure, TouchRecord

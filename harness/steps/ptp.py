@@ -14,7 +14,8 @@ from harness.core.errors import PlanningFailed
 from harness.language.base import PositiveDuration
 from harness.language.goals import GoalFields
 from harness.language.step import Step
-from harness.ports import FreeMotion, JointGoal, JointMotion
+from harness.ports.goals import JointGoal
+from harness.ports.motions import FreeMotion, JointMotion
 
 
 class Ptp(GoalFields, Step):

@@ -16,8 +16,8 @@ from harness.core.types import FloatArray
 from harness.language.base import NonNegativeLength, SpecModel
 from harness.language.goals import ArcFields, GoalFields, LineFields
 from harness.language.step import Step
-from harness.ports import MotionSequence
-from harness.ports import SequenceItem as PlannedItem
+from harness.ports.motions import MotionSequence
+from harness.ports.motions import SequenceItem as PlannedItem
 
 LinkPosition = tuple[str, str, FloatArray]
 """A link, a frame, and the link's position in it."""

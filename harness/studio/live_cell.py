@@ -15,7 +15,8 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.engine.execute import OnStep, ProgramExecution
 from harness.planning.collision.scene import CoalScene, SceneState
-from harness.ports import MotionPlan, Touch
+from harness.ports.motion_planning import MotionPlan
+from harness.ports.scene import Touch
 from harness.recording.run import AttachmentRecord, StepRecord
 from harness.robot.description import RobotDescription
 from harness.session.prepare import Prepared, prepare

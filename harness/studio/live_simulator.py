@@ -12,7 +12,7 @@ import numpy as np
 
 from harness.core.errors import StepFailed
 from harness.core.types import FloatArray
-from harness.ports import Touch
+from harness.ports.scene import Touch
 from harness.session.timed_simulator import TimedSimulator
 from harness.simulation.objects import overlaps
 from harness.simulation.recording import refresh

@@ -16,7 +16,7 @@ from harness.core.errors import Problem, SpecError
 from harness.core.printable import printable
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.ports import Touch
+from harness.ports.scene import Touch
 from harness.recording.run import StepRecord
 from harness.studio.document import Document, robot_alone
 from harness.studio.files import StudioFiles

@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.core.errors import StepFailed
 from harness.core.types import FloatArray
-from harness.ports import MotionPlan
+from harness.ports.motion_planning import MotionPlan
 from harness.recording.run import StepRecord
 from harness.studio.live_cell import LiveCell
 

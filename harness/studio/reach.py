@@ -17,7 +17,8 @@ from harness.planning.goals.goals import find_goals
 from harness.planning.ik.answer import IkAnswer
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import PoseGoal, PositionGoal, Touch
+from harness.ports.goals import PoseGoal, PositionGoal
+from harness.ports.scene import Touch
 from harness.studio.live_cell import LiveCell
 
 WHOLE_POSE_JOINTS = 6

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from harness.assertions.text import amount, amounts, percentages
 from harness.planning.collision import wording
-from harness.ports import Touch
+from harness.ports.scene import Touch
 from harness.recording.run import Measure
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False, width=64, min_value=-1e6, max_value=1e6)

@@ -7,7 +7,7 @@ import pytest
 from harness.core.spatial import SE3
 from harness.iktest import IkTest, check_ik, run_ik_test
 from harness.planning.ik.kinematics import PinocchioKinematics
-from harness.ports import PoseGoal
+from harness.ports.goals import PoseGoal
 from harness.robot.chain import Chain
 from harness.robot_tools.builtin_ik import own_solver
 from harness.robot_tools.robot_source import RobotSource, load_source

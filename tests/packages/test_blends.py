@@ -5,7 +5,9 @@ import pytest
 
 from harness.core.spatial import SE3
 from harness.language.scenario import RobotSpec
-from harness.ports import MotionRequest, MotionSequence, PlanningOptions, PoseGoal, SequenceItem
+from harness.ports.goals import PoseGoal
+from harness.ports.motion_planning import MotionRequest, PlanningOptions
+from harness.ports.motions import MotionSequence, SequenceItem
 from harness.robot.load import load_robot
 from tests.planning.lesson import Cell
 

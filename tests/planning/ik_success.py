@@ -16,7 +16,7 @@ from harness.planning.ik.numeric import (
 )
 from harness.planning.ik.numeric import solve_numeric as solve
 from harness.planning.model.robot_model import GroupSpace, RobotModel
-from harness.ports import PoseGoal, PositionGoal
+from harness.ports.goals import PoseGoal, PositionGoal
 from harness.robot.load import gripper_names, load_robot, robot_names
 
 PAGE = Path(__file__).parents[2] / "docs/reference/inverse_kinematics.md"

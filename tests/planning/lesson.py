@@ -9,7 +9,7 @@ from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.language.scenario import RobotSpec
 from harness.planning.backend import make_planning
-from harness.ports import PoseGoal
+from harness.ports.goals import PoseGoal
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
 

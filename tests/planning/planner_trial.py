@@ -3,7 +3,8 @@
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.model.robot_model import GroupSpace
 from harness.planning.search.search import Search, search
-from harness.ports import PathRequest, PlanningOptions
+from harness.ports.motion_planning import PlanningOptions
+from harness.ports.path_planning import PathRequest
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, boxes, ur
 
 RESOLUTION = 1 / 16

@@ -11,7 +11,8 @@ from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3
 from harness.planning.collision.checker import MARGIN_SLACK, TOUCHING
 from harness.planning.verification.verify import EFFORT_TOLERANCE, FINAL_RESOLUTION, LIMIT_TOLERANCE
-from harness.ports import MotionPlan, MotionRequest, PlanningOptions, PoseGoal
+from harness.ports.goals import PoseGoal
+from harness.ports.motion_planning import MotionPlan, MotionRequest, PlanningOptions
 from tests.planning.lesson import Cell, at, open_manipulator, thing, ur
 
 SCALING = 0.4

@@ -5,16 +5,9 @@ import pytest
 
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
-from harness.ports import (
-    ArcPoint,
-    CartesianLimits,
-    CircularMotion,
-    LinearMotion,
-    MotionRequest,
-    PlanningOptions,
-    PoseGoal,
-    PositionGoal,
-)
+from harness.ports.goals import PoseGoal, PositionGoal
+from harness.ports.motion_planning import MotionRequest, PlanningOptions
+from harness.ports.motions import ArcPoint, CartesianLimits, CircularMotion, LinearMotion
 from tests.planning.lesson import ARM, TCP, Cell, grasp_goal, open_manipulator, ur
 
 ABOVE = [-0.858, -1.187, 0.474, -0.858, -1.5708, -1.643]

@@ -15,7 +15,9 @@ from harness.planning.collision.checker import MotionChecker
 from harness.planning.collision.compiled import use_compiled
 from harness.planning.collision.convex_tree import shapes_tree
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import FreeMotion, JointGoal, MotionRequest, PlanningOptions
+from harness.ports.goals import JointGoal
+from harness.ports.motion_planning import MotionRequest, PlanningOptions
+from harness.ports.motions import FreeMotion
 from tests.engine.front_door import run
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, at, boxes, open_manipulator, thing, ur
 from tests.planning.problem import HOMES, description_of
@@ -173,7 +175,9 @@ def test_the_compiled_check_is_not_loaded_before_it_pays_off():
     program = """
 import sys
 from tests.planning.lesson import Cell, ARM, ur
-from harness.ports import FreeMotion, JointGoal, MotionRequest, PlanningOptions
+from harness.ports.goals import JointGoal
+from harness.ports.motion_planning import MotionRequest, PlanningOptions
+from harness.ports.motions import FreeMotion
 cell = Cell(ur("ur3e"))
 goal = FreeMotion(JointGoal(cell.named("up")))
 cell.planner.plan(MotionRequest(ARM, cell.state, goal, PlanningOptions()))

@@ -12,7 +12,9 @@ from harness.core.world import WorldObject
 from harness.planning.efforts import InverseDynamics
 from harness.planning.model.robot_model import GroupSpace
 from harness.planning.timing.timing import Limits, time_blended, time_straight
-from harness.ports import FreeMotion, JointGoal, MotionRequest, PlanningOptions
+from harness.ports.goals import JointGoal
+from harness.ports.motion_planning import MotionRequest, PlanningOptions
+from harness.ports.motions import FreeMotion
 from harness.recording.motion_failures import OverloadFailure
 from tests.planning.lesson import ARM, TCP, Cell, ur
 

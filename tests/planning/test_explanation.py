@@ -17,17 +17,9 @@ from harness.planning.ik.nearest_pose import (
     nearest_pose,
 )
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import (
-    FreeMotion,
-    JointGoal,
-    JointMotion,
-    LinearMotion,
-    MotionRequest,
-    PlanningOptions,
-    PoseGoal,
-    PositionGoal,
-    RelativeMotion,
-)
+from harness.ports.goals import JointGoal, PoseGoal, PositionGoal
+from harness.ports.motion_planning import MotionRequest, PlanningOptions
+from harness.ports.motions import FreeMotion, JointMotion, LinearMotion, RelativeMotion
 from harness.recording.explanation import stages_of
 from tests.planning.lesson import (
     ARM,

@@ -9,7 +9,7 @@ import pytest
 from harness.language.scenario import RobotSpec
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.numeric import pitch_of
-from harness.ports import PoseGoal, PositionGoal
+from harness.ports.goals import PoseGoal, PositionGoal
 from harness.robot.load import load_robot
 from tests.planning.ik_success import ARMS, ATTEMPTS, KINDS, PAGE, POSES, measure
 

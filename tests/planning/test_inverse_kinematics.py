@@ -9,7 +9,7 @@ from eaik.IK_HP import HPRobot
 from harness.core.spatial import SE3
 from harness.language.scenario import RobotSpec
 from harness.planning.ik.kinematics import PinocchioKinematics
-from harness.ports import PoseGoal, PositionGoal
+from harness.ports.goals import PoseGoal, PositionGoal
 from harness.robot.load import load_robot
 from tests.planning.lesson import ARM, TCP, grasp_goal, open_manipulator, ur
 

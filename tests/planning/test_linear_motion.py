@@ -10,14 +10,9 @@ from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3
 from harness.planning.cartesian.line_goals import pitched
 from harness.planning.cartesian.splines import uniform_spline
-from harness.ports import (
-    LinearMotion,
-    MotionRequest,
-    PlanningOptions,
-    PoseGoal,
-    PositionGoal,
-    RelativeMotion,
-)
+from harness.ports.goals import PoseGoal, PositionGoal
+from harness.ports.motion_planning import MotionRequest, PlanningOptions
+from harness.ports.motions import LinearMotion, RelativeMotion
 from tests.planning.lesson import ARM, TCP, Cell, at, grasp_goal, open_manipulator, thing, ur
 
 SLOW = PlanningOptions(velocity_scaling=0.1, acceleration_scaling=0.1)

@@ -10,15 +10,9 @@ from harness.core.errors import PlanningFailed
 from harness.core.geometry import Box, Cylinder, Shape, Sphere
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import (
-    FreeMotion,
-    JointGoal,
-    JointMotion,
-    MotionRequest,
-    PlanningOptions,
-    PoseGoal,
-    PositionGoal,
-)
+from harness.ports.goals import JointGoal, PoseGoal, PositionGoal
+from harness.ports.motion_planning import MotionRequest, PlanningOptions
+from harness.ports.motions import FreeMotion, JointMotion
 from tests.planning.lesson import (
     ARM,
     FIRST_BOXES,

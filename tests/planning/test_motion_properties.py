@@ -14,23 +14,25 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from harness.core.spatial import SE3
-from harness.ports import (
+from harness.ports.goals import (
     AnyGoal,
-    ArcPoint,
-    CartesianPathOptions,
-    CircularMotion,
-    FreeMotion,
     JointBand,
     JointGoal,
-    JointMotion,
-    JumpThreshold,
-    LinearMotion,
-    MotionSequence,
     OrientationBand,
     PathConstraints,
     PoseGoal,
     PositionBox,
     PositionGoal,
+)
+from harness.ports.motions import (
+    ArcPoint,
+    CartesianPathOptions,
+    CircularMotion,
+    FreeMotion,
+    JointMotion,
+    JumpThreshold,
+    LinearMotion,
+    MotionSequence,
     RelativeMotion,
     SequenceItem,
     WaypointMotion,

@@ -6,18 +6,17 @@ import pytest
 from harness.core.errors import PlanningFailed
 from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3
-from harness.ports import (
+from harness.ports.goals import (
     AnyGoal,
-    FreeMotion,
     JointBand,
     JointGoal,
-    MotionRequest,
     OrientationBand,
     PathConstraints,
-    PlanningOptions,
     PoseGoal,
     PositionBox,
 )
+from harness.ports.motion_planning import MotionRequest, PlanningOptions
+from harness.ports.motions import FreeMotion
 from tests.planning.lesson import ARM, TCP, Cell, at, grasp_goal, thing, ur
 
 OPTIONS = PlanningOptions(seed=3)

@@ -7,7 +7,7 @@ from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.geometry import Box, Capsule, Cylinder, Shape, Sphere
 from harness.planning.collision.checker import MotionChecker, coarse_to_fine
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import PoseGoal
+from harness.ports.goals import PoseGoal
 from tests.planning.lesson import ARM, TCP, Cell, at, thing, ur
 
 

@@ -4,15 +4,9 @@ import numpy as np
 import pytest
 
 from harness.core.spatial import SE3
-from harness.ports import (
-    ArcPoint,
-    JointGoal,
-    MotionRequest,
-    MotionSequence,
-    PlanningOptions,
-    PoseGoal,
-    SequenceItem,
-)
+from harness.ports.goals import JointGoal, PoseGoal
+from harness.ports.motion_planning import MotionRequest, PlanningOptions
+from harness.ports.motions import ArcPoint, MotionSequence, SequenceItem
 from tests.planning.lesson import Cell
 from tests.planning.seven_joints import seven_joints
 

@@ -7,19 +7,16 @@ import pytest
 
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
-from harness.ports import (
+from harness.ports.goals import JointGoal, PoseGoal, PositionGoal
+from harness.ports.motion_planning import MotionRequest, PlanningOptions
+from harness.ports.motions import (
     ArcPoint,
     CartesianLimits,
     CartesianPathOptions,
     CircularMotion,
-    JointGoal,
     JumpThreshold,
     LinearMotion,
-    MotionRequest,
     MotionSequence,
-    PlanningOptions,
-    PoseGoal,
-    PositionGoal,
     SequenceItem,
     WaypointMotion,
 )

@@ -6,7 +6,7 @@ from harness.planning.collision.checker import MotionChecker
 from harness.planning.model.robot_model import GroupSpace
 from harness.planning.search.search import search
 from harness.planning.search.shortening import shorten
-from harness.ports import PlanningOptions
+from harness.ports.motion_planning import PlanningOptions
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, boxes, ur
 
 COARSE = 1 / 2  # [rad] so coarse that it matters which states of an edge are checked

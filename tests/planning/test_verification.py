@@ -11,7 +11,8 @@ from harness.planning.task import make_task
 from harness.planning.timing.timing import time_blended, time_straight
 from harness.planning.verification.path_constraints import HeldConstraints
 from harness.planning.verification.verify import find_defect, find_departure
-from harness.ports import JointBand, PathConstraints, PlanningOptions
+from harness.ports.goals import JointBand, PathConstraints
+from harness.ports.motion_planning import PlanningOptions
 from tests.planning.lesson import ARM, Cell, thing, ur
 
 PALM = "rh_p12_rn_base"

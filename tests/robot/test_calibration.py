@@ -7,7 +7,7 @@ import pytest
 from harness.core.errors import RobotError, SpecError
 from harness.language.scenario import RobotSpec
 from harness.planning.ik.kinematics import PinocchioKinematics
-from harness.ports import PoseGoal
+from harness.ports.goals import PoseGoal
 from harness.robot.load import load_robot
 from harness.simulation.servo import bare_robot
 from tests.robot.models import robot

@@ -7,7 +7,7 @@ from harness.core.errors import RobotError, SpecError
 from harness.core.spatial import SE3
 from harness.language.scenario import RobotSpec
 from harness.planning.ik.kinematics import PinocchioKinematics
-from harness.ports import PoseGoal
+from harness.ports.goals import PoseGoal
 from harness.robot.load import load_robot
 
 LIMITS = """\

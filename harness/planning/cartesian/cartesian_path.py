@@ -19,7 +19,9 @@ from harness.planning.cartesian.linear_path import LinearPath
 from harness.planning.cartesian.link_motion import LinkMotions
 from harness.planning.cartesian.link_timing import LinkRates
 from harness.planning.cartesian.tracing import STEP_ANGLE, STEP_LENGTH, Trace, trace
-from harness.ports import CartesianPathOptions, Goal, MotionPlan
+from harness.ports.goals import Goal
+from harness.ports.motion_planning import MotionPlan
+from harness.ports.motions import CartesianPathOptions
 from harness.recording.explanation import StraightResult
 from harness.recording.step_results import CartesianPathResult
 

@@ -12,7 +12,7 @@ from harness.core.types import FloatArray
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.numeric import pitch_of
 from harness.planning.task import PlanningTask
-from harness.ports import Goal, JointGoal, PoseGoal, PositionGoal
+from harness.ports.goals import Goal, JointGoal, PoseGoal, PositionGoal
 
 
 def end_pose(

@@ -26,7 +26,9 @@ from harness.planning.ik.kinematics import PinocchioKinematics, meets_tolerance
 from harness.planning.task import PlanningTask
 from harness.planning.timing.limits import TimingError
 from harness.planning.timing.profiles import resting
-from harness.ports import ArcPoint, Goal, MotionPlan, PoseGoal
+from harness.ports.goals import Goal, PoseGoal
+from harness.ports.motion_planning import MotionPlan
+from harness.ports.motions import ArcPoint
 from harness.recording.explanation import ArcResult, StraightResult
 from harness.recording.goal_failures import IkFailure
 from harness.recording.motion_failures import DeviationFailure, DistanceFailure, TraceFailure

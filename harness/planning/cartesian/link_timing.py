@@ -22,7 +22,8 @@ from harness.planning.timing.limits import (
     time_grid,
 )
 from harness.planning.timing.profiles import Curve, Trapezoid, on_grid, smoothed
-from harness.ports import CartesianLimits, PlanningOptions
+from harness.ports.motion_planning import PlanningOptions
+from harness.ports.motions import CartesianLimits
 
 MAX_TRANSLATION_VELOCITY = 1.0
 """pilz_cartesian_limits of ur_moveit_config [m/s]."""

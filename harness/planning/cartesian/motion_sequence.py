@@ -16,7 +16,9 @@ from harness.planning.cartesian.linear_path import LinearPath
 from harness.planning.cartesian.link_motion import LinkMotions, arc_to
 from harness.planning.cartesian.link_timing import LinkRates
 from harness.planning.goals.goals import find_goals
-from harness.ports import JointGoal, MotionPlan, SequenceItem
+from harness.ports.goals import JointGoal
+from harness.ports.motion_planning import MotionPlan
+from harness.ports.motions import SequenceItem
 from harness.recording.motion_failures import SequenceFailure
 from harness.recording.step_results import SequenceResult
 

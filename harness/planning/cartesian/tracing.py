@@ -18,7 +18,8 @@ from harness.planning.cartesian.splines import uniform_spline
 from harness.planning.collision import wording
 from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.ik.numeric import LinkGoal, LinkTask, pitch_of
-from harness.ports import JumpThreshold, PoseGoal, PositionGoal
+from harness.ports.goals import PoseGoal, PositionGoal
+from harness.ports.motions import JumpThreshold
 from harness.recording.motion_failures import TraceFailure
 
 STEP_LENGTH = 0.005

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from harness.core.geometry import Mesh, Shape
 from harness.planning.collision.scene import CoalScene
 from harness.planning.collision.wording import length_text
-from harness.ports import Touch
+from harness.ports.scene import Touch
 from harness.robot.mesh_file import decomposition_of
 
 

@@ -21,7 +21,7 @@ from harness.planning.collision.certificates import MotionArrays, motion_arrays
 from harness.planning.collision.compiled import compiled_check
 from harness.planning.collision.scene import CoalScene
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import Touch
+from harness.ports.scene import Touch
 from harness.recording.explanation import LoweredMargin
 from harness.recording.goal_failures import CollisionFailure, TouchRecord
 

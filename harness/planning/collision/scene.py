@@ -18,7 +18,7 @@ from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
 from harness.planning.collision.geometry import geometry_object
 from harness.planning.model.robot_model import RobotModel
-from harness.ports import Touch
+from harness.ports.scene import Touch
 from harness.recording.execution_failures import ObjectFailure
 from harness.robot.description import RobotDescription
 from harness.robot.solids import box_corners, coal_geometry, distance_to_point

@@ -10,7 +10,7 @@ from harness.core.quantity import distinct
 from harness.core.types import FloatArray
 from harness.planning.collision.scene import CoalScene
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import Touch
+from harness.ports.scene import Touch
 
 MOST_TOUCHES = 3
 """Pairs that are named; of the rest only how many they are."""

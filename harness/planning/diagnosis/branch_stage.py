@@ -19,7 +19,7 @@ from harness.planning.diagnosis.stage_request import StageFinding, StageRequest,
 from harness.planning.goals.goal_study import GoalStudy
 from harness.planning.ik.nearest_pose import SHIFTS, NearestPose, nearest_free_shift
 from harness.planning.ik.numeric import LinkGoal
-from harness.ports import IkSolver
+from harness.ports.kinematics import IkSolver
 from harness.recording.explanation import FreeShift, NearestState, Stage
 
 MOST_DETAILS = 8

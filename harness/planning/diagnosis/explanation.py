@@ -18,7 +18,8 @@ from harness.planning.diagnosis.motion_stages import path_finding, start_finding
 from harness.planning.diagnosis.stage_request import StageFinding, StageRequest
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import AnyGoal, MotionRequest, PlanningOptions
+from harness.ports.goals import AnyGoal
+from harness.ports.motion_planning import MotionRequest, PlanningOptions
 from harness.recording.explanation import Explanation
 
 _NO_STAGE = ("INVALID_GROUP_NAME", "INVALID_LINK_NAME", "UNRECOGNIZED_GOAL_TYPE", "CRASH")

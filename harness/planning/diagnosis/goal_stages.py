@@ -12,7 +12,7 @@ from harness.planning.diagnosis.reach_stage import reach_finding
 from harness.planning.diagnosis.stage_request import StageFinding, StageRequest
 from harness.planning.goals.goal_study import GoalStudy, broken_limits, limit_sentence, study_goal
 from harness.planning.ik.numeric import LinkGoal
-from harness.ports import JointGoal
+from harness.ports.goals import JointGoal
 from harness.recording.explanation import NearestState, Stage
 
 

@@ -20,7 +20,7 @@ from harness.planning.ik.nearest_pose import (
     target_of,
 )
 from harness.planning.ik.numeric import LinkGoal
-from harness.ports import PoseGoal, PositionGoal
+from harness.ports.goals import PoseGoal, PositionGoal
 from harness.recording.explanation import Stage
 
 _KEPT = 1e-3  # [m, rad] an alternative that misses by less keeps what it should

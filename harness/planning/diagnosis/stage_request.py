@@ -15,7 +15,9 @@ from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.nearest_pose import NearestPose
 from harness.planning.ik.numeric import LinkGoal
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import Goal, PlanningOptions, PoseGoal, Touch
+from harness.ports.goals import Goal, PoseGoal
+from harness.ports.motion_planning import PlanningOptions
+from harness.ports.scene import Touch
 from harness.recording.explanation import NearestState, Stage
 
 

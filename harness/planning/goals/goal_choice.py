@@ -19,7 +19,7 @@ from harness.planning.goals.goals import GoalCandidates, find_goals
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.task import PlanningTask
 from harness.planning.verification.path_constraints import HeldConstraints
-from harness.ports import AnyGoal, Goal, PoseGoal
+from harness.ports.goals import AnyGoal, Goal, PoseGoal
 from harness.recording.explanation import Alternative, Alternatives, GoalRegion
 
 SAMPLES = 24

@@ -13,7 +13,7 @@ from harness.planning.ik.answer import IkAnswer
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.numeric import LinkGoal
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import Touch
+from harness.ports.scene import Touch
 from harness.recording.goal_failures import BrokenLimit, IkResidual, IkSolution, IkStudy
 
 MOST_GOALS = 8

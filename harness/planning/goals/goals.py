@@ -26,7 +26,9 @@ from harness.planning.ik.answer import LimitedSolution, MissedSolution
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.nearest_pose import nearest_pose, target_of
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import Goal, IkSolver, JointGoal, PoseGoal, PositionGoal, Touch
+from harness.ports.goals import Goal, JointGoal, PoseGoal, PositionGoal
+from harness.ports.kinematics import IkSolver
+from harness.ports.scene import Touch
 from harness.recording.goal_failures import CollisionFailure, IkFailure, LimitFailure
 
 _REACHED = 1e-6  # [m, rad] the point is reached within this distance

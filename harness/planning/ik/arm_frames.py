@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.core.spatial import SE3
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import IkRequest
+from harness.ports.kinematics import IkRequest
 from harness.robot.description import Joint
 
 

@@ -22,7 +22,8 @@ from harness.planning.ik.task import WHOLE_POSE_JOINTS, task_of
 from harness.planning.ik.third_party import solve_with_third_party
 from harness.planning.model.robot_model import GroupSpace, RobotModel
 from harness.planning.model.turns import is_within, turn_from
-from harness.ports import IkRequest, IkSolver, PoseGoal, PositionGoal
+from harness.ports.goals import PoseGoal, PositionGoal
+from harness.ports.kinematics import IkRequest, IkSolver
 from harness.recording.goal_failures import LinkFailure
 from harness.robot.description import RobotDescription
 from harness.robot.forward_kinematics import LinkPoses, quats_wxyz

@@ -11,7 +11,7 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.planning.ik.numeric import LinkGoal, LinkTask, pitch_of, sample_group_positions
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import PoseGoal, PositionGoal
+from harness.ports.goals import PoseGoal, PositionGoal
 
 RESTARTS = 12
 """Number of searches from random positions, in addition to the one from the seed."""

@@ -10,7 +10,7 @@ import pinocchio as pin
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import PoseGoal, PositionGoal
+from harness.ports.goals import PoseGoal, PositionGoal
 
 LinkGoal = PoseGoal | PositionGoal
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from harness.ports import PoseGoal, PositionGoal
+from harness.ports.goals import PoseGoal, PositionGoal
 
 WHOLE_POSE_JOINTS, PITCH_JOINTS = 6, 4
 """Joints that an arm needs for an arbitrary pose, and for an arbitrary position and pitch."""

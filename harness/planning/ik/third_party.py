@@ -9,7 +9,7 @@ import numpy as np
 from harness.core.errors import PlanningFailed
 from harness.core.registry import described, raised
 from harness.core.types import FloatArray
-from harness.ports import IkRequest, IkResult, IkSolver
+from harness.ports.kinematics import IkRequest, IkResult, IkSolver
 from harness.recording.explanation import Explanation
 from harness.recording.goal_failures import SolverFailure
 

@@ -9,7 +9,7 @@ import numpy as np
 from harness.core.types import FloatArray
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import PoseGoal
+from harness.ports.goals import PoseGoal
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.ports import JointSpace, PathRequest, PathResult
+from harness.ports.kinematics import JointSpace
+from harness.ports.path_planning import PathRequest, PathResult
 
 RANGE = 1.5
 """Longest edge [rad]."""

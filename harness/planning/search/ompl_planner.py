@@ -15,7 +15,7 @@ import ompl.util as ou
 from harness.planning.search.ompl_problem import OmplProblem, make_problem
 from harness.planning.search.planner_parameters import parameter_names, set_parameters
 from harness.planning.search.roadmap import find_in_roadmap
-from harness.ports import PathRequest, PathResult
+from harness.ports.path_planning import PathRequest, PathResult
 
 DEFAULTS: Mapping[str, float] = {"range": 1.5, "find_approximate_solutions": 1}
 """Parameters of the planners that have them: a tree's longest edge [rad], by default a fifth of the

@@ -10,7 +10,8 @@ import numpy as np
 import ompl.base as ob
 
 from harness.core.types import FloatArray
-from harness.ports import JointSpace, PathRequest
+from harness.ports.kinematics import JointSpace
+from harness.ports.path_planning import PathRequest
 
 _BEYOND = np.pi  # [rad] how far a continuous joint may leave the range of start and goals
 

@@ -11,7 +11,7 @@ from harness.core.types import FloatArray
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.search.search import Search, search
 from harness.planning.verification.verify import FINAL_RESOLUTION
-from harness.ports import PlanningOptions
+from harness.ports.motion_planning import PlanningOptions
 
 PLANNING_RESOLUTIONS = (1 / 32, 1 / 64, 1 / 128, 1 / 128, 1 / 128, 1 / 128)
 """Joint-space distance between checked states while searching [rad]; finer when a path fails, then

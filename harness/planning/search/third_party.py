@@ -11,7 +11,7 @@ import numpy as np
 from harness.core.errors import PlanningFailed
 from harness.core.registry import described, raised
 from harness.core.types import FloatArray
-from harness.ports import PathPlanner, PathRequest, PathResult
+from harness.ports.path_planning import PathPlanner, PathRequest, PathResult
 from harness.recording.explanation import Explanation
 from harness.recording.motion_failures import PipelineFailure
 

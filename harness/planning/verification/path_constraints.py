@@ -9,7 +9,7 @@ import numpy as np
 from harness.core.types import FloatArray
 from harness.planning.model.robot_model import GroupSpace
 from harness.planning.model.turns import FREE, turn_from
-from harness.ports import PathConstraints, PositionBox
+from harness.ports.goals import PathConstraints, PositionBox
 from harness.recording.motion_failures import ConstraintFailure
 
 INNER_SHARE = 0.8

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from harness.ports import ControlRequest, ControlResult, JointController
+from harness.ports.joint_control import ControlRequest, ControlResult, JointController
 
 
 class PdServo(JointController):

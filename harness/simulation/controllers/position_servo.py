@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from harness.ports import ControlRequest, ControlResult, JointController
+from harness.ports.joint_control import ControlRequest, ControlResult, JointController
 
 
 class PositionServo(JointController):

@@ -14,7 +14,7 @@ from harness.planning.collision.compiled import When, use_compiled
 from harness.planning.search.path_search import Effort, verified_paths
 from harness.planning.search.shortening import shorten
 from harness.planning.verification.verify import FINAL_RESOLUTION, verified_resolution
-from harness.ports import PlanningOptions
+from harness.ports.motion_planning import PlanningOptions
 from tests.benchmarks.planning.problems import EveryPair, Problem
 
 SPACING = 1 / 32

@@ -14,7 +14,7 @@ from harness.planning.backend import make_planning
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.collision.scene import CoalScene
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import PoseGoal
+from harness.ports.goals import PoseGoal
 from tests.benchmarks.planning.arms import ARM_GROUP, FLANGE, arm
 from tests.benchmarks.planning.layouts import FAMILIES, Layout
 

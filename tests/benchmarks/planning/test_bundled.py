@@ -13,7 +13,7 @@ from harness.planning.model.robot_model import GroupSpace
 from harness.planning.search.path_search import Effort, verified_paths
 from harness.planning.search.shortening import shorten
 from harness.planning.verification.verify import FINAL_RESOLUTION
-from harness.ports import PlanningOptions
+from harness.ports.motion_planning import PlanningOptions
 from tests.planning.lesson import FIRST_BOXES, Cell, boxes
 from tests.planning.problem import HOMES, description_of
 

@@ -12,7 +12,7 @@ from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.numeric import sample_group_positions, solve_numeric
 from harness.planning.ik.ur import UrGeometry, solve_ur
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import PoseGoal
+from harness.ports.goals import PoseGoal
 from harness.robot.load import load_robot
 from tests.installed import is_installed
 from tests.packages.arms import ARMS

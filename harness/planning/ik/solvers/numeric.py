@@ -7,7 +7,8 @@ from typing import ClassVar, cast
 from harness.planning.ik.numeric import pitch_of, solve_numeric
 from harness.planning.ik.task import PITCH_JOINTS, WHOLE_POSE_JOINTS
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports import IkRequest, IkResult, IkSolver, PoseGoal, PositionGoal
+from harness.ports.goals import PoseGoal, PositionGoal
+from harness.ports.kinematics import IkRequest, IkResult, IkSolver
 
 
 class NumericSolver(IkSolver):

@@ -15,7 +15,8 @@ from harness.planning.ik.open_manipulator import (
     pitches_below,
     solve_planar,
 )
-from harness.ports import IkRequest, IkResult, IkSolver, PoseGoal
+from harness.ports.goals import PoseGoal
+from harness.ports.kinematics import IkRequest, IkResult, IkSolver
 
 PITCH_SAMPLES = 73
 """Pitches tried for a position goal that leaves the pitch free: every 5 degrees of a whole turn."""

@@ -6,7 +6,8 @@ from typing import ClassVar
 
 from harness.planning.ik.arm_frames import arm_joints, base_pose, fixed_offset
 from harness.planning.ik.ur import UrGeometry, is_ur_like, solve_ur
-from harness.ports import IkRequest, IkResult, IkSolver, PoseGoal
+from harness.ports.goals import PoseGoal
+from harness.ports.kinematics import IkRequest, IkResult, IkSolver
 
 
 class UrSolver(IkSolver):

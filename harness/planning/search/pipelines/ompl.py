@@ -14,7 +14,7 @@ from harness.planning.search.planner_names import (
     planner_names,
     resolve_planner_id,
 )
-from harness.ports import PathPlanner, PathRequest, PathResult
+from harness.ports.path_planning import PathPlanner, PathRequest, PathResult
 
 FAST_SHARE = 0.5
 """Part of the budget that `auto` gives to the fast planner; the patient one gets the rest."""

@@ -1,0 +1,157 @@
+"""The physics, and what can be broken in it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+from harness.core.spatial import SE3
+from harness.core.trajectory import JointTrajectory
+from harness.core.types import FloatArray
+from harness.recording.run import Signals
+
+LONGEST_RUN = 600.0
+"""Simulated time of one run at most [s]: a file cannot fill the machine's memory or its day."""
+
+
+@dataclass(frozen=True)
+class GripperResult:
+    """What GripperCommand's result says, and more.
+
+    Attributes:
+        position: The position of the gripper's joint at the end.
+        effort: The effort of the gripper's joint at the end.
+        stalled: Stopped before the goal (contact).
+        reached_goal: Whether it is at the commanded position within tolerance.
+        contacts: Object names in contact with each finger side at the end, by side name.
+        between: Names of objects that two finger sides press from opposite sides at the end.
+    """
+
+    position: float
+    effort: float
+    stalled: bool
+    reached_goal: bool
+    contacts: Mapping[str, tuple[str, ...]]
+    between: tuple[str, ...]
+
+
+class Faults(Protocol):
+    """What can be broken in the physics while a run goes on.
+
+    Each call returns what stood before, so that a receipt can distinguish a fault from no change.
+    """
+
+    def set_friction(self, name: str, sliding: float) -> float:
+        """Change the sliding friction of an object's surface, its other frictions alike."""
+        ...
+
+    def weaken_gripper(self, share: float) -> float:
+        """Leave the gripper a share of its effort, (0, 1]."""
+        ...
+
+    def stall_joint(self, joint: str) -> bool:
+        """Hold a joint where it is for the rest of the run, whatever its motor does."""
+        ...
+
+    def push(self, forces: Mapping[str, FloatArray], duration: float) -> None:
+        """Push free objects at their centres of mass [N, world axes] for some time [s], at once."""
+        ...
+
+    def disturb_sensors(self, deviation: float, seed: int) -> float:
+        """Add white noise to the joint positions that the controllers measure [rad or m]."""
+        ...
+
+    def delay_commands(self, latency: float) -> float:
+        """Let set points reach the motors later [s]."""
+        ...
+
+
+class Simulator(Protocol):
+    """The physics; time only moves inside these calls, and every sample of it is recorded.
+
+    A call that would take the run beyond `LONGEST_RUN`, or its record beyond what the memory is
+    sized for, raises StepFailed TIMED_OUT.
+    """
+
+    @property
+    def time(self) -> float:
+        """Simulation time [s]."""
+        ...
+
+    @property
+    def sample_count(self) -> int:
+        """Samples recorded so far."""
+        ...
+
+    @property
+    def faults(self) -> Faults:
+        """What can be broken."""
+        ...
+
+    def joint_positions(self) -> FloatArray:
+        """Measured, description order."""
+        ...
+
+    def commanded_positions(self) -> FloatArray:
+        """Last commanded set point, description order, mimic joints consistent."""
+        ...
+
+    def object_pose(self, name: str) -> SE3:
+        """T_world_object of a simulated object, as it is now."""
+        ...
+
+    def track(self, trajectory: JointTrajectory) -> None:
+        """Follow a trajectory from where the command stands, then hold its end for the goal time.
+
+        Raises:
+            StepFailed: CONTROL_FAILED, when a joint leaves the controller's tolerances; says which
+                joint, by how much, what it touched.
+        """
+        ...
+
+    def command_gripper(
+        self, position: float, max_effort: float, *, timeout: float
+    ) -> GripperResult:
+        """Drive the gripper's joint under an effort limit until it arrives or stalls."""
+        ...
+
+    def start_gripper(self, position: float, max_effort: float) -> None:
+        """Let the gripper set out while time is moved by other calls; `command_gripper` follows."""
+        ...
+
+    def hold(self, duration: float) -> None:
+        """Keep the last commands for some simulated time [s]."""
+        ...
+
+    def settle(self, max_velocity: float, timeout: float) -> bool:
+        """Hold until joints and objects stay slower than a limit [m/s, rad/s]; True.
+
+        Raises:
+            StepFailed: TIMED_OUT; says what still moves, and how fast.
+        """
+        ...
+
+    def add_object(self, name: str, pose: SE3) -> None:
+        """Let a prepared object appear at T_world_object."""
+        ...
+
+    def remove_object(self, name: str) -> None:
+        """Park an object without contacts."""
+        ...
+
+    def move_object(self, name: str, pose: SE3) -> None:
+        """Set T_world_object, at rest."""
+        ...
+
+    def weld(self, name: str, link: str) -> None:
+        """Fix an object to a link where it stands (grasp mode `weld`)."""
+        ...
+
+    def unweld(self, name: str) -> None:
+        """Undo `weld`."""
+        ...
+
+    def finish(self) -> Signals:
+        """Everything recorded, without clearances."""
+        ...
