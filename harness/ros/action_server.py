@@ -93,7 +93,7 @@ class ActionServer:
         """End a goal; who requested its result gets it."""
         known = self._goals[goal]
         known.result = result
-        if known.status is Status.CANCELING and status is Status.ABORTED:
+        if known.status is Status.CANCELING:
             status = Status.CANCELED
         if known.status is not Status.UNKNOWN:
             known.status = status

@@ -18,6 +18,7 @@ from harness.ros.contents import (
 )
 from harness.ros.control.cell import ExternalCell
 from harness.ros.control.gripper import Gripped
+from harness.ros.control.trajectory import Finished
 from harness.ros.graph import Graph
 from harness.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY
 
@@ -68,7 +69,7 @@ class Wiring:
                 continue
             if isinstance(outcome, Gripped):
                 server.finish(outcome.goal, *gripper_result(outcome))
-            else:
+            elif isinstance(outcome, Finished):
                 server.finish(outcome.goal, *follow_result(outcome))
 
     def _serve(
