@@ -19,11 +19,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    try:
-        import django_static_ace_builds as _ace  # noqa: F401 - only whether it is there
-        import viser as _viser  # noqa: F401
-    except ImportError as error:
-        raise UsageError(f"{EXTRA} ({error})") from error
+    refuse_missing_extra()
     from harness.studio.files import StudioFiles
     from harness.studio.guard import LOOPBACK, Guard
     from harness.studio.server import PortInUseError, page_assets, start_server
@@ -58,8 +54,8 @@ def _run(arguments: argparse.Namespace) -> int:
     say(f"{address}?token={guard.token}" if guard.token else address)
     if is_open:
         complain("harness: whoever has this address can move the robot and write its file")
-    if not arguments.no_open:
-        _open_browser(address)
+    if not arguments.no_open and not open_browser(address):
+        complain(f"no browser could be opened here; open {address}")
     try:
         threading.Event().wait()  # until Ctrl-C or SIGTERM
     finally:
@@ -67,13 +63,26 @@ def _run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _open_browser(address: str) -> None:
+def refuse_missing_extra() -> None:
+    """Refuse to go on without the packages of the extra `studio`.
+
+    Raises:
+        UsageError: A package is not installed.
+    """
+    try:
+        import django_static_ace_builds as _ace  # noqa: F401 - only whether it is there
+        import viser as _viser  # noqa: F401
+    except ImportError as error:
+        raise UsageError(f"{EXTRA} ({error})") from error
+
+
+def open_browser(address: str) -> bool:
+    """Open a page in a browser, where there is one."""
     import webbrowser
 
     from harness.cli.view import has_browser
 
-    if not has_browser() or not webbrowser.open(address):
-        complain(f"no browser could be opened here; open {address}")
+    return has_browser() and webbrowser.open(address)
 
 
 def _start(arguments: argparse.Namespace) -> tuple[Path, str, float | None]:

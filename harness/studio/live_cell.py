@@ -347,6 +347,10 @@ class LiveCell:
                 poses[name] = self.scene.object_pose(name, positions)
         return poses
 
+    def object_vectors(self) -> dict[str, FloatArray]:
+        """T_world_object (xyz, quat wxyz) of every object that is there, shape (7,) each."""
+        return {name: pose.as_vector() for name, pose in self.object_poses().items()}
+
     def nearest_pair(self) -> tuple[Touch, FloatArray] | None:
         """The pair of bodies with the smallest clearance now, and its nearest points, (2, 3)."""
         self.cell.sync_scene()

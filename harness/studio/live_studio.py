@@ -27,7 +27,6 @@ from harness.studio.messages import (
     Message,
     cell_message,
     problem_message,
-    reach_of,
     robot_message,
 )
 from harness.studio.reach import Reach, ReachStudy
@@ -157,10 +156,9 @@ class LiveStudio(ABC):
         self.object_handle = ""
         cell = self.cell
         program = cell.prepared.program
-        reach = reach_of(cell)
-        self.view.show_cell(program.description, cell.prepared.kinematics, cell.tcp_pose(), reach)
+        self.view.show_cell(program.description, cell.tcp_pose())
         self.view.show_objects(program.all_objects())
-        self.view.move(cell.joint_positions(), cell.object_poses())
+        self.view.move(cell.joint_positions(), cell.object_vectors())
         self.study = self.reach = self.chosen = self.target = None
 
     def _pace(self, samples: int) -> bool:
@@ -191,7 +189,7 @@ class LiveStudio(ABC):
             self._go_on(elapsed * (self.speed or 1.0))
         if self.view is not None and now - self._last_scene >= 0.9 * FRAME:
             self._last_scene = now
-            self.view.move(self.cell.joint_positions(), self.cell.object_poses())
+            self.view.move(self.cell.joint_positions(), self.cell.object_vectors())
         if is_due and self.session.viewers:
             self._frames += 1
             if self._frames % MEASURED_EVERY == 0 and not self.busy:

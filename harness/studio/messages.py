@@ -10,8 +10,9 @@ import numpy as np
 from harness.core.errors import Problem
 from harness.core.printable import printable
 from harness.language.step import STEPS
-from harness.recording.run import StepRecord
+from harness.recording.run import StepRecord, Verdict
 from harness.reporting.explanation import explanation_lines
+from harness.reporting.result import StepLine
 from harness.studio.judging import Judged
 from harness.studio.language_help import Names
 from harness.studio.live_cell import LiveCell
@@ -123,22 +124,33 @@ def verdicts_message(judged: Judged) -> Message:
         "outcome": judged.outcome,
         "digest": judged.digest,
         "steps": [
-            {"summary": printable(s.summary), "status": s.status, "line": s.line}
-            for s in judged.run.steps
-            if s.path.count("[") == 1 and "." not in s.path
+            step_message(step)
+            for step in judged.run.steps
+            if step.path.count("[") == 1 and "." not in step.path
         ],
         "verdicts": [
-            {
-                "text": printable(v.expectation),
-                "status": v.status,
-                "open": not is_decided,
-                "margin": None if v.margin is None or not np.isfinite(v.margin) else v.margin,
-                "unit": v.unit,
-                "line": v.line,
-                "reason": printable(v.reason),
-            }
-            for v, is_decided in zip(judged.verdicts, judged.is_decided, strict=True)
+            verdict_message(verdict, is_open=not is_decided)
+            for verdict, is_decided in zip(judged.verdicts, judged.is_decided, strict=True)
         ],
+    }
+
+
+def step_message(step: StepRecord | StepLine) -> Message:
+    """What became of a step."""
+    return {"summary": printable(step.summary), "status": step.status, "line": step.line}
+
+
+def verdict_message(verdict: Verdict, *, is_open: bool) -> Message:
+    """A verdict, which can still change where it is open."""
+    margin = verdict.margin
+    return {
+        "text": printable(verdict.expectation),
+        "status": verdict.status,
+        "open": is_open,
+        "margin": None if margin is None or not np.isfinite(margin) else margin,
+        "unit": verdict.unit,
+        "line": verdict.line,
+        "reason": printable(verdict.reason),
     }
 
 
@@ -162,14 +174,3 @@ def _width(cell: LiveCell) -> float | None:
     value = cell.joint_positions()[cell.description.joint_index[gripper.joint]]
     rows = gripper.widths[np.argsort(gripper.widths[:, 0])]
     return round(float(np.interp(value, rows[:, 0], rows[:, 1])), 5)
-
-
-def reach_of(cell: LiveCell) -> float:
-    """The length of the arm from its base to its TCP [m]: how far away the camera stands."""
-    description = cell.description
-    before = {joint.child: joint for joint in description.joints}
-    length, link = 0.0, description.tcp_link
-    while link in before and before[link].parent != "world":
-        length += float(np.linalg.norm(before[link].pose.translation))
-        link = before[link].parent
-    return max(0.2, length)

@@ -3,7 +3,9 @@
 import { request, connect, on, page } from "./connection.js";
 import { $, element, log, numbers, options } from "./dom.js";
 import * as editor from "./editor.js";
+import { showScene } from "./scene.js";
 import { eulerOf } from "./turns.js";
+import "./verdicts.js";
 
 let robot = null, state = null, reach = null, isMine = false, lastWay = -1;
 const sliders = new Map();
@@ -122,20 +124,6 @@ function showGoal(pose) {
   $("frame").value = "world";
 }
 
-const OPEN = { passed: "holds so far", failed: "does not hold yet", "not reached": "waits for its step" };
-
-on("verdicts", (message) => {
-  const decided = message.verdicts.filter((v) => !v.open).length;
-  const head = element("div", { class: `outcome ${message.outcome}`, title: message.digest, "data-digest": message.digest },
-    message.digest ? `${message.outcome} · digest ${message.digest.slice(0, 16)}`
-      : message.outcome ? `${message.outcome}; only a whole run has a digest`
-        : `${decided} of ${message.verdicts.length} expectations are decided`);
-  const margin = (v) => (v.margin === null ? "" : ` (margin ${Number(v.margin.toPrecision(3))} ${v.unit})`);
-  $("verdicts").replaceChildren(head,
-    ...message.steps.map((step) => element("div", { class: `verdict ${step.status.replace(/[ _]/g, "-")}` }, `${step.line}: ${step.summary}: ${step.status.replace("_", " ")}`)),
-    ...message.verdicts.map((v) => element("div", { class: `verdict ${v.open ? "open" : v.status.replace(/[ _]/g, "-")}` },
-      `${v.line}: ${v.text}: ${v.open ? OPEN[v.status] ?? "open" : v.status}${margin(v)}${v.reason && v.status !== "passed" && !v.open ? `: ${v.reason}` : ""}`)));
-});
 
 on("note", (message) => log(message.kind, message.text));
 on("lost", () => { document.body.classList.add("lost"); $("status").textContent = "connection lost; it comes back by itself"; });
@@ -235,14 +223,7 @@ document.addEventListener("keydown", (event) => {
   if (event.key === " " && !event.target.matches("button, summary")) { event.preventDefault(); $("play").click(); }
 });
 
-// viser's own panels have nothing in them: everything but the picture is hidden.
-$("scene").addEventListener("load", () => {
-  const inside = $("scene").contentDocument;
-  inside?.head.append(element("style", {}, "body *:not(:has(canvas)):not(canvas) { display: none !important; }"));
-  inside?.addEventListener("keydown", (event) => document.dispatchEvent(new KeyboardEvent("keydown", event)));
-});
-const dark = matchMedia("(prefers-color-scheme: dark)").matches;
-$("scene").src = `/scene/${page}${dark ? "?darkMode" : ""}`;
+showScene();
 if (location.search) history.replaceState(null, "", location.pathname);
 editor.start();
 connect();
