@@ -24,7 +24,7 @@ class JointStates:
         self._times: list[float] = []
         self._rows: list[tuple[FloatArray, FloatArray, FloatArray]] = []
         self._offset: float | None = None
-        graph.subscribe("/joint_states", "sensor_msgs/msg/JointState", self._take)
+        graph.subscribe("/joint_states", "sensor_msgs/msg/JointState", self._take, reliable=False)
 
     @property
     def time(self) -> float:

@@ -22,7 +22,7 @@ from harness.ros.action_server import Status
 from harness.ros.contents import POINT
 from harness.ros.control.cell import ControllerNames
 from harness.ros.control.goals import Code
-from harness.ros.graph import Graph
+from harness.ros.graph import Graph, spin_until
 from harness.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY, message, span
 from harness.ros.joint_states import GRID, JointStates
 
@@ -266,13 +266,7 @@ class RemoteArm:
     # -- inside -------------------------------------------------------------------------------
 
     def _wait(self, holds: Callable[[], bool], timeout: float) -> bool:
-        """Spin until something holds, or the wall time is over [s]."""
-        deadline = wall.monotonic() + timeout
-        while not holds():
-            if wall.monotonic() > deadline:
-                return False
-            self._graph.spin(wall.monotonic() + 0.005)
-        return True
+        return spin_until(self._graph, holds, timeout)
 
     def _follow(self, client: ActionClient, goal: ClientGoal, timeout: float) -> None:
         """Watch a goal until it is over, at most some wall time [s].
