@@ -33,8 +33,8 @@ class Window:
     Attributes:
         times: Simulated times of the samples [s].
         desired: The set points at these times.
-        positions: The measured positions.
-        velocities: The measured velocities.
+        positions: The measured positions of the joints.
+        velocities: The measured velocities of the joints.
         efforts: The efforts at the last sample, shape (dof,).
     """
 

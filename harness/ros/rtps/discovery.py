@@ -58,7 +58,7 @@ class Endpoint:
     """A writer or a reader as its participant announces it.
 
     Attributes:
-        guid: Its GUID.
+        guid: The GUID of the endpoint.
         topic: The name of its topic in DDS.
         type_name: The name of its type in DDS.
         qos: The quality that it offers or requests.
