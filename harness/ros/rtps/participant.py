@@ -141,8 +141,7 @@ class Participant:
                 if now - peer.seen > peer.lease:
                     self._forget(prefix)
             known = {peer.meta for peer in self._peers.values()}
-            for address in self._sockets.announced | known:
-                self._announce(address)
+            self._announce(*(self._sockets.announced | known))
 
     # -- messages -----------------------------------------------------------------------------
 
@@ -205,10 +204,12 @@ class Participant:
 
     # -- discovery ----------------------------------------------------------------------------
 
-    def _announce(self, address: Address) -> None:
+    def _announce(self, *addresses: Address) -> None:
         guid, own = self.guid(wire.PARTICIPANT), self._sockets.unicast
         payload = announcement(guid, self.domain, self.name, own)
-        self._send(b"", wire.data(wire.NO_ENTITY, wire.SPDP_WRITER, 1, payload), address)
+        sample = wire.data(wire.NO_ENTITY, wire.SPDP_WRITER, 1, payload)
+        for address in addresses:
+            self._send(b"", sample, address)
 
     def _announce_endpoint(self, publisher: Writer, made: Writer | Reader) -> None:
         guid, own = self.guid(made.entity), self._sockets.unicast[-1:]
