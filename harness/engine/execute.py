@@ -184,7 +184,7 @@ class ProgramExecution:
         presences = cell.presence.values()
         return Execution(
             steps=_with_unreached(self.program, self.records, cell.simulator),
-            objects=tuple(_object_record(presence, cell.simulator) for presence in presences),
+            objects=tuple(object_record(presence, cell.simulator.time) for presence in presences),
             attachments=tuple(cell.attachments),
             beliefs=cell.beliefs,
             ended_early=self.ended_early,
@@ -283,7 +283,8 @@ def _with_unreached(
     return (*records, *unreached)
 
 
-def _object_record(presence: Presence, simulator: Simulator) -> ObjectRecord:
+def object_record(presence: Presence, time: float) -> ObjectRecord:
+    """An object as verdicts and reports need it, with when it was there up to a time [s]."""
     obj = presence.obj
     return ObjectRecord(
         name=obj.name,
@@ -292,7 +293,7 @@ def _object_record(presence: Presence, simulator: Simulator) -> ObjectRecord:
         in_simulation=obj.in_simulation,
         shapes=obj.shapes,
         visuals=obj.visuals,
-        present=tuple((start, min(end, simulator.time)) for start, end in presence.intervals),
+        present=tuple((start, min(end, time)) for start, end in presence.intervals),
         pose=tuple(float(value) for value in presence.pose.as_vector()),
         mass=obj.mass,
     )

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import time
 import uuid
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
-from harness.ros.action_server import Status
+from harness.ros.action_server import Status, hex_of, uuid_of
 from harness.ros.graph import Graph
-from harness.ros.interfaces import CANCEL, UUID, message
+from harness.ros.interfaces import CANCEL, message
 
 
 @dataclass
@@ -45,7 +41,7 @@ class ActionClient:
     """Sends goals to one action server."""
 
     def __init__(self, graph: Graph, name: str, kind: str) -> None:
-        self._graph, self.name, self.kind = graph, name, kind
+        self.name, self.kind = name, kind
         self._goals: dict[str, ClientGoal] = {}
         self._send = graph.client(f"{name}/_action/send_goal", f"{kind}_SendGoal")
         self._cancel = graph.client(f"{name}/_action/cancel_goal", CANCEL)
@@ -57,15 +53,6 @@ class ActionClient:
         """Whether the server's three services are there."""
         return self._send.is_ready and self._cancel.is_ready and self._result.is_ready
 
-    def wait_until(self, holds: Callable[[], bool], timeout: float) -> bool:
-        """Spin until something holds; whether it did within the wall time [s]."""
-        deadline = time.monotonic() + timeout
-        while not holds():
-            if time.monotonic() > deadline:
-                return False
-            self._graph.spin(min(deadline, time.monotonic() + 0.005))
-        return True
-
     def send(self, goal: Any) -> ClientGoal:
         """Send a goal and request its result; that of a rejected goal may give the reason."""
         sent = ClientGoal(uuid.uuid4().hex)
@@ -73,19 +60,21 @@ class ActionClient:
 
         def answered(response: Any) -> None:
             sent.is_accepted = bool(response.accepted)
-            request = message(f"{self.kind}_GetResult_Request", goal_id=_uuid(sent))
+            request = message(f"{self.kind}_GetResult_Request", goal_id=uuid_of(sent.identifier))
             self._result.call(request, ended)
 
         def ended(response: Any) -> None:
             sent.status, sent.result = Status(response.status), response.result
 
-        request = message(f"{self.kind}_SendGoal_Request", goal_id=_uuid(sent), goal=goal)
+        request = message(
+            f"{self.kind}_SendGoal_Request", goal_id=uuid_of(sent.identifier), goal=goal
+        )
         self._send.call(request, answered)
         return sent
 
     def cancel(self, goal: ClientGoal) -> None:
         """Request that a goal is canceled."""
-        info = message("action_msgs/msg/GoalInfo", goal_id=_uuid(goal))
+        info = message("action_msgs/msg/GoalInfo", goal_id=uuid_of(goal.identifier))
 
         def answered(response: Any) -> None:
             goal.cancel_code = response.return_code
@@ -93,11 +82,6 @@ class ActionClient:
         self._cancel.call(message(f"{CANCEL}_Request", goal_info=info), answered)
 
     def _take_feedback(self, content: Any) -> None:
-        goal = self._goals.get(bytes(content.goal_id.uuid).hex())
+        goal = self._goals.get(hex_of(content.goal_id))
         if goal is not None:
             goal.feedback.append(content.feedback)
-
-
-def _uuid(goal: ClientGoal) -> Any:
-    content = np.frombuffer(bytes.fromhex(goal.identifier), np.uint8)
-    return message(UUID, uuid=content)

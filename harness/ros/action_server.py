@@ -87,13 +87,13 @@ class ActionServer:
     def feedback(self, goal: str, content: Any) -> None:
         """Publish feedback of a goal."""
         kind = f"{self.kind}_FeedbackMessage"
-        self._feedback.publish(message(kind, goal_id=_uuid(goal), feedback=content))
+        self._feedback.publish(message(kind, goal_id=uuid_of(goal), feedback=content))
 
     def finish(self, goal: str, status: Status, result: Any) -> None:
         """End a goal; who requested its result gets it."""
         known = self._goals[goal]
         known.result = result
-        if known.status is Status.CANCELING and status is Status.ABORTED:
+        if known.status is Status.CANCELING:
             status = Status.CANCELED
         if known.status is not Status.UNKNOWN:
             known.status = status
@@ -106,7 +106,7 @@ class ActionServer:
             del self._goals[each]
 
     def _take_goal(self, request: Any, reply: Reply) -> None:
-        goal = _hex(request.goal_id)
+        goal = hex_of(request.goal_id)
         accepted = goal not in self._goals
         if accepted:
             known = self._goals[goal] = _Goal(self._clock())
@@ -121,7 +121,7 @@ class ActionServer:
             self._publish_status()
 
     def _take_request(self, request: Any, reply: Reply) -> None:
-        known = self._goals.get(_hex(request.goal_id))
+        known = self._goals.get(hex_of(request.goal_id))
         if known is not None and known.result is None:
             known.waiting.append(reply)
         else:
@@ -129,7 +129,7 @@ class ActionServer:
 
     def _take_cancel(self, request: Any, reply: Reply) -> None:
         info = request.goal_info
-        goal, before = _hex(info.goal_id), seconds(info.stamp)
+        goal, before = hex_of(info.goal_id), seconds(info.stamp)
         is_named = any(info.goal_id.uuid)
         chosen = [
             each
@@ -163,7 +163,7 @@ class ActionServer:
 
     def _info(self, goal: str) -> Any:
         kind = "action_msgs/msg/GoalInfo"
-        return message(kind, goal_id=_uuid(goal), stamp=stamp(self._goals[goal].accepted))
+        return message(kind, goal_id=uuid_of(goal), stamp=stamp(self._goals[goal].accepted))
 
     def _publish_status(self) -> None:
         kind = "action_msgs/msg/GoalStatus"
@@ -175,9 +175,11 @@ class ActionServer:
         self._status.publish(message("action_msgs/msg/GoalStatusArray", status_list=states))
 
 
-def _uuid(goal: str) -> Any:
+def uuid_of(goal: str) -> Any:
+    """The message with a goal's identifier."""
     return message(UUID, uuid=np.frombuffer(bytes.fromhex(goal), np.uint8))
 
 
-def _hex(uuid: Any) -> str:
+def hex_of(uuid: Any) -> str:
+    """The identifier in a message."""
     return bytes(uuid.uuid).hex()

@@ -53,8 +53,6 @@ def _tolerance(each: Any) -> dict[str, Any]:
 def follow_result(outcome: Finished) -> tuple[Status, Any]:
     """State and result of a trajectory that ended."""
     status = Status.SUCCEEDED if outcome.code == Code.SUCCESSFUL else Status.ABORTED
-    if outcome.message == "canceled":
-        status = Status.CANCELED
     content = message(
         f"{FOLLOW}_Result", error_code=int(outcome.code), error_string=outcome.message
     )

@@ -11,7 +11,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from harness.core.errors import Problem, SpecError
-from harness.ros.rtps.participant import MOST_DOMAINS, NetworkError
+from harness.ros.rtps.participant import MOST_DOMAINS
+from harness.ros.rtps.sockets import NetworkError
 
 VARIABLE = "ROS_DOMAIN_ID"
 CHOICES = range(20, 101)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from typing import Any, Protocol
 
@@ -50,10 +51,9 @@ class Graph(Protocol):
         kind: str,
         *,
         latched: bool = False,
-        reliable: bool = True,
         depth: int = 10,
     ) -> Publisher:
-        """A publisher of a topic."""
+        """A publisher of a topic; lost messages are sent again."""
         ...
 
     def subscribe(
@@ -65,7 +65,10 @@ class Graph(Protocol):
         latched: bool = False,
         reliable: bool = True,
     ) -> None:
-        """Receive the messages of a topic; what cannot be read is ignored."""
+        """Receive the messages of a topic; what cannot be read is ignored.
+
+        Only what is subscribed to without `reliable` comes from publishers of both kinds.
+        """
         ...
 
     def serve(self, name: str, kind: str, on_request: Callable[[Any, Reply], None]) -> None:
@@ -87,3 +90,13 @@ class Graph(Protocol):
     def close(self) -> None:
         """Leave the domain."""
         ...
+
+
+def spin_until(graph: Graph, holds: Callable[[], bool], timeout: float) -> bool:
+    """Spin until something holds; whether it did within the wall time [s]."""
+    deadline = time.monotonic() + timeout
+    while not holds():
+        if time.monotonic() > deadline:
+            return False
+        graph.spin(min(deadline, time.monotonic() + 0.005))
+    return True

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from harness.core.world import WorldObject
+import numpy as np
+
+from harness.cell.cell import Presence
+from harness.engine.execute import object_record
 from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
-from harness.recording.run import ObjectRecord
 from harness.ros.control.cell import ExternalCell, controller_names
 from harness.ros.watch import Watch
 from harness.session.prepare import Prepared
@@ -59,7 +61,10 @@ class HandOver:
         """
         cell, before = self.cell, len(self.cell.commands)
         cell.hold_commanded(self.simulator.commanded_positions())
-        objects = tuple(map(_object_record, self.prepared.program.world.objects))
+        objects = tuple(
+            object_record(Presence(obj, obj.pose, [[0.0, np.inf]]), np.inf)
+            for obj in self.prepared.program.world.objects
+        )
         watch = Watch(request, self.simulator, self.robot, objects)
         ended_at: float | None = None
         ended: ExternalResult | None = None
@@ -101,17 +106,3 @@ def _said(end: CommandRecord | None) -> str:
     code = end.content.get("code")
     how = "without an error" if code == 0 else f"with exit code {code}"
     return f"the launched program ended {how} at t={end.time:.2f} s"
-
-
-def _object_record(obj: WorldObject) -> ObjectRecord:
-    return ObjectRecord(
-        name=obj.name,
-        is_static=obj.is_static,
-        in_planning=obj.in_planning,
-        in_simulation=obj.in_simulation,
-        shapes=obj.shapes,
-        visuals=obj.visuals,
-        present=((0.0, float("inf")),),
-        pose=tuple(float(value) for value in obj.pose.as_vector()),
-        mass=obj.mass,
-    )

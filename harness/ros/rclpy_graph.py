@@ -120,7 +120,6 @@ class RclpyGraph:
         kind: str,
         *,
         latched: bool = False,
-        reliable: bool = True,
         depth: int = 10,
     ) -> Publisher:
         package, folder, _ = kind.split("/")
@@ -129,7 +128,7 @@ class RclpyGraph:
             return _Silent()
         self._published.add(topic)
         codec = self._codec(kind)
-        profile = self._profile(latched, reliable, depth)
+        profile = self._profile(latched, True, depth)
         return _Publisher(self._node.create_publisher(codec.ros_type, topic, profile), codec)
 
     def subscribe(

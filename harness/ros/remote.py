@@ -23,11 +23,9 @@ from harness.ros.action_server import Status
 from harness.ros.contents import POINT
 from harness.ros.control.cell import ControllerNames
 from harness.ros.control.goals import Code
-from harness.ros.graph import Graph
-from harness.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY, message, seconds, span
-
-GRID = 0.01
-"""Time between the samples of the record [s]; joint states are interpolated onto it."""
+from harness.ros.graph import Graph, spin_until
+from harness.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY, message, span
+from harness.ros.joint_states import GRID, JointStates
 
 UNRECORDED = (
     "joint_commands",
@@ -90,12 +88,9 @@ class RemoteArm:
         """
         self._graph, self._kinematics, self._options = graph, kinematics, options
         self.description, self._program = program.description, program
-        self._times: list[float] = []
-        self._rows: list[tuple[FloatArray, FloatArray, FloatArray]] = []
-        self._offset: float | None = None
         self._command: FloatArray | None = None
         self._frames = (self.description.tcp_link,)
-        graph.subscribe("/joint_states", "sensor_msgs/msg/JointState", self._take_state)
+        self._states = JointStates(graph, self.description)
         self._arms = {
             name: ActionClient(graph, f"/{name}/follow_joint_trajectory", FOLLOW)
             for name in names.arm
@@ -109,7 +104,7 @@ class RemoteArm:
             served = ", ".join(graph.names()[1].actions) or "no action"
             _unreachable(f"{required} is not served in this domain; served are: {served}")
         self._arm = next(arm for arm in self._arms.values() if arm.is_ready)
-        if not self._wait(lambda: bool(self._times), PATIENCE):
+        if not self._wait(lambda: self._states.time >= 0, PATIENCE):
             _unreachable(
                 "/joint_states brings no message with all joints:"
                 f" {', '.join(self.description.joint_names)}"
@@ -125,7 +120,7 @@ class RemoteArm:
     @property
     def sample_count(self) -> int:
         """Samples on the grid so far."""
-        return int(self._times[-1] / GRID + 1e-9) + 1
+        return self._states.sample_count
 
     @property
     def faults(self) -> NoReturn:
@@ -135,7 +130,7 @@ class RemoteArm:
     def joint_positions(self) -> FloatArray:
         """Measured, description order."""
         self._graph.spin(wall.monotonic())
-        return self._rows[-1][0].copy()
+        return self._states.positions
 
     def commanded_positions(self) -> FloatArray:
         """The end of the last trajectory, or where the robot stood."""
@@ -161,15 +156,7 @@ class RemoteArm:
         scaled = slowed(trajectory, self._options.velocity_scaling)
         client = self._arm
         goal = client.send(self._goal(scaled))
-        if not self._wait(lambda: goal.is_accepted is not None, PATIENCE):
-            _unreachable(f"{client.name} does not answer")
-        limit = wall.monotonic() + 10.0 * scaled.duration + PATIENCE
-        while not goal.is_over:
-            self._graph.spin(wall.monotonic() + GRID)
-            self._refuse_stray(goal)
-            if wall.monotonic() > limit:
-                client.cancel(goal)
-                _unreachable(f"{client.name} does not end its goal")
+        self._follow(client, goal, 10.0 * scaled.duration + PATIENCE)
         self._refuse_failure(goal, client)
         end = self.commanded_positions()
         for name, position in zip(scaled.joint_names, scaled.positions[-1], strict=True):
@@ -187,9 +174,7 @@ class RemoteArm:
             "control_msgs/msg/GripperCommand", position=position, max_effort=max_effort
         )
         goal = client.send(message(f"{GRIPPER}_Goal", command=command))
-        if not self._wait(lambda: goal.is_over, 3.0 * timeout + PATIENCE):
-            client.cancel(goal)
-            raise StepFailed("TIMED_OUT", f"{client.name} does not end its goal")
+        self._follow(client, goal, 3.0 * timeout + PATIENCE)
         if goal.is_accepted is False:
             raise StepFailed("CONTROL_FAILED", f"{client.name} rejected the goal")
         held = self._graspable() if goal.result.stalled else ()
@@ -209,8 +194,8 @@ class RemoteArm:
 
     def hold(self, duration: float) -> None:
         """Let the robot's time pass [s]."""
-        end = self._times[-1] + duration
-        if not self._wait(lambda: self._times[-1] >= end, 10.0 * duration + PATIENCE):
+        end = self._states.time + duration
+        if not self._wait(lambda: self._states.time >= end, 10.0 * duration + PATIENCE):
             _unreachable("/joint_states has stopped")
 
     def settle(self, max_velocity: float, timeout: float) -> bool:
@@ -219,12 +204,10 @@ class RemoteArm:
         Raises:
             StepFailed: TIMED_OUT; one still moves.
         """
-        end = self._times[-1] + timeout
-        self._wait(
-            lambda: bool(np.abs(self._rows[-1][1]).max() < max_velocity) or self._times[-1] > end,
-            10.0 * timeout + PATIENCE,
-        )
-        if np.abs(self._rows[-1][1]).max() >= max_velocity:
+        states, end = self._states, self._states.time + timeout
+        limit = 10.0 * timeout + PATIENCE
+        self._wait(lambda: states.speed < max_velocity or states.time > end, limit)
+        if states.speed >= max_velocity:
             raise StepFailed("TIMED_OUT", f"the robot still moves after {timeout:g} s")
         return True
 
@@ -252,18 +235,13 @@ class RemoteArm:
 
     def finish(self) -> Signals:
         """What `/joint_states` brought, on an even grid; poses follow from the joints."""
-        count = self.sample_count
-        times = np.arange(count, dtype=np.float64) * GRID
-        positions, velocities, efforts = (
-            np.column_stack([np.interp(times, self._times, column) for column in part.T])
-            for part in (np.array([row[index] for row in self._rows]) for index in range(3))
-        )
+        times, positions, velocities, efforts = self._states.record()
         nothing = np.full_like(positions, np.nan)
-        missing = np.full((count, 7), np.nan)
+        missing = np.full((len(times), 7), np.nan)
         objects: dict[str, FloatArray] = {}
         for obj in self._program.all_objects():
             if obj.in_simulation:
-                known = np.tile(obj.pose.as_vector(), (count, 1))
+                known = np.tile(obj.pose.as_vector(), (len(times), 1))
                 objects[obj.name] = known if obj.is_static else missing
         links = dict.fromkeys((self.description.tcp_link, *self._frames))
         poses = {
@@ -286,37 +264,30 @@ class RemoteArm:
         """Name the links whose poses are recorded in addition to the TCP's."""
         self._frames = links
 
-    def _take_state(self, state: Any) -> None:
-        """Keep a message that has every joint that is no mimic joint."""
-        place = {str(name): index for index, name in enumerate(state.name)}
-        joints = self.description.movable_joints
-        if any(joint.mimic is None and joint.name not in place for joint in joints):
-            return
-        stamp = seconds(state.header.stamp) or wall.monotonic()
-        self._offset = stamp if self._offset is None else self._offset
-        moment = stamp - self._offset
-        if self._times and moment <= self._times[-1]:
-            return
-
-        def column(values: FloatArray) -> FloatArray:
-            if len(values) < len(place):
-                return np.zeros(len(joints))
-            return np.array([values[place[j.name]] if j.name in place else 0.0 for j in joints])
-
-        positions = self.description.with_mimics(column(state.position))
-        self._times.append(moment)
-        self._rows.append((positions, column(state.velocity), column(state.effort)))
-
     # -- inside -------------------------------------------------------------------------------
 
     def _wait(self, holds: Callable[[], bool], timeout: float) -> bool:
-        """Spin until something holds, or the wall time is over [s]."""
-        deadline = wall.monotonic() + timeout
-        while not holds():
-            if wall.monotonic() > deadline:
-                return False
-            self._graph.spin(wall.monotonic() + 0.005)
-        return True
+        return spin_until(self._graph, holds, timeout)
+
+    def _follow(self, client: ActionClient, goal: ClientGoal, timeout: float) -> None:
+        """Watch a goal until it is over, at most some wall time [s].
+
+        Whatever ends the watch before, such as Ctrl-C, cancels the goal: the robot stops.
+        """
+        try:
+            if not self._wait(lambda: goal.is_accepted is not None, PATIENCE):
+                _unreachable(f"{client.name} does not answer")
+            limit = wall.monotonic() + timeout
+            while not goal.is_over:
+                self._graph.spin(wall.monotonic() + GRID)
+                if client is self._arm:
+                    self._refuse_stray(goal)
+                if wall.monotonic() > limit:
+                    _unreachable(f"{client.name} does not end its goal")
+        except BaseException:
+            client.cancel(goal)
+            self._wait(lambda: goal.is_over, REASON)
+            raise
 
     def _goal(self, trajectory: JointTrajectory) -> Any:
         rows = zip(
@@ -348,14 +319,12 @@ class RemoteArm:
             )
 
     def _refuse_stray(self, goal: ClientGoal) -> None:
-        """Cancel a goal whose feedback shows a joint beyond its tolerance."""
+        """Refuse to go on when the feedback shows a joint beyond its tolerance."""
         tolerance = self.description.tracking.trajectory
         for feedback in goal.feedback:
             errors = np.abs(feedback.error.positions)
             if len(errors) and errors.max() > tolerance:
                 worst = int(np.argmax(errors))
-                self._arm.cancel(goal)
-                self._wait(lambda: goal.is_over, PATIENCE)
                 name = str(feedback.joint_names[worst])
                 self._fail(name, float(errors[worst]), tolerance, "the goal was canceled")
         goal.feedback.clear()

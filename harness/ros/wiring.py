@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from harness.recording.commands import CommandRecord
+from harness.recording.commands import CommandKind, CommandRecord
 from harness.ros.action_server import ActionServer
 from harness.ros.contents import (
     follow_content,
@@ -18,6 +18,7 @@ from harness.ros.contents import (
 )
 from harness.ros.control.cell import ExternalCell
 from harness.ros.control.gripper import Gripped
+from harness.ros.control.trajectory import Finished
 from harness.ros.graph import Graph
 from harness.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY
 
@@ -68,7 +69,7 @@ class Wiring:
                 continue
             if isinstance(outcome, Gripped):
                 server.finish(outcome.goal, *gripper_result(outcome))
-            else:
+            elif isinstance(outcome, Finished):
                 server.finish(outcome.goal, *follow_result(outcome))
 
     def _serve(
@@ -89,26 +90,22 @@ class Wiring:
     def _follow(self, name: str, goal: str, content: Any) -> bool:
         if not self.is_open:
             return False
-        record = self._cell.receive("trajectory", name, goal, follow_content(content))
-        self._take(record)
-        return record.answer == "accepted"
+        return self._take("trajectory", name, goal, follow_content(content))
 
     def _grip(self, goal: str, content: Any) -> bool:
         if not self.is_open or self._cell.gripper is None:
             return False
-        name = self._cell.gripper.name
-        record = self._cell.receive("gripper", name, goal, gripper_content(content))
-        self._take(record)
-        return record.answer == "accepted"
+        return self._take("gripper", self._cell.gripper.name, goal, gripper_content(content))
 
     def _cancel(self, name: str, goal: str) -> bool:
-        record = self._cell.receive("cancel", name, goal)
-        self._take(record)
-        return record.answer == "accepted"
+        return self._take("cancel", name, goal, {})
 
     def _topic(self, name: str, content: Any) -> None:
         if self.is_open:
-            self._take(self._cell.receive("trajectory", name, "", trajectory_content(content)))
+            self._take("trajectory", name, "", trajectory_content(content))
 
-    def _take(self, record: CommandRecord) -> None:
+    def _take(self, kind: CommandKind, name: str, goal: str, content: dict[str, Any]) -> bool:
+        """Let a command take effect; whether it was accepted."""
+        record = self._cell.receive(kind, name, goal, content)
         self._on_command(record)
+        return record.answer == "accepted"

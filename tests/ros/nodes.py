@@ -5,6 +5,7 @@ import time
 import numpy as np
 
 from harness.ros.action_client import ActionClient
+from harness.ros.graph import spin_until
 from harness.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY, message
 from harness.ros.rtps.graph import RtpsGraph
 
@@ -26,7 +27,7 @@ class Node:
         return messages
 
     def wait(self, holds=lambda: False, timeout=20.0):
-        assert self.arm.wait_until(holds, timeout), "nothing happened"
+        assert spin_until(self.graph, holds, timeout), "nothing happened"
 
     def ready(self):
         self.wait(lambda: self.arm.is_ready and self.gripper.is_ready)

@@ -6,6 +6,7 @@ from scipy.interpolate import BPoly
 
 from harness.core.spatial import SE3
 from harness.robot.description import Joint
+from harness.ros.control.controller import Window
 from harness.ros.control.goals import Code, GoalRefused
 from harness.ros.control.spline import Spline
 from harness.ros.control.trajectory import Defaults, TrajectoryController
@@ -15,6 +16,7 @@ JOINTS = [
     for name in ("first", "second")
 ]
 REST = (np.zeros((1, 2)), np.zeros((1, 2)), np.zeros((1, 2)))
+HERE = np.zeros(2)
 TIMES = np.arange(1, 201) * 0.01
 
 
@@ -29,7 +31,7 @@ def controller(**tolerances):
 
 def refused(**fields):
     with pytest.raises(GoalRefused) as error:
-        controller().begin("g", fields, 1.0, REST)
+        controller().begin("g", fields, 1.0, REST, HERE)
     return error.value.code
 
 
@@ -47,7 +49,7 @@ def test_segments_are_those_of_hermite_interpolation(order):
 
 def test_joints_in_another_order_are_sorted_and_the_start_is_the_last_set_point():
     arm = controller()
-    arm.begin("g", content((1.0, [0.4, 0.2], [0, 0]), names=("second", "first")), 0.0, REST)
+    arm.begin("g", content((1.0, [0.4, 0.2], [0, 0]), names=("second", "first")), 0.0, REST, HERE)
     positions, velocities, _ = arm.set_points(np.array([0.0, 0.5, 1.0, 2.0]))
     assert np.allclose(positions, [[0, 0], [0.1, 0.2], [0.2, 0.4], [0.2, 0.4]])
     assert np.allclose(velocities[[0, 2, 3]], 0)
@@ -56,31 +58,31 @@ def test_joints_in_another_order_are_sorted_and_the_start_is_the_last_set_point(
 def test_points_that_are_over_are_left_out():
     arm = controller()
     late = content((0.5, [1, 1], [0, 0]), (2.0, [0.5, 0.5], [0, 0]), stamp=10.0)
-    arm.begin("g", late, 11.0, REST)
+    arm.begin("g", late, 11.0, REST, HERE)
     positions, _, _ = arm.set_points(np.array([11.0, 12.0]))
     assert np.allclose(positions, [[0, 0], [0.5, 0.5]])
 
 
 def test_a_stamp_in_the_future_delays_and_one_of_another_clock_does_not():
     arm = controller()
-    arm.begin("g", content((1.0, [1, 1], [0, 0]), stamp=15.0), 10.0, REST)
+    arm.begin("g", content((1.0, [1, 1], [0, 0]), stamp=15.0), 10.0, REST, HERE)
     assert np.allclose(arm.set_points(np.array([16.0]))[0], 1.0)
     assert (arm.set_points(np.array([15.0]))[0] < 0.99).all()
-    arm.begin("g", content((1.0, [1, 1], [0, 0]), stamp=1.79e9), 10.0, REST)
+    arm.begin("g", content((1.0, [1, 1], [0, 0]), stamp=1.79e9), 10.0, REST, HERE)
     assert np.allclose(arm.set_points(np.array([11.0]))[0], 1.0)
 
 
 @pytest.mark.parametrize(("time", "stamp"), [(1e-9, 0.0), (0.0, 0.0), (0.5, 0.5)])
 def test_a_trajectory_that_ends_now_is_its_last_point(time, stamp):
     arm = controller()
-    arm.begin("g", content((time, [0.3, 0.1], [0, 0]), stamp=stamp), 1.0, REST)
+    arm.begin("g", content((time, [0.3, 0.1], [0, 0]), stamp=stamp), 1.0, REST, HERE)
     assert np.allclose(arm.set_points(np.array([1.01]))[0], [0.3, 0.1])
 
 
 def test_long_names_are_cropped_in_messages():
     names = ("x" * 10_000, "second")
     with pytest.raises(GoalRefused) as error:
-        controller().begin("g", content((1.0, [0, 0], []), names=names), 1.0, REST)
+        controller().begin("g", content((1.0, [0, 0], []), names=names), 1.0, REST, HERE)
     assert len(str(error.value)) < 200
 
 
@@ -101,11 +103,11 @@ def test_each_mistake_has_its_error_code():
 
 def test_the_first_sample_beyond_the_path_tolerance_decides():
     arm = controller(path=0.05)
-    arm.begin("g", content((2.0, [1, 0], [0, 0])), 0.0, REST)
+    arm.begin("g", content((2.0, [1, 0], [0, 0])), 0.0, REST, HERE)
     desired = arm.set_points(TIMES)
     lagging = desired[0].copy()
     lagging[50:, 0] -= 0.06
-    ended = arm.judge(TIMES, desired, lagging, desired[1])
+    ended = arm.judge(Window(TIMES, desired, lagging, desired[1], HERE))
     assert (ended.goal, ended.code) == ("g", Code.PATH_TOLERANCE_VIOLATED)
     assert "'first' is off by 0.06 rad (tolerance 0.05 rad) at t=0.510 s" in ended.message
     assert not arm.is_active
@@ -117,12 +119,12 @@ def test_the_first_sample_beyond_the_path_tolerance_decides():
 def test_a_goal_s_own_tolerance_replaces_the_default(bound, code):
     arm = controller(goal=0.01, goal_time=0.5)
     own = [{"name": "first", "position": bound, "velocity": 0.0}]
-    arm.begin("g", content((2.0, [1, 0], [0, 0]), goal_tolerance=own), 0.0, REST)
+    arm.begin("g", content((2.0, [1, 0], [0, 0]), goal_tolerance=own), 0.0, REST, HERE)
     desired = arm.set_points(TIMES)
     off = desired[0] + [0.1, 0.0]
-    ended = arm.judge(TIMES, desired, off, desired[1])
+    ended = arm.judge(Window(TIMES, desired, off, desired[1], HERE))
     assert (ended and ended.code) == code
     if code is None:
         later = TIMES + 0.5
-        ended = arm.judge(later, arm.set_points(later), off, desired[1])
+        ended = arm.judge(Window(later, arm.set_points(later), off, desired[1], HERE))
         assert ended.code is Code.GOAL_TOLERANCE_VIOLATED

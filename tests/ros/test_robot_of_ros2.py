@@ -2,6 +2,8 @@
 
 import io
 import json
+import signal
+import subprocess
 import sys
 
 import pytest
@@ -60,6 +62,24 @@ def test_nothing_moves_before_the_user_agrees(tmp_path, plan, capsys, monkeypatc
         assert remote(plan, node) == 1
     assert "PREEMPTED: the motion was not confirmed" in capsys.readouterr().out
     assert results[0].commands == 0
+
+
+def test_ctrl_c_stops_the_robot(tmp_path, plan):
+    command = [*(sys.executable, "-m", "harness.cli", "run", str(plan), "--robot", "ros2")]
+    slowly = ["--yes", "--no-report", "--velocity-scaling", "0.01"]
+    with bridge(scenario(tmp_path, HOLD)) as (node, results):
+        states = node.listen("/joint_states", "sensor_msgs/msg/JointState")
+        node.ready()
+        domain = ["--domain", str(node.graph.participant.domain)]
+        process = subprocess.Popen([*command, *slowly, *domain], stdout=subprocess.DEVNULL)
+        node.wait(lambda: states and states[-1].position[0] > 0.005, 60)
+        process.send_signal(signal.SIGINT)
+        assert process.wait(30) == 130
+        node.sleep(0.2)
+        stopped = states[-1].position[0]
+        node.sleep(0.3)
+        assert states[-1].position[0] == pytest.approx(stopped, abs=1e-4)
+    assert results[0].commands == 2
 
 
 def test_without_a_terminal_the_user_has_to_agree_in_advance(plan, capsys):

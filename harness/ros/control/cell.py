@@ -12,8 +12,9 @@ from harness.core.types import FloatArray, IntArray
 from harness.language.scenario import Ros2Names
 from harness.recording.commands import CommandKind, CommandRecord
 from harness.robot.description import RobotDescription
+from harness.ros.control.controller import Outcome, Window
 from harness.ros.control.goals import Code, GoalRefused
-from harness.ros.control.gripper import Gripped, GripperController
+from harness.ros.control.gripper import GripperController
 from harness.ros.control.spline import Rows
 from harness.ros.control.trajectory import (
     Defaults,
@@ -49,8 +50,12 @@ class Servos(Protocol):
     def limit_gripper(self, effort: float) -> None: ...
 
 
-Controller = TrajectoryController | GripperController
-Outcome = Finished | Gripped
+@dataclass(frozen=True, eq=False)
+class _Seat:
+    """Where a controller's joints are: among the actuated ones, and in the description."""
+
+    columns: IntArray
+    places: IntArray
 
 
 @dataclass(frozen=True)
@@ -74,6 +79,9 @@ def controller_names(description: RobotDescription, names: Ros2Names) -> Control
         return ControllerNames(arm if group else ())
     default = next(iter(own.get("gripper", ())), f"{gripper.group}_controller")
     return ControllerNames(arm if group else (), names.gripper_controller or default)
+
+
+AnyController = TrajectoryController | GripperController
 
 
 class ExternalCell:
@@ -100,15 +108,22 @@ class ExternalCell:
         self.gripper: GripperController | None = None
         if names.gripper and description.gripper is not None:
             self.gripper = GripperController(names.gripper, description, servos.timestep)
-            finger = TrajectoryController(names.gripper, [self.gripper.joint], Defaults())
+            finger = TrajectoryController(names.gripper, self.gripper.joints, Defaults())
             self.trajectories[names.gripper] = finger
         controllers = (*dict.fromkeys(self.trajectories.values()), self.gripper)
-        self._controllers: tuple[Controller, ...] = tuple(c for c in controllers if c is not None)
-        start = (
+        self._controllers = tuple(each for each in controllers if each is not None)
+        place, actuated = description.joint_index, servos.actuated_joints
+        self._actuated = np.array([place[name] for name in actuated], dtype=np.int64)
+        self._seats = {
+            each: _Seat(
+                np.array([actuated.index(name) for name in each.joint_names], dtype=np.int64),
+                np.array([place[name] for name in each.joint_names], dtype=np.int64),
+            )
+            for each in self._controllers
+        }
+        self.hold_commanded(
             description.start_positions() if servos.sample_count == 1 else servos.joint_positions()
         )
-        held = np.array([start[description.joint_index[name]] for name in servos.actuated_joints])
-        self._last: Rows = (held[None], np.zeros((1, len(held))), np.zeros((1, len(held))))
 
     @property
     def time(self) -> float:
@@ -122,9 +137,8 @@ class ExternalCell:
 
     def hold_commanded(self, positions: FloatArray) -> None:
         """Start from set points in description order, such as a planned motion left them."""
-        place = self.description.joint_index
-        held = np.array([positions[place[name]] for name in self._servos.actuated_joints])
-        self._last = (held[None], np.zeros((1, len(held))), np.zeros((1, len(held))))
+        held = positions[self._actuated][None]
+        self._last: Rows = held, np.zeros_like(held), np.zeros_like(held)
 
     # -- commands -----------------------------------------------------------------------------
 
@@ -140,9 +154,9 @@ class ExternalCell:
         code, answer = Code.SUCCESSFUL, "accepted"
         try:
             if kind == "trajectory":
-                self._begin_trajectory(controller, goal, content)
+                self._begin(self.trajectories[controller], goal, content)
             elif kind == "gripper":
-                self._begin_gripper(goal, content)
+                self._begin(self.gripper, goal, content)
             elif kind == "cancel":
                 self._cancel(goal)
         except GoalRefused as refused:
@@ -152,63 +166,42 @@ class ExternalCell:
         )
         self.commands.append(record)
         if code != Code.SUCCESSFUL and kind == "trajectory" and goal:
-            self.outcomes.append(Finished(goal, code, answer))
+            self.outcomes.append(Finished(goal, None, code, answer))
         return record
 
-    def _begin_trajectory(self, name: str, goal: str, content: Mapping[str, Any]) -> None:
-        controller = self.trajectories[name]
-        columns = self._columns(controller)
-        start = tuple(part[-1:, columns] for part in self._last)
-        previous = controller.goal
-        controller.begin(goal, content, self.time, (start[0], start[1], start[2]))
-        if previous:
-            self._preempt(controller, previous)
-        if self.gripper is not None and controller.joint_names == self.gripper.joint_names:
-            self._stop_others(self.gripper)
-            self._servos.limit_gripper(self.gripper.gripper.grip_effort)
-
-    def _begin_gripper(self, goal: str, content: Mapping[str, Any]) -> None:
-        gripper = self.gripper
-        if gripper is None:
+    def _begin(
+        self, controller: AnyController | None, goal: str, content: Mapping[str, Any]
+    ) -> None:
+        """Let a controller follow a goal; what its joints followed before ends."""
+        if controller is None:
             raise GoalRefused(Code.INVALID_GOAL, "the robot has no gripper")
-        column = self._columns(gripper)[0]
-        commanded = float(self._last[0][-1, column])
-        index = self.description.joint_index[gripper.joint.name]
-        measured = float(self._servos.joint_positions()[index])
-        previous = gripper.goal
-        effort = gripper.begin(goal, content, self.time, commanded, measured)
-        if previous:
-            self._preempt(gripper, previous)
-        self._stop_others(self.trajectories[gripper.name])
-        self._servos.limit_gripper(effort)
+        seat, previous = self._seats[controller], controller.goal
+        start = _chosen(self._last, seat.columns)
+        measured = self._servos.joint_positions()[seat.places]
+        controller.begin(goal, content, self.time, start, measured)
+        self._interrupt(controller, previous, Code.INVALID_GOAL, PREEMPTED)
+        for other in self._controllers:
+            if other is not controller and other.joint_names == controller.joint_names:
+                self._interrupt(other, other.stop(), Code.INVALID_GOAL, PREEMPTED)
+        gripper = self.gripper
+        if gripper is not None and controller.joint_names == gripper.joint_names:
+            effort = gripper.effort if controller is gripper else gripper.gripper.grip_effort
+            self._servos.limit_gripper(effort)
 
-    def _stop_others(self, controller: Controller) -> None:
-        """Stop a controller of the same joint."""
-        goal = controller.stop()
+    def _interrupt(self, controller: AnyController, goal: str, code: Code, reason: str) -> None:
+        """Report that a goal ended before it was reached; goals from a topic have no result."""
         if goal:
-            self._preempt(controller, goal)
-
-    def _preempt(self, controller: Controller, goal: str) -> None:
-        if isinstance(controller, TrajectoryController):
-            self.outcomes.append(Finished(goal, Code.INVALID_GOAL, PREEMPTED))
-        else:
-            self.outcomes.append(self._gripped(controller, goal))
-
-    def _gripped(self, gripper: GripperController, goal: str) -> Gripped:
-        index = self.description.joint_index[gripper.joint.name]
-        effort = float(self._servos.efforts()[self._columns(gripper)[0]])
-        return Gripped(goal, float(self._servos.joint_positions()[index]), effort, False, False)
+            now = self._window(controller, np.array([self.time]), self._last)
+            self.outcomes.append(controller.interrupted(goal, code, reason, now))
 
     def _cancel(self, goal: str) -> None:
         """Hold the joints of a goal where they are."""
         for controller in self._controllers:
             if controller.goal == goal:
                 controller.stop()
-                self._hold(controller)
-                if isinstance(controller, GripperController):
-                    self.outcomes.append(self._gripped(controller, goal))
-                else:
-                    self.outcomes.append(Finished(goal, Code.SUCCESSFUL, "canceled"))
+                seat = self._seats[controller]
+                self._hold(controller, self._servos.joint_positions()[seat.places])
+                self._interrupt(controller, goal, Code.SUCCESSFUL, "canceled")
                 return
         raise GoalRefused(Code.INVALID_GOAL, "no such goal is active")
 
@@ -222,72 +215,49 @@ class ExternalCell:
         rows = self._set_points(times)
         servos.stream(_joined(self._last, rows))
         self._last = (rows[0][-1:], rows[1][-1:], rows[2][-1:])
-        positions, velocities = servos.measured(first)
         for controller in self._controllers:
             if not controller.is_active:
                 continue
-            places = [self.description.joint_index[name] for name in controller.joint_names]
-            columns = self._columns(controller)
-            if isinstance(controller, GripperController):
-                self._judge_gripper(controller, times, positions[:, places[0]], columns[0])
-                continue
-            desired = (rows[0][:, columns], rows[1][:, columns], rows[2][:, columns])
-            ended = controller.judge(times, desired, positions[:, places], velocities[:, places])
+            ended = controller.judge(self._window(controller, times, rows))
             if ended is not None:
-                if ended.code in (Code.PATH_TOLERANCE_VIOLATED, Code.GOAL_TOLERANCE_VIOLATED):
-                    self._hold(controller)
+                if ended.hold is not None:
+                    self._hold(controller, ended.hold)
                 self.outcomes.append(ended)
 
     def tracking(self) -> list[Tracking]:
         """Desired and actual motion of every goal that is followed."""
-        positions, velocities = self._servos.measured(self._servos.sample_count - 1)
         found: list[Tracking] = []
         for controller in dict.fromkeys(self.trajectories.values()):
             if controller.goal:
-                places = [self.description.joint_index[name] for name in controller.joint_names]
-                columns = self._columns(controller)
-                found.append(
-                    Tracking(
-                        controller.goal,
-                        self.time,
-                        self._last[0][-1, columns],
-                        self._last[1][-1, columns],
-                        positions[-1, places],
-                        velocities[-1, places],
-                    )
-                )
+                now = self._window(controller, np.array([self.time]), self._last)
+                desired = now.desired[0][-1], now.desired[1][-1]
+                actual = now.positions[-1], now.velocities[-1]
+                found.append(Tracking(controller.goal, self.time, *desired, *actual))
         return found
 
     def finish(self) -> None:
         """End what is still active; the arm holds its last set point."""
         for controller in self._controllers:
-            goal = controller.stop()
-            if goal and isinstance(controller, GripperController):
-                self.outcomes.append(self._gripped(controller, goal))
-            elif goal:
-                self.outcomes.append(Finished(goal, Code.INVALID_GOAL, STOPPED))
+            self._interrupt(controller, controller.stop(), Code.INVALID_GOAL, STOPPED)
 
-    def _judge_gripper(
-        self, gripper: GripperController, times: FloatArray, positions: FloatArray, column: int
-    ) -> None:
-        target = gripper.target
-        effort = float(self._servos.efforts()[column])
-        ended = gripper.judge(float(times[-1]), positions, effort)
-        if ended is not None:
-            assert target is not None
-            self._last[0][-1, column] = target  # it keeps squeezing
-            self._last[1][-1, column] = self._last[2][-1, column] = 0.0
-            self.outcomes.append(ended)
+    def _window(self, controller: AnyController, times: FloatArray, rows: Rows) -> Window:
+        """Desired and measured motion of a controller's joints at the last samples."""
+        seat = self._seats[controller]
+        positions, velocities = self._servos.measured(self._servos.sample_count - len(times))
+        return Window(
+            times,
+            _chosen(rows, seat.columns),
+            positions[:, seat.places],
+            velocities[:, seat.places],
+            self._servos.efforts()[seat.columns],
+        )
 
-    def _hold(self, controller: Controller) -> None:
-        """Command the joints of a controller to where they are."""
-        columns = self._columns(controller)
-        positions = self._servos.joint_positions()
-        places = [self.description.joint_index[name] for name in controller.joint_names]
+    def _hold(self, controller: AnyController, positions: FloatArray) -> None:
+        """Command the joints of a controller to rest at some positions."""
+        columns = self._seats[controller].columns
         last = tuple(part.copy() for part in self._last)
-        last[0][-1, columns] = positions[places]
-        last[1][-1, columns] = 0.0
-        last[2][-1, columns] = 0.0
+        last[0][-1, columns] = positions
+        last[1][-1, columns] = last[2][-1, columns] = 0.0
         self._last = (last[0], last[1], last[2])
 
     def _set_points(self, times: FloatArray) -> Rows:
@@ -298,15 +268,15 @@ class ExternalCell:
         for controller in self._controllers:
             rows = controller.set_points(times)
             if rows is not None:
-                columns = self._columns(controller)
+                columns = self._seats[controller].columns
                 for whole, part in zip((positions, velocities, accelerations), rows, strict=True):
                     whole[:, columns] = part
         return positions, velocities, accelerations
 
-    def _columns(self, controller: Controller) -> IntArray:
-        """Places of a controller's joints among the actuated ones."""
-        names = self._servos.actuated_joints
-        return np.array([names.index(name) for name in controller.joint_names], dtype=np.int64)
+
+def _chosen(rows: Rows, columns: IntArray) -> Rows:
+    """Some columns of set points."""
+    return rows[0][:, columns], rows[1][:, columns], rows[2][:, columns]
 
 
 def _joined(first: Rows, rest: Rows) -> Rows:

@@ -10,6 +10,7 @@ import numpy as np
 
 from harness.core.types import BoolArray, FloatArray
 from harness.robot.description import Joint
+from harness.ros.control.controller import Controller, Outcome, Window
 from harness.ros.control.goals import Code, Tolerance, TrajectoryGoal, checked_goal
 from harness.ros.control.spline import Rows, Spline
 
@@ -25,18 +26,16 @@ class Defaults:
     goal_time: float = 1.0
 
 
-@dataclass(frozen=True)
-class Finished:
+@dataclass(frozen=True, eq=False)
+class Finished(Outcome):
     """How a trajectory ended.
 
     Attributes:
-        goal: The goal's identifier; empty for one from a topic.
         code: The error code of its result.
         message: What happened, with numbers; empty for success.
     """
 
-    goal: str
-    code: Code
+    code: Code = Code.SUCCESSFUL
     message: str = ""
 
 
@@ -61,37 +60,17 @@ class _Active:
     deadline: float
 
 
-class TrajectoryController:
-    """Follows trajectories of its joints; a new one replaces the one that is followed."""
+class TrajectoryController(Controller[_Active]):
+    """Follows trajectories of its joints within tolerances."""
 
     def __init__(self, name: str, joints: Sequence[Joint], defaults: Defaults) -> None:
-        self.name, self.joints = name, tuple(joints)
-        self.joint_names = tuple(joint.name for joint in joints)
+        super().__init__(name, joints)
         self._defaults = defaults
-        self._active: _Active | None = None
 
-    @property
-    def is_active(self) -> bool:
-        """Whether it follows a trajectory."""
-        return self._active is not None
-
-    @property
-    def goal(self) -> str:
-        """The identifier of the goal that it follows; empty for none, or one from a topic."""
-        return self._active.goal if self._active else ""
-
-    def begin(self, goal: str, content: Mapping[str, Any], now: float, start: Rows) -> None:
-        """Follow a trajectory from now on.
-
-        Args:
-            goal: Its identifier; empty for one from a topic.
-            content: The message, as `checked_goal` takes it.
-            now: The present simulated time [s].
-            start: The last set point, shape (1, dof) each.
-
-        Raises:
-            GoalRefused: It cannot be followed; what was followed goes on.
-        """
+    def begin(
+        self, goal: str, content: Mapping[str, Any], now: float, start: Rows, measured: FloatArray
+    ) -> None:
+        del measured  # it starts from the last set point
         checked = checked_goal(content, self.joints, now)
         spline = _spline(checked, now, start)
         limit = checked.goal_time or self._defaults.goal_time
@@ -103,50 +82,37 @@ class TrajectoryController:
             np.inf if limit < 0 else spline.end + limit,
         )
 
-    def stop(self) -> str:
-        """Follow nothing any more; the identifier of the goal that was followed."""
-        goal, self._active = self.goal, None
-        return goal
-
     def set_points(self, times: FloatArray) -> Rows | None:
-        """Set points at some times; None where it follows nothing."""
         return None if self._active is None else self._active.spline.at(times)
 
-    def judge(
-        self, times: FloatArray, desired: Rows, positions: FloatArray, velocities: FloatArray
-    ) -> Finished | None:
-        """Compare the motion with its tolerances.
-
-        Args:
-            times: Simulated times of the samples [s], shape (N,).
-            desired: Set points at these times.
-            positions: Measured positions, shape (N, dof).
-            velocities: Measured velocities, shape (N, dof).
-
-        Returns:
-            How it ended; None while it goes on.
-        """
-        active = self._active
+    def judge(self, window: Window) -> Finished | None:
+        """Compare the motion with its tolerances."""
+        active, times = self._active, window.times
         if active is None:
             return None
-        errors = np.abs(desired[0] - positions), np.abs(desired[1] - velocities)
+        desired, last = window.desired, window.positions[-1]
+        errors = np.abs(desired[0] - window.positions), np.abs(desired[1] - window.velocities)
         moving = times < active.spline.end - TIME_SLACK
         beyond = self._first_beyond(errors, active.path, moving)
         if beyond:
             row, text = beyond
             said = f"path tolerance: {text} at t={times[row]:.3f} s"
-            return Finished(self.stop(), Code.PATH_TOLERANCE_VIOLATED, said)
+            return Finished(self.stop(), last, Code.PATH_TOLERANCE_VIOLATED, said)
         now = float(times[-1])
         if now < active.spline.end - TIME_SLACK:
             return None
-        last = tuple(each[-1:] for each in errors)
-        missed = self._first_beyond((last[0], last[1]), active.target, np.array([True]))
+        final = errors[0][-1:], errors[1][-1:]
+        missed = self._first_beyond(final, active.target, np.array([True]))
         if missed is None:
-            return Finished(self.stop(), Code.SUCCESSFUL)
+            return Finished(self.stop())
         if now < active.deadline:
             return None
         said = f"goal tolerance: {missed[1]} {now - active.spline.end:.3f} s after the end"
-        return Finished(self.stop(), Code.GOAL_TOLERANCE_VIOLATED, said)
+        return Finished(self.stop(), last, Code.GOAL_TOLERANCE_VIOLATED, said)
+
+    def interrupted(self, goal: str, code: Code, reason: str, window: Window) -> Finished:
+        del window
+        return Finished(goal, None, code, reason)
 
     def _bounds(
         self, own: Mapping[str, Tolerance], default: float

@@ -101,7 +101,6 @@ class RtpsGraph:
             NetworkError: There is no such domain, or no free port.
         """
         self.participant = Participant(domain, name=node, is_local=is_local)
-        self.unreadable = 0
         self._node = node
         self._entities: tuple[list[bytes], list[bytes]] = ([], [])
         info = "rmw_dds_common/msg/ParticipantEntitiesInfo"
@@ -116,11 +115,10 @@ class RtpsGraph:
         kind: str,
         *,
         latched: bool = False,
-        reliable: bool = True,
         depth: int = 10,
     ) -> _Publisher:
         self._prepare(kind)
-        qos = Qos(is_reliable=reliable, is_latched=latched, depth=depth)
+        qos = Qos(is_latched=latched, depth=depth)
         return _Publisher(self._writer(f"rt{topic}", dds_type(kind), qos), kind)
 
     def subscribe(
@@ -202,7 +200,6 @@ class RtpsGraph:
             try:
                 content = decoded(payload, kind)
             except Exception:  # noqa: BLE001 - bytes of another program; no content of them is certain
-                self.unreadable += 1
                 return
             take(content, received)
 

@@ -1,11 +1,8 @@
-"""A participant of a DDS domain: sockets, discovery, and its writers and readers."""
+"""A participant of a DDS domain: discovery, and its writers and readers."""
 
 from __future__ import annotations
 
-import fcntl
 import os
-import select
-import socket
 import struct
 import time
 from collections import deque
@@ -13,30 +10,16 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
 
-from harness.core.errors import HarnessError, Problem, SpecError
+from harness.core.errors import Problem, SpecError
 from harness.ros.rtps import wire
+from harness.ros.rtps.discovery import Endpoint, ParticipantData, announcement, farewell, is_gone
 from harness.ros.rtps.reader import Reader, Received
+from harness.ros.rtps.sockets import Sockets
 from harness.ros.rtps.writer import Address, Qos, Writer
 
-GROUP = "239.255.0.1"
-LOOPBACK = "127.0.0.1"
-MOST_PARTICIPANTS = 120
 MOST_DOMAINS = 232
-NEIGHBOURS = 32
-"""Participants of this machine that are announced to one by one: some listen to no multicast."""
 ANNOUNCE_EVERY = 1.0
 REMIND_EVERY = 0.1
-LEASE = 100.0
-"""Seconds of silence after which peers forget this participant."""
-
-BUILTIN = 0x3F
-"""Participant discovery and endpoint discovery, both directions."""
-
-_SIOCGIFADDR = 0x8915
-
-
-class NetworkError(HarnessError):
-    """The domain cannot be joined."""
 
 
 @dataclass
@@ -48,21 +31,7 @@ class _Peer:
     lease: float
     seen: float
     knows_us: bool = False
-    endpoints: dict[bytes, tuple[str, str, Qos, Address]] = field(
-        default_factory=dict[bytes, tuple[str, str, Qos, Address]]
-    )
-
-
-def local_addresses() -> dict[str, str]:
-    """IPv4 address of every network interface, by its name."""
-    found: dict[str, str] = {}
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        for _, name in socket.if_nameindex():
-            with suppress(OSError):
-                request = struct.pack("256s", name.encode()[:15])
-                answer = fcntl.ioctl(probe.fileno(), _SIOCGIFADDR, request)
-                found[name] = socket.inet_ntoa(answer[20:24])
-    return found
+    endpoints: dict[bytes, Endpoint] = field(default_factory=dict[bytes, Endpoint])
 
 
 class Participant:
@@ -83,15 +52,9 @@ class Participant:
         if not 0 <= domain <= MOST_DOMAINS:
             said = f"domains are 0 to {MOST_DOMAINS}"
             raise SpecError([Problem(f"ROS domain {domain}", 0, 0, said)])
-        self.domain, self.name, self.is_local = domain, name, is_local
+        self.domain, self.name = domain, name
         self.prefix = wire.VENDOR + os.urandom(10)
-        self._addresses = set(local_addresses().values()) | {LOOPBACK}
-        self._address = LOOPBACK if is_local else _outward(self._addresses)
-        self._base = 7400 + 250 * domain
-        self._multicast = self._join()
-        self._unicast, self.port = self._bind()
-        own, first = _outward(self._addresses), self._base + 10
-        self._neighbours = [(own, first + 2 * number) for number in range(NEIGHBOURS)]
+        self._sockets = Sockets(domain, is_local=is_local)
         self._peers: dict[bytes, _Peer] = {}
         self._writers: dict[bytes, Writer] = {}
         self._readers: dict[bytes, Reader] = {}
@@ -110,8 +73,7 @@ class Participant:
         entity = self._entity(0x03)
         made = Writer(entity, topic, type_name, qos, self._send)
         self._writers[entity] = made
-        self._publications.write(self._endpoint(entity, topic, type_name, qos))
-        self._match_known(made)
+        self._announce_endpoint(self._publications, made)
         return made
 
     def reader(
@@ -125,8 +87,7 @@ class Participant:
 
         made = Reader(entity, topic, type_name, qos, self._send, arrive)
         self._readers[entity] = made
-        self._subscriptions.write(self._endpoint(entity, topic, type_name, qos))
-        self._match_known(made)
+        self._announce_endpoint(self._subscriptions, made)
         return made
 
     def guid(self, entity: bytes) -> bytes:
@@ -143,8 +104,8 @@ class Participant:
         written: set[str] = set()
         read: set[str] = set()
         for peer in self._peers.values():
-            for guid, endpoint in peer.endpoints.items():
-                (written if _is_writer(guid) else read).add(endpoint[0])
+            for endpoint in peer.endpoints.values():
+                (written if endpoint.is_writer else read).add(endpoint.topic)
         return written, read
 
     # -- time ---------------------------------------------------------------------------------
@@ -155,29 +116,18 @@ class Participant:
             self._tend()
             left = until - time.monotonic()
             due = min(self._next_announcement, self._next_reminder) - time.monotonic()
-            wait = max(0.0, min(left, due))
-            ready, _, _ = select.select([self._unicast, self._multicast], [], [], wait)
-            for each in ready:
-                self._receive(each)
-            if left <= 0 and not ready:
-                return
-            if left < -0.05:  # under a flood of messages
+            is_quiet = True
+            for datagram in self._sockets.receive(max(0.0, min(left, due))):
+                is_quiet = False
+                self._receive(datagram)
+            if (left <= 0 and is_quiet) or left < -0.05:  # the latter under a flood of messages
                 return
 
     def close(self) -> None:
         """Leave the domain, and let the peers know."""
-        inline = self._inline(PARTICIPANT_GUID=self.guid(wire.PARTICIPANT))
-        head = struct.pack("<HH", 0, 16) + wire.NO_ENTITY + wire.SPDP_WRITER
-        body = head + wire.sequence_number(2) + inline
-        leaving = wire.submessage(wire.DATA, body, 0x02)
         for prefix, peer in self._peers.items():
-            self._send(prefix, leaving, peer.meta)
-        self._unicast.close()
-        self._multicast.close()
-
-    def _inline(self, PARTICIPANT_GUID: bytes) -> bytes:
-        status = struct.pack(">I", 3)
-        return wire.parameters([(wire.PID_KEY_HASH, PARTICIPANT_GUID), (wire.PID_STATUS, status)])
+            self._send(prefix, farewell(self.guid(wire.PARTICIPANT)), peer.meta)
+        self._sockets.close()
 
     def _tend(self) -> None:
         now = time.monotonic()
@@ -191,59 +141,22 @@ class Participant:
                 if now - peer.seen > peer.lease:
                     self._forget(prefix)
             known = {peer.meta for peer in self._peers.values()}
-            for address in {(GROUP, self._base), *self._neighbours, *known}:
-                self._announce(address)
+            self._announce(*(self._sockets.announced | known))
 
-    # -- sockets ------------------------------------------------------------------------------
-
-    def _join(self) -> socket.socket:
-        made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            made.bind(("", self._base))
-        except OSError as error:
-            raise NetworkError(f"UDP port {self._base} cannot be used: {error.strerror}") from error
-        for address in self._addresses:
-            with suppress(OSError):
-                group = socket.inet_aton(GROUP) + socket.inet_aton(address)
-                made.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, group)
-        made.setblocking(False)
-        return made
-
-    def _bind(self) -> tuple[socket.socket, int]:
-        made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        made.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2**22)
-        made.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 2**22)
-        made.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(self._address))
-        made.setblocking(False)
-        for number in range(MOST_PARTICIPANTS):
-            port = self._base + 10 + 2 * number
-            with suppress(OSError):
-                made.bind(("", port))
-                return made, port
-        raise NetworkError(f"ROS domain {self.domain} has no free port on this machine")
+    # -- messages -----------------------------------------------------------------------------
 
     def _send(self, prefix: bytes, content: bytes, address: Address) -> None:
         target = wire.submessage(wire.INFO_DST, prefix) if prefix else b""
-        with suppress(OSError):  # like a datagram that is lost
-            self._unicast.sendto(wire.header(self.prefix) + target + content, address)
+        self._sockets.send(wire.header(self.prefix) + target + content, address)
 
-    def _receive(self, source: socket.socket) -> None:
-        for _ in range(256):
-            try:
-                datagram, (host, _) = source.recvfrom(2**16)
-            except OSError:
-                return
-            if self.is_local and host not in self._addresses:
-                continue
-            if datagram[:4] == b"RTPS" and datagram[8:20] != self.prefix:
-                with suppress(struct.error, IndexError, ValueError):  # garbage is no message
-                    self._take(datagram)
-            while self._arrived:
-                deliver, received = self._arrived.popleft()
-                deliver(received)
-
-    # -- messages -----------------------------------------------------------------------------
+    def _receive(self, datagram: bytes) -> None:
+        if datagram[:4] == b"RTPS" and datagram[8:20] != self.prefix:
+            # garbage is no message
+            with suppress(struct.error, IndexError, KeyError, ValueError):
+                self._take(datagram)
+        while self._arrived:
+            deliver, received = self._arrived.popleft()
+            deliver(received)
 
     def _take(self, datagram: bytes) -> None:
         source, is_for_us = datagram[8:20], True
@@ -291,43 +204,32 @@ class Participant:
 
     # -- discovery ----------------------------------------------------------------------------
 
-    def _announce(self, address: Address) -> None:
-        own = dict.fromkeys((_outward(self._addresses), LOOPBACK))
-        here = [wire.locator(each, self.port) for each in own]
-        payload = b"\0\3\0\0" + wire.parameters(
-            [
-                (wire.PID_VERSION, wire.VERSION),
-                (wire.PID_VENDOR, wire.VENDOR),
-                (wire.PID_PARTICIPANT, self.guid(wire.PARTICIPANT)),
-                (wire.PID_DOMAIN, struct.pack("<I", self.domain)),
-                *((wire.PID_META_UNICAST, each) for each in here),
-                *((wire.PID_DEFAULT_UNICAST, each) for each in here),
-                (wire.PID_LEASE, struct.pack("<iI", int(LEASE), 0)),
-                (wire.PID_BUILTIN, struct.pack("<I", BUILTIN)),
-                (wire.PID_NAME, wire.text(self.name)),
-                (wire.PID_USER_DATA, struct.pack("<I", 10) + b"enclave=/;"),
-            ]
-        )
-        self._send(b"", wire.data(wire.NO_ENTITY, wire.SPDP_WRITER, 1, payload), address)
+    def _announce(self, *addresses: Address) -> None:
+        guid, own = self.guid(wire.PARTICIPANT), self._sockets.unicast
+        payload = announcement(guid, self.domain, self.name, own)
+        sample = wire.data(wire.NO_ENTITY, wire.SPDP_WRITER, 1, payload)
+        for address in addresses:
+            self._send(b"", sample, address)
+
+    def _announce_endpoint(self, publisher: Writer, made: Writer | Reader) -> None:
+        guid, own = self.guid(made.entity), self._sockets.unicast[-1:]
+        publisher.write(Endpoint(guid, made.topic, made.type_name, made.qos, own).payload())
+        for peer in self._peers.values():
+            for endpoint in peer.endpoints.values():
+                self._match(made, endpoint, peer)
 
     def _take_participant(self, source: bytes, sample: wire.Sample) -> None:
-        if wire.PID_STATUS in sample.inline and sample.inline[wire.PID_STATUS][-1] & 3:
+        if is_gone(sample.inline):
             self._forget(source)
             return
-        known = wire.parameters_of(sample.payload)
-        domain = known.get(wire.PID_DOMAIN)
-        if domain and struct.unpack("<I", domain[0])[0] != self.domain:
+        known = ParticipantData.parsed(sample.payload)
+        meta = self._sockets.reachable(known.meta)
+        if meta is None or known.domain not in (None, self.domain):
             return
-        meta = self._reachable(known.get(wire.PID_META_UNICAST, []))
-        user = self._reachable(known.get(wire.PID_DEFAULT_UNICAST, [])) or meta
-        if meta is None or user is None:
-            return
-        seconds = (
-            struct.unpack("<iI", known[wire.PID_LEASE][0])[0] if wire.PID_LEASE in known else 20
-        )
         is_new = source not in self._peers
-        peer = self._peers.setdefault(source, _Peer(meta, user, 20.0, time.monotonic()))
-        peer.lease = float(seconds)
+        user = self._sockets.reachable(known.user) or meta
+        peer = self._peers.setdefault(source, _Peer(meta, user, known.lease, time.monotonic()))
+        peer.lease = known.lease
         if not peer.knows_us:  # it may not have listened yet when the last announcement came
             self._announce(meta)
         if is_new:
@@ -338,16 +240,6 @@ class Participant:
             ):
                 self._writers[writer].match(source + reader, meta, latched)
                 self._readers[reader].match(source + writer, meta, latched)
-
-    def _reachable(self, locators: Iterable[bytes]) -> Address | None:
-        """The address under which a peer is reached, on this machine where it is here.
-
-        Cyclone DDS takes only packets to the address of the interface that it has chosen.
-        """
-        found = [address for each in locators if (address := wire.address_of(each)) is not None]
-        here = [address for address in found if address[0] in self._addresses]
-        usable = here or ([] if self.is_local else found)
-        return min(usable, key=lambda each: each[0] != LOOPBACK, default=None)
 
     def _forget(self, prefix: bytes) -> None:
         self._peers.pop(prefix, None)
@@ -360,29 +252,24 @@ class Participant:
 
     def _take_endpoint(self, received: Received) -> None:
         """A peer made or removed a writer or a reader."""
-        status = received.inline.get(wire.PID_STATUS)
-        if status and status[-1] & 3:
+        if is_gone(received.inline):
             self._remove_endpoint(received)
             return
-        known = wire.parameters_of(received.payload)
-        guid = known[wire.PID_ENDPOINT][0][:16]
-        peer = self._peers.get(guid[:12])
-        if peer is None or wire.PID_TOPIC not in known or wire.PID_TYPE not in known:
-            return
-        reliable, latched = known.get(wire.PID_RELIABILITY), known.get(wire.PID_DURABILITY)
-        is_writer = _is_writer(guid)
-        qos = Qos(
-            is_reliable=struct.unpack_from("<I", reliable[0])[0] == 2 if reliable else is_writer,
-            is_latched=bool(latched) and struct.unpack_from("<I", latched[0])[0] >= 1,
-        )
-        address = self._reachable(known.get(wire.PID_UNICAST, [])) or peer.user
-        topic, type_name = (
-            wire.text_of(known[wire.PID_TOPIC][0]),
-            wire.text_of(known[wire.PID_TYPE][0]),
-        )
-        peer.endpoints[guid] = (topic, type_name, qos, address)
-        for mine in (self._readers if is_writer else self._writers).values():
-            _match(mine, guid, peer.endpoints[guid])
+        endpoint = Endpoint.parsed(received.payload)
+        peer = self._peers.get(endpoint.guid[:12])
+        if peer is not None:
+            peer.endpoints[endpoint.guid] = endpoint
+            for mine in (self._readers if endpoint.is_writer else self._writers).values():
+                self._match(mine, endpoint, peer)
+
+    def _match(self, mine: Writer | Reader, other: Endpoint, peer: _Peer) -> None:
+        """Connect two endpoints where direction, topic, type and quality allow it."""
+        is_same = (other.topic, other.type_name) == (mine.topic, mine.type_name)
+        is_writer = isinstance(mine, Writer)
+        offered, requested = (mine.qos, other.qos) if is_writer else (other.qos, mine.qos)
+        if is_same and other.is_writer != is_writer and offered.serves(requested):
+            address = self._sockets.reachable(other.addresses) or peer.user
+            mine.match(other.guid, address, other.qos)
 
     def _remove_endpoint(self, received: Received) -> None:
         guid = received.inline.get(wire.PID_KEY_HASH)
@@ -397,30 +284,6 @@ class Participant:
         for reader in self._readers.values():
             reader.writers.pop(guid, None)
 
-    def _match_known(self, mine: Writer | Reader) -> None:
-        for peer in self._peers.values():
-            for guid, endpoint in peer.endpoints.items():
-                if _is_writer(guid) != isinstance(mine, Writer):
-                    _match(mine, guid, endpoint)
-
-    def _endpoint(self, entity: bytes, topic: str, type_name: str, qos: Qos) -> bytes:
-        guid = self.guid(entity)
-        reliability = struct.pack("<IiI", 2 if qos.is_reliable else 1, 0, 429496730)
-        return b"\0\3\0\0" + wire.parameters(
-            [
-                (wire.PID_ENDPOINT, guid),
-                (wire.PID_PARTICIPANT, self.guid(wire.PARTICIPANT)),
-                (wire.PID_VERSION, wire.VERSION),
-                (wire.PID_VENDOR, wire.VENDOR),
-                (wire.PID_KEY_HASH, guid),
-                (wire.PID_UNICAST, wire.locator(self._address, self.port)),
-                (wire.PID_TOPIC, wire.text(topic)),
-                (wire.PID_TYPE, wire.text(type_name)),
-                (wire.PID_RELIABILITY, reliability),
-                (wire.PID_DURABILITY, struct.pack("<I", int(qos.is_latched))),
-            ]
-        )
-
     def _builtin_writer(self, entity: bytes) -> Writer:
         made = Writer(entity, "", "", Qos(is_latched=True, depth=1000), self._send)
         self._writers[entity] = made
@@ -433,22 +296,3 @@ class Participant:
     def _entity(self, kind: int) -> bytes:
         self._entities += 1
         return self._entities.to_bytes(3, "big") + bytes([kind])
-
-
-def _is_writer(guid: bytes) -> bool:
-    """Whether an endpoint is a writer, with a key or without."""
-    return guid[15] & 0x0F in (0x02, 0x03)
-
-
-def _match(mine: Writer | Reader, guid: bytes, endpoint: tuple[str, str, Qos, Address]) -> None:
-    topic, type_name, qos, address = endpoint
-    if (topic, type_name) != (mine.topic, mine.type_name):
-        return
-    offered, requested = (mine.qos, qos) if isinstance(mine, Writer) else (qos, mine.qos)
-    if offered.serves(requested):
-        mine.match(guid, address, qos)
-
-
-def _outward(addresses: Iterable[str]) -> str:
-    """The first address that other machines can reach."""
-    return next((each for each in sorted(addresses) if not each.startswith("127.")), LOOPBACK)

@@ -1,0 +1,75 @@
+"""The joint states of a robot as they arrive, and the even record that is made of them."""
+
+from __future__ import annotations
+
+import time as wall
+from typing import Any
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.robot.description import RobotDescription
+from harness.ros.graph import Graph
+from harness.ros.interfaces import seconds
+
+GRID = 0.01
+"""Time between the samples of the record [s]; joint states are interpolated onto it."""
+
+
+class JointStates:
+    """Keeps every message of `/joint_states` that has all joints which are no mimic joints."""
+
+    def __init__(self, graph: Graph, description: RobotDescription) -> None:
+        self._description = description
+        self._times: list[float] = []
+        self._rows: list[tuple[FloatArray, FloatArray, FloatArray]] = []
+        self._offset: float | None = None
+        graph.subscribe("/joint_states", "sensor_msgs/msg/JointState", self._take, reliable=False)
+
+    @property
+    def time(self) -> float:
+        """Time of the last message since the first one [s]; -1 before the first one."""
+        return self._times[-1] if self._times else -1.0
+
+    @property
+    def sample_count(self) -> int:
+        """Samples on the grid so far."""
+        return int(self.time / GRID + 1e-9) + 1
+
+    @property
+    def positions(self) -> FloatArray:
+        """The last positions, description order."""
+        return self._rows[-1][0].copy()
+
+    @property
+    def speed(self) -> float:
+        """The largest speed of a joint in the last message [rad/s or m/s]."""
+        return float(np.abs(self._rows[-1][1]).max())
+
+    def record(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Times (N,) on the grid, and positions, velocities and efforts at them, (N, n) each."""
+        times = np.arange(self.sample_count, dtype=np.float64) * GRID
+        positions, velocities, efforts = (
+            np.column_stack([np.interp(times, self._times, column) for column in part.T])
+            for part in (np.array([row[index] for row in self._rows]) for index in range(3))
+        )
+        return times, positions, velocities, efforts
+
+    def _take(self, state: Any) -> None:
+        place = {str(name): index for index, name in enumerate(state.name)}
+        joints = self._description.movable_joints
+        if any(joint.mimic is None and joint.name not in place for joint in joints):
+            return
+        stamp = seconds(state.header.stamp) or wall.monotonic()
+        self._offset = stamp if self._offset is None else self._offset
+        if stamp - self._offset <= self.time:
+            return
+
+        def column(values: FloatArray) -> FloatArray:
+            if len(values) < len(place):
+                return np.zeros(len(joints))
+            return np.array([values[place[j.name]] if j.name in place else 0.0 for j in joints])
+
+        positions = self._description.with_mimics(column(state.position))
+        self._times.append(stamp - self._offset)
+        self._rows.append((positions, column(state.velocity), column(state.effort)))

@@ -1,0 +1,156 @@
+"""What participants announce of themselves and of their endpoints (DDSI-RTPS 2.3, 8.5 and 9.6)."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from harness.ros.rtps import wire
+from harness.ros.rtps.writer import Address, Qos
+
+LEASE = 100.0
+"""Seconds of silence after which peers forget this participant."""
+
+PEER_LEASE = 20.0
+"""Seconds of silence after which a peer that announces no lease is forgotten."""
+
+BUILTIN = 0x3F
+"""Participant discovery and endpoint discovery, both directions."""
+
+_HEAD = b"\0\3\0\0"
+_VERSION = [(wire.PID_VERSION, wire.VERSION), (wire.PID_VENDOR, wire.VENDOR)]
+
+Parameters = dict[int, list[bytes]]
+
+
+@dataclass(frozen=True)
+class ParticipantData:
+    """A participant as it announces itself.
+
+    Attributes:
+        domain: The number of its domain; None where it does not say.
+        meta: The addresses for discovery.
+        user: The addresses for samples, where endpoints have none of their own.
+        lease: The seconds of silence after which it is gone.
+    """
+
+    domain: int | None
+    meta: Sequence[Address]
+    user: Sequence[Address]
+    lease: float
+
+    @classmethod
+    def parsed(cls, payload: bytes) -> ParticipantData:
+        """The content of an announcement."""
+        known = wire.parameters_of(payload)
+        lease, domain = known.get(wire.PID_LEASE), known.get(wire.PID_DOMAIN)
+        return cls(
+            struct.unpack("<I", domain[0])[0] if domain else None,
+            _addresses(known, wire.PID_META_UNICAST),
+            _addresses(known, wire.PID_DEFAULT_UNICAST),
+            float(struct.unpack("<iI", lease[0])[0]) if lease else PEER_LEASE,
+        )
+
+
+@dataclass(frozen=True)
+class Endpoint:
+    """A writer or a reader as its participant announces it.
+
+    Attributes:
+        guid: The GUID of the endpoint.
+        topic: The name of its topic in DDS.
+        type_name: The name of its type in DDS.
+        qos: The quality that it offers or requests.
+        addresses: Where it is reached; empty for its participant's addresses.
+    """
+
+    guid: bytes
+    topic: str
+    type_name: str
+    qos: Qos
+    addresses: Sequence[Address] = ()
+
+    @property
+    def is_writer(self) -> bool:
+        """Whether it writes, with a key or without."""
+        return self.guid[15] & 0x0F in (0x02, 0x03)
+
+    @classmethod
+    def parsed(cls, payload: bytes) -> Endpoint:
+        """The content of an announcement.
+
+        Raises:
+            KeyError: It has no topic or no type.
+        """
+        known = wire.parameters_of(payload)
+        reliable, durable = known.get(wire.PID_RELIABILITY), known.get(wire.PID_DURABILITY)
+        guid = known[wire.PID_ENDPOINT][0][:16]
+        is_writer = cls(guid, "", "", Qos()).is_writer
+        return cls(
+            guid,
+            wire.text_of(known[wire.PID_TOPIC][0]),
+            wire.text_of(known[wire.PID_TYPE][0]),
+            Qos(
+                is_reliable=_first(reliable) == 2 if reliable else is_writer,
+                is_latched=bool(durable) and _first(durable) >= 1,
+            ),
+            _addresses(known, wire.PID_UNICAST),
+        )
+
+    def payload(self) -> bytes:
+        """Its announcement."""
+        reliability = struct.pack("<IiI", 2 if self.qos.is_reliable else 1, 0, 429496730)
+        return _HEAD + wire.parameters(
+            [
+                (wire.PID_ENDPOINT, self.guid),
+                (wire.PID_PARTICIPANT, self.guid[:12] + wire.PARTICIPANT),
+                *_VERSION,
+                (wire.PID_KEY_HASH, self.guid),
+                *((wire.PID_UNICAST, wire.locator(*each)) for each in self.addresses),
+                (wire.PID_TOPIC, wire.text(self.topic)),
+                (wire.PID_TYPE, wire.text(self.type_name)),
+                (wire.PID_RELIABILITY, reliability),
+                (wire.PID_DURABILITY, struct.pack("<I", int(self.qos.is_latched))),
+            ]
+        )
+
+
+def announcement(guid: bytes, domain: int, name: str, addresses: Sequence[Address]) -> bytes:
+    """The announcement of this participant."""
+    locators = [wire.locator(*each) for each in addresses]
+    return _HEAD + wire.parameters(
+        [
+            *_VERSION,
+            (wire.PID_PARTICIPANT, guid),
+            (wire.PID_DOMAIN, struct.pack("<I", domain)),
+            *((wire.PID_META_UNICAST, each) for each in locators),
+            *((wire.PID_DEFAULT_UNICAST, each) for each in locators),
+            (wire.PID_LEASE, struct.pack("<iI", int(LEASE), 0)),
+            (wire.PID_BUILTIN, struct.pack("<I", BUILTIN)),
+            (wire.PID_NAME, wire.text(name)),
+            (wire.PID_USER_DATA, struct.pack("<I", 10) + b"enclave=/;"),
+        ]
+    )
+
+
+def farewell(guid: bytes) -> bytes:
+    """The submessage with which a participant leaves."""
+    status = (wire.PID_STATUS, struct.pack(">I", 3))
+    body = struct.pack("<HH", 0, 16) + wire.NO_ENTITY + wire.SPDP_WRITER
+    body += wire.sequence_number(2) + wire.parameters([(wire.PID_KEY_HASH, guid), status])
+    return wire.submessage(wire.DATA, body, 0x02)
+
+
+def is_gone(inline: dict[int, bytes]) -> bool:
+    """Whether a sample says that its participant or endpoint is disposed of."""
+    return bool(inline.get(wire.PID_STATUS, b"\0")[-1] & 3)
+
+
+def _addresses(known: Parameters, key: int) -> list[Address]:
+    found = map(wire.address_of, known.get(key, []))
+    return [address for address in found if address is not None]
+
+
+def _first(values: list[bytes] | None) -> int:
+    return struct.unpack_from("<I", values[0])[0] if values else 0
