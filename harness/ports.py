@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
 
-from harness.core.details import Details
+from harness.core.details import Detail, Details
 from harness.core.registry import Plugin
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
@@ -865,7 +865,7 @@ class ExternalRequest:
 
 
 @dataclass(frozen=True)
-class ExternalResult:
+class ExternalResult(Detail):
     """How external programs' time ended.
 
     Attributes:

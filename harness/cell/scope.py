@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Iterable
 from typing import Literal
 
 from harness.core.camera import Camera
 from harness.core.errors import Problem, SpecError
 from harness.core.spatial import SE3
+from harness.core.suggestion import did_you_mean
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.language.files.mistakes import MistakeError
@@ -18,8 +18,6 @@ from harness.language.units import in_si
 from harness.ports import LONGEST_RUN
 from harness.robot.description import RobotDescription
 from harness.robot.tree import is_rigid
-
-LISTED = 12  # names in a hint
 
 Prerequisite = Literal["robot", "world"]
 EVERYTHING: tuple[Prerequisite, ...] = ("robot", "world")
@@ -32,17 +30,23 @@ class Problems:
     cannot be judged, but a planner's name can.
     """
 
-    def __init__(self, lines: SourceMap, missing: frozenset[Prerequisite] = frozenset()) -> None:
+    def __init__(
+        self,
+        lines: SourceMap,
+        missing: frozenset[Prerequisite] = frozenset(),
+        doubtful: frozenset[str] = frozenset(),
+    ) -> None:
         """Collect nothing yet.
 
         Args:
             lines: The lines of the file.
             missing: What could not be loaded; something stands in for it.
+            doubtful: Names in what could not be read; problems with them may follow from that.
         """
         self._lines = lines
         self._missing = missing
         self._found: dict[Loc, Problem] = {}
-        self._unusable: set[str] = set()
+        self._unusable = set(doubtful)
 
     def add(
         self,
@@ -53,8 +57,13 @@ class Problems:
         needs: tuple[Prerequisite, ...] = EVERYTHING,
     ) -> None:
         """Note a problem at a place of the file; others at the same place follow from the first."""
-        if not self._missing.intersection(needs):
+        if not self._missing.intersection(needs) and not self._is_unusable(loc):
             self._found.setdefault(loc, self._lines.problem(loc, message, hint))
+
+    def _is_unusable(self, loc: Loc) -> bool:
+        """Whether the file has a name at a place whose own problem is reported."""
+        value = self._lines.find(loc).item.value
+        return isinstance(value, str) and value in self._unusable
 
     def add_unusable(self, name: str) -> None:
         """Note that an object's own problem is reported: uses of its name follow from that."""
@@ -84,12 +93,7 @@ class Problems:
         """
         if self._missing.intersection(needs) or name in self._unusable:
             return
-        names = list(dict.fromkeys(known))
-        near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-        rest = ", ".join(names[:LISTED]) + (", ..." if len(names) > LISTED else "")
-        parts = [f"did you mean '{near[0]}'?"] if near else []
-        parts.append(f"known: {rest}" if names else "there is none here")
-        message, hint = f"there is no {what} '{name}'", " ".join(parts)
+        message, hint = f"there is no {what} '{name}'", did_you_mean(name, known, "known")
         if start is not None:
             problem = self._lines.problem_in_text(loc, start, len(name), message, hint)
             self._found.setdefault((*loc, start), problem)

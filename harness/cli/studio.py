@@ -7,6 +7,7 @@ import threading
 from pathlib import Path
 
 from harness.cli.output import complain, guarded, say
+from harness.core.errors import SpecError
 from harness.suite.discovery import SUFFIX, UsageError
 
 EXTRA = "the studio needs packages that are not installed: pip install 'armharness[studio]'"
@@ -39,6 +40,8 @@ def _run(arguments: argparse.Namespace) -> int:
             " Save keeps it; delete that file to begin again."
         )
     studio = Studio.opened(files, text, restored if is_restored else None, notice)
+    if studio.problems and not files.path.exists():  # the robot that was named is the mistake
+        raise SpecError(studio.problems)
     if time is not None:
         say(f"going on to t={time:g} s, as the run did")
         studio.cell.run_until(time)
@@ -110,7 +113,7 @@ def _has_robot(word: str) -> bool:
 
 
 def _scenario(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
-    from harness.language.files.mistakes import did_you_mean
+    from harness.core.suggestion import did_you_mean
     from harness.language.files.yaml_file import read_text
     from harness.robot.load import robot_names
     from harness.suite.discovery import discover

@@ -12,7 +12,6 @@ when its name is first looked up, installed packages when a name is not a built-
 
 from __future__ import annotations
 
-import difflib
 import importlib
 import importlib.util
 import inspect
@@ -29,6 +28,7 @@ from types import ModuleType
 from typing import Any, ClassVar, Generic, TypeVar
 
 from harness.core.errors import Problem, SpecError
+from harness.core.suggestion import did_you_mean
 
 P = TypeVar("P")
 
@@ -136,10 +136,8 @@ class Registry(Mapping[str, P]):
         if name in self:
             return self[name]
         names = list(self)
-        near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-        guess = f"did you mean '{near[0]}'? " if near else ""
-        message = f"there is no {self._what} '{name}'; {guess}known: "
-        raise LookupError("; ".join([message + ", ".join(names), *broken_plugins()]))
+        message = f"there is no {self._what} '{name}'; {did_you_mean(name, names, 'known')}"
+        raise LookupError("; ".join([message, *broken_plugins()]))
 
     def __getitem__(self, name: str) -> P:
         if name not in self._built_in_modules:

@@ -60,6 +60,7 @@ class Collision(Predicate):
     short = "between"
     judged = "eventually"
     quantities = (FORCE, LEFT)
+    synonyms = ("collide", "collides", "colliding", "collisions")
     is_opposed: ClassVar[bool] = True
 
     between: tuple[Name, Name] | None = Field(

@@ -40,6 +40,7 @@ class In(ObjectPredicate):
     """
 
     quantities = (DEPTH, LEAN, SIDES)
+    synonyms = ("inside",)
 
     container: Name = Field(description="The name of the container that the object is in.")
     max_lean: Annotated[AngleBetween, Field(gt=0)] = Field(

@@ -40,6 +40,7 @@ class InContact(Predicate):
     short = "between"
     judged = "eventually"
     quantities = (CONTACT,)
+    synonyms = ("contact", "contacts", "touch", "touching")
 
     between: tuple[Name, Name] = Field(
         description="The two bodies: each a link, an object, `robot`, `gripper` or `any`."

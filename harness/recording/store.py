@@ -32,6 +32,7 @@ from harness.recording.files import FolderFiles, checked, write_files
 from harness.recording.npz_file import NpzError, NpzFile
 from harness.recording.plain import PlainError, from_plain, to_plain
 from harness.recording.run import MeshRecord, Outcome, Run, Signals, StepRecord, Verdict
+from harness.recording.step_results import SavedResult
 
 FORMAT = "armharness-run/1"
 RUN, SIGNALS, RESOLVED = "run.json", "signals.npz", "scenario.resolved.yaml"
@@ -189,7 +190,8 @@ def _run(path: Path, document: dict[str, Any]) -> tuple[Run, list[Any]]:
     hints = get_type_hints(Run)
     with _damaged(path):
         steps = _mappings(document, "steps")
-        bare = [{**step, "summary": step.get("step"), "trajectory": None} for step in steps]
+        own: dict[str, Any] = {"trajectory": None, "result": {"parts": ()}}
+        bare = [{**step, "summary": step.get("step"), **own} for step in steps]
         plain = {**document, "steps": bare}
         known = {
             name: from_plain(plain[name], hint, name)
@@ -198,8 +200,17 @@ def _run(path: Path, document: dict[str, Any]) -> tuple[Run, list[Any]]:
         }
         for name in NEEDED:
             _needed(known, name)
+        known["steps"] = tuple(
+            replace(record, result=_result(record.verb, step, f"steps[{index}]."))
+            for index, (record, step) in enumerate(zip(known["steps"], steps, strict=True))
+        )
         run = Run(**known, signals=NO_SIGNALS, meshes=_meshes(document))
     return run, [step.get("trajectory") for step in steps]
+
+
+def _result(verb: str, step: Mapping[str, Any], within: str) -> SavedResult:
+    saved = from_plain(step.get("result", {}), Mapping[str, Any], f"{within}result")
+    return SavedResult(verb=verb, saved=saved)
 
 
 def _mappings(document: Mapping[str, Any], name: str) -> list[dict[str, Any]]:

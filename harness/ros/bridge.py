@@ -62,8 +62,10 @@ class BridgeResult:
     commands: int = 0
 
 
-def open_graph(adapter: str, domain: int, *, node: str, is_local: bool = True) -> Graph:
-    """Join a domain.
+def open_graph(
+    adapter: str, domain: int, *, node: str, is_local: bool = True, say: Say = lambda _: None
+) -> Graph:
+    """Join a domain; notes on what cannot be published are given to `say`.
 
     Raises:
         SpecError: There is no such domain, or the adapter is not installed.
@@ -72,7 +74,7 @@ def open_graph(adapter: str, domain: int, *, node: str, is_local: bool = True) -
     if adapter == "rclpy":
         from harness.ros.rclpy_graph import RclpyGraph
 
-        return RclpyGraph(domain, node=node, is_local=is_local)
+        return RclpyGraph(domain, node=node, is_local=is_local, say=say)
     from harness.ros.rtps.graph import RtpsGraph
 
     return RtpsGraph(domain, node=node, is_local=is_local)
@@ -84,7 +86,9 @@ def run_bridge(request: BridgeRequest, notify: Notify = lambda _: None) -> Bridg
     Raises:
         NetworkError: The domain cannot be joined.
     """
-    graph = open_graph(request.adapter, request.domain, node=NODE, is_local=request.is_local)
+    graph = open_graph(
+        request.adapter, request.domain, node=NODE, is_local=request.is_local, say=request.say
+    )
     options = LiveOptions(
         Allowed(request.nodes, request.domain),
         request.factor,

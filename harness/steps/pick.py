@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -21,7 +21,7 @@ from harness.cell.grasping import (
 )
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
-from harness.core.details import Details
+from harness.core.details import Detail, Details
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
@@ -60,6 +60,14 @@ class Travel(SpecModel):
     )
 
 
+@dataclass(frozen=True)
+class GraspChoice(Detail):
+    """How many grasps there are, and which of them was taken, from 1."""
+
+    grasps: int
+    grasp: int = 1
+
+
 class Pick(Step):
     """Approach, grasp, lift; expands into the steps it is made of.
 
@@ -79,6 +87,7 @@ class Pick(Step):
     short = "object"
 
     verb: ClassVar[str] = "pick"
+    results = (GraspChoice,)
 
     object: Name = Field(description="The name of the object.")
     grasp_pose: Pose | None = Field(
@@ -166,7 +175,7 @@ def _approach(step: Pick, lift: MoveRelative, cell: Cell) -> list[ProgramStep]:
         for length in travel_lengths(step.approach)
         for number, goal in enumerate(goals)
     ]
-    cell.notes.result.update(grasps=len(goals), grasp=1)
+    cell.report(GraspChoice(len(goals)))
     search = GraspSearch(
         group_of(cell, step.group),
         cell.with_open_gripper(cell.planning_start()),
@@ -177,7 +186,7 @@ def _approach(step: Pick, lift: MoveRelative, cell: Cell) -> list[ProgramStep]:
         chosen = choose_approach(approaches, search, cell)
     except PlanningFailed as failure:
         raise with_advice(failure, pick_advice(step, failure, len(goals), cell)) from failure
-    cell.notes.result.update(grasp=chosen.number + 1)
+    cell.report(GraspChoice(len(goals), chosen.number + 1))
     return [
         cell.child(
             "reach", MoveTo(**chosen.before.keys, group=step.group), f"move_to before {step.object}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,8 +12,9 @@ from harness.core.printable import printable
 from harness.language.step import STEPS
 from harness.recording.run import StepRecord
 from harness.reporting.explanation import explanation_lines
+from harness.studio.judging import Judged
 from harness.studio.language_help import Names
-from harness.studio.live_cell import Judged, LiveCell
+from harness.studio.live_cell import LiveCell
 from harness.studio.step_texts import MOTIONS
 
 Message = dict[str, Any]
@@ -82,23 +84,24 @@ def cell_message(cell: LiveCell) -> Message:
     }
 
 
-def names_of(cell: LiveCell) -> Names:
-    """Names that exist in a cell, for completion."""
+def names_of(cell: LiveCell | None) -> Names:
+    """Names that exist in a cell, for completion; without one, the bundled robots and worlds."""
     from harness.language.reading.load import bundled_worlds
     from harness.robot.load import gripper_names, robot_names
 
+    bundled = Names(worlds=bundled_worlds(), robots=robot_names(), grippers=gripper_names())
+    if cell is None:
+        return bundled
     description = cell.description
     gripper = description.gripper
-    return Names(
+    return replace(
+        bundled,
         states=list(description.states_of(description.arm_group)),
         gripper_states=[] if gripper is None else list(description.states_of(gripper.group)),
         joints=description.joint_names,
         links=description.link_names,
         objects=list(cell.cell.presence),
         groups=list(description.groups),
-        worlds=bundled_worlds(),
-        robots=robot_names(),
-        grippers=gripper_names(),
     )
 
 
@@ -114,7 +117,7 @@ def failure_message(record: StepRecord) -> Message:
 
 
 def verdicts_message(judged: Judged) -> Message:
-    """The verdicts, and what became of the steps of the file."""
+    """The verdicts, and what became of the steps of the file; `open` can still change."""
     return {
         "type": "verdicts",
         "outcome": judged.outcome,
@@ -128,23 +131,26 @@ def verdicts_message(judged: Judged) -> Message:
             {
                 "text": printable(v.expectation),
                 "status": v.status,
+                "open": not is_decided,
                 "margin": None if v.margin is None or not np.isfinite(v.margin) else v.margin,
                 "unit": v.unit,
                 "line": v.line,
                 "reason": printable(v.reason),
             }
-            for v in judged.verdicts
+            for v, is_decided in zip(judged.verdicts, judged.is_decided, strict=True)
         ],
     }
 
 
-def problem_message(problem: Problem) -> Message:
-    """A mistake with its place."""
+def problem_message(problem: Problem, file: str) -> Message:
+    """A mistake with its place in a file; of one in another file, the text has the place."""
+    is_here = problem.path == file
+    where = "" if is_here else f"{problem.path}:{problem.line}: "
     return {
-        "line": problem.line,
+        "line": problem.line if is_here else 0,
         "column": problem.column,
         "length": problem.length,
-        "text": printable(problem.message),
+        "text": printable(f"{where}{problem.message}"),
         "hint": printable(problem.hint),
     }
 

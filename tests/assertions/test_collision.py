@@ -274,10 +274,9 @@ def test_what_rests_on_a_held_object_weighs_too():
 
 
 def test_a_welded_object_is_held_though_no_finger_touches_it():
-    weld = step("grasp", 39, 80, "grasp", result={"mode": "weld", "attached": "box"})
     hits = {("box", "wall"): force(200, (120, 140))}
     for mode, expected in (("weld", True), ("friction", False)):
-        grasp = replace(weld, result={**weld.result, "mode": mode})
+        grasp = step("grasp", 39, 80, "grasp", result={"mode": mode, "attached": "box"})
         run = make_run(
             objects=(TABLE, BOX, WALL),
             steps=(grasp,),

@@ -11,7 +11,16 @@ from harness.expectations.fraction import FractionCheck
 from harness.expectations.tcp_path import TcpPath, along_arc, along_line
 from harness.recording.run import LinkPlacement
 from harness.reporting.margins import allowance_used, margin_share
-from tests.assertions.synthetic_run import ROBOT, at, changed, heights, make_run, step, verdict
+from tests.assertions.synthetic_run import (
+    ROBOT,
+    at,
+    changed,
+    followed,
+    heights,
+    make_run,
+    step,
+    verdict,
+)
 
 LINE = {"start": {"xyz": [0, 0, 0.3]}, "end": {"xyz": [0, 0, 0.5]}}
 
@@ -113,7 +122,7 @@ def test_a_line_in_the_frame_of_an_object_moves_with_it():
 
 @pytest.mark.parametrize("at_least", [0.95, 1.0])
 def test_a_path_that_was_followed_to_its_end_has_the_largest_margin(at_least):
-    path = step("path", 0, 200, "cartesian_path", result={"fraction": 1.0})
+    path = step("path", 0, 200, "cartesian_path", result=followed(1.0))
     answer = verdict(make_run(steps=(path,)), FractionCheck(at_least=at_least))
     assert (answer.status, margin_share(answer)) == ("passed", 1.0)
     assert allowance_used(answer.measures[0]) == 0.0

@@ -23,6 +23,7 @@ from harness.recording.arrays import arrays_of
 from harness.recording.digest import digest
 from harness.recording.plain import to_plain
 from harness.recording.run import CaptureRecord, Finding, MeshRecord, VideoRecord
+from harness.recording.step_results import SavedResult
 from harness.recording.store import FORMAT, StoredRun, read_run, write_run
 from tests.assertions.synthetic_run import ROBOT, attachment, lift_run, thing
 
@@ -58,7 +59,7 @@ def full_run():
         },
         planner={"checks": 12, "length": float("inf"), "note": None},
         explanation={"solutions": [{"positions": [0.1, float("nan")], "pair": ["a", "b"]}]},
-        result={"stalled": True},
+        result=SavedResult(verb=first.verb, saved={"stalled": True}),
         expected_error="GOAL_IN_COLLISION",
     )
     signals = replace(

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from harness.core.errors import RobotError
+from harness.language.scenario import RobotSpec
+from harness.robot.load import load_robot
 from tests.engine.front_door import check, run
 from tests.robot.arm_files import INERTIAL, SRDF, URDF, load_arm, write_arm
 
@@ -187,6 +189,17 @@ def test_a_gripper_is_found_without_an_srdf(tmp_path, hand, joint, opening):
 def test_fingers_that_no_group_names_are_found_too(tmp_path):
     write(tmp_path, group="")
     assert load_arm(tmp_path).gripper.group == "gripper"
+
+
+def test_a_wheel_of_the_motor_next_to_the_fingers_is_not_part_of_the_arm(tmp_path):
+    wheel = FINGER.format(name="wheel", y=0, side=1, mimic="").replace("prismatic", "continuous")
+    (tmp_path / "arm.urdf").write_text(SIX.replace("</robot>", wheel + "</robot>"))
+    arm = load_robot(RobotSpec(urdf="arm.urdf"), tmp_path)
+    assert arm.groups["arm"].joint_names[-1] == "tool_joint"
+    assert (arm.gripper.joint, sorted(arm.gripper.pads.values())) == (
+        "left_joint",
+        ["left", "right"],
+    )
 
 
 def test_a_wrist_that_ends_an_arm_is_no_jaw(tmp_path):

@@ -11,6 +11,7 @@ from harness.core.types import BoolArray, FloatArray
 from harness.grading.bag.clocks import Timeline
 from harness.grading.bag.content import BagContent
 from harness.recording.run import AttachmentRecord, StepRecord, StepStatus
+from harness.recording.step_results import SavedResult
 
 RESOLUTION = 1e-6
 """Tolerance of comparisons of times [s]; stamps are whole nanoseconds."""
@@ -152,5 +153,10 @@ def _step(
         end_index=max(int(np.searchsorted(times, end + RESOLUTION)), start + 1),
         error_code=str(event.get("error_code", "")),
         message=str(event.get("message", "")),
-        result=event["result"] if isinstance(event.get("result"), dict) else {},
+        result=_result(event),
     )
+
+
+def _result(event: Mapping[str, Any]) -> SavedResult:
+    saved: Mapping[str, Any] = event["result"] if isinstance(event.get("result"), dict) else {}
+    return SavedResult(verb=str(event.get("verb", "")), saved=saved)

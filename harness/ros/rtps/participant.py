@@ -21,6 +21,8 @@ GROUP = "239.255.0.1"
 LOOPBACK = "127.0.0.1"
 MOST_PARTICIPANTS = 120
 MOST_DOMAINS = 232
+NEIGHBOURS = 32
+"""Participants of this machine that are announced to one by one: some listen to no multicast."""
 ANNOUNCE_EVERY = 1.0
 REMIND_EVERY = 0.1
 LEASE = 100.0
@@ -87,6 +89,8 @@ class Participant:
         self._base = 7400 + 250 * domain
         self._multicast = self._join()
         self._unicast, self.port = self._bind()
+        own, first = _outward(self._addresses), self._base + 10
+        self._neighbours = [(own, first + 2 * number) for number in range(NEIGHBOURS)]
         self._peers: dict[bytes, _Peer] = {}
         self._writers: dict[bytes, Writer] = {}
         self._readers: dict[bytes, Reader] = {}
@@ -175,7 +179,8 @@ class Participant:
             for prefix, peer in list(self._peers.items()):
                 if now - peer.seen > peer.lease:
                     self._forget(prefix)
-            for address in ((GROUP, self._base), *{peer.meta for peer in self._peers.values()}):
+            known = {peer.meta for peer in self._peers.values()}
+            for address in {(GROUP, self._base), *self._neighbours, *known}:
                 self._announce(address)
 
     # -- sockets ------------------------------------------------------------------------------
@@ -203,7 +208,7 @@ class Participant:
         for number in range(MOST_PARTICIPANTS):
             port = self._base + 10 + 2 * number
             with suppress(OSError):
-                made.bind((LOOPBACK if self.is_local else "", port))
+                made.bind(("", port))
                 return made, port
         raise NetworkError(f"ROS domain {self.domain} has no free port on this machine")
 
@@ -273,15 +278,16 @@ class Participant:
     # -- discovery ----------------------------------------------------------------------------
 
     def _announce(self, address: Address) -> None:
-        here = wire.locator(self._address, self.port)
+        own = dict.fromkeys((_outward(self._addresses), LOOPBACK))
+        here = [wire.locator(each, self.port) for each in own]
         payload = b"\0\3\0\0" + wire.parameters(
             [
                 (wire.PID_VERSION, wire.VERSION),
                 (wire.PID_VENDOR, wire.VENDOR),
                 (wire.PID_PARTICIPANT, self.guid(wire.PARTICIPANT)),
                 (wire.PID_DOMAIN, struct.pack("<I", self.domain)),
-                (wire.PID_META_UNICAST, here),
-                (wire.PID_DEFAULT_UNICAST, here),
+                *((wire.PID_META_UNICAST, each) for each in here),
+                *((wire.PID_DEFAULT_UNICAST, each) for each in here),
                 (wire.PID_LEASE, struct.pack("<iI", int(LEASE), 0)),
                 (wire.PID_BUILTIN, struct.pack("<I", BUILTIN)),
                 (wire.PID_NAME, wire.text(self.name)),
@@ -320,12 +326,14 @@ class Participant:
                 self._readers[reader].match(source + writer, meta, latched)
 
     def _reachable(self, locators: Iterable[bytes]) -> Address | None:
-        """The address under which a peer is reached; on this machine, its port on loopback."""
+        """The address under which a peer is reached, on this machine where it is here.
+
+        Cyclone DDS takes only packets to the address of the interface that it has chosen.
+        """
         found = [address for each in locators if (address := wire.address_of(each)) is not None]
-        here = [port for host, port in found if host in self._addresses]
-        if here:
-            return LOOPBACK, here[0]
-        return found[0] if found and not self.is_local else None
+        here = [address for address in found if address[0] in self._addresses]
+        usable = here or ([] if self.is_local else found)
+        return min(usable, key=lambda each: each[0] != LOOPBACK, default=None)
 
     def _forget(self, prefix: bytes) -> None:
         self._peers.pop(prefix, None)

@@ -122,14 +122,19 @@ function showGoal(pose) {
   $("frame").value = "world";
 }
 
+const OPEN = { passed: "holds so far", failed: "does not hold yet", "not reached": "waits for its step" };
+
 on("verdicts", (message) => {
-  const head = element("div", { class: `outcome ${message.outcome}` }, message.digest ? `${message.outcome} · digest ${message.digest.slice(0, 16)}` : `${message.outcome} so far`);
-  head.title = message.digest;
-  head.dataset.digest = message.digest;
+  const decided = message.verdicts.filter((v) => !v.open).length;
+  const head = element("div", { class: `outcome ${message.outcome}`, title: message.digest, "data-digest": message.digest },
+    message.digest ? `${message.outcome} · digest ${message.digest.slice(0, 16)}`
+      : message.outcome ? `${message.outcome}; only a whole run has a digest`
+        : `${decided} of ${message.verdicts.length} expectations are decided`);
   const margin = (v) => (v.margin === null ? "" : ` (margin ${Number(v.margin.toPrecision(3))} ${v.unit})`);
   $("verdicts").replaceChildren(head,
     ...message.steps.map((step) => element("div", { class: `verdict ${step.status.replace(/[ _]/g, "-")}` }, `${step.line}: ${step.summary}: ${step.status.replace("_", " ")}`)),
-    ...message.verdicts.map((v) => element("div", { class: `verdict ${v.status.replace(/[ _]/g, "-")}` }, `${v.line}: ${v.text}: ${v.status}${margin(v)}${v.reason && v.status !== "passed" ? `: ${v.reason}` : ""}`)));
+    ...message.verdicts.map((v) => element("div", { class: `verdict ${v.open ? "open" : v.status.replace(/[ _]/g, "-")}` },
+      `${v.line}: ${v.text}: ${v.open ? OPEN[v.status] ?? "open" : v.status}${margin(v)}${v.reason && v.status !== "passed" && !v.open ? `: ${v.reason}` : ""}`)));
 });
 
 on("note", (message) => log(message.kind, message.text));
@@ -170,10 +175,10 @@ click("step-run", () => run($("step-text").value));
 click("control", () => request("control", { word: isMine ? "release" : "request" }));
 click("goal-here", () => { if (state) { showGoal(state.tcp); setGoal(); } });
 click("goal-set", () => setGoal());
-click("camera-look", async () => {
-  const reply = await act("camera", { name: $("camera").value });
-  if (reply.image) $("camera-image").src = `data:image/jpeg;base64,${reply.image}`;
-});
+const look = () => { if (robot?.cameras.length) act("camera", { name: $("camera-box").open ? $("camera").value : "" }); };
+$("camera-box").addEventListener("toggle", look);
+$("camera").addEventListener("change", look);
+on("camera", (message) => { $("camera-image").src = `data:image/jpeg;base64,${message.image}`; });
 $("speed").addEventListener("change", () => act("speed", { value: Number($("speed").value) }));
 $("follow").addEventListener("change", () => act("follow", { on: $("follow").checked }));
 $("share").addEventListener("change", () => act("share", { value: Number($("share").value) }));
