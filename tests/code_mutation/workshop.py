@@ -33,10 +33,12 @@ TESTS = (
     "tests/engine",
     "tests/recording",
     "tests/adversarial",
+    "tests/cli/test_commands.py",
     "tests/planning/test_efforts.py",
     "tests/planning/test_verification.py",
     "tests/planning/test_path_constraints.py",
     "tests/planning/test_linear_motion.py",
+    "tests/robot/test_mimic_couplings.py",
     "tests/system/test_findings.py",
 )
 # Tests that execute a line are run, shortest first, until they add up to this [s].
