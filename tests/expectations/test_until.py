@@ -5,13 +5,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from harness.expectations.displaced import Displaced
 from harness.expectations.in_contact import InContact
 from harness.expectations.lifted import Lifted
 from harness.expectations.on import On
 from harness.expectations.static import Static
 from harness.expectations.until import Until
+from harness.expectations.upright import Upright
 from tests.assertions.evidence import AT_ONCE, Evidence, Free
-from tests.assertions.synthetic_run import BOX, TABLE, heights, lift_run, make_run, verdict
+from tests.assertions.synthetic_run import (
+    BOX,
+    CYLINDER,
+    TABLE,
+    at,
+    heights,
+    lift_run,
+    make_run,
+    verdict,
+)
 
 ABSENT = np.full((200, 7), np.nan)
 
@@ -105,3 +116,15 @@ EVIDENCE = Evidence(
         ),
     ),
 )
+
+
+def test_samples_at_which_either_part_is_unknown_are_counted():
+    """After the second came, one sample of each part is unknown, and one of both."""
+    poses = {name: at(200, (0, 0, 0.02)) for name in ("box", "cylinder")}
+    poses["box"][100:, 2] = 0.1
+    poses["box"][[120, 140]] = poses["cylinder"][[130, 140]] = np.nan
+    run = make_run(objects=(TABLE, BOX, CYLINDER), object_poses=poses)
+    spec = Until(predicate=Upright(object="cylinder"), until=Displaced(object="box", at_least=0.05))
+    answer = verdict(run, spec)
+    assert answer.status == "passed"
+    assert (answer.observed.samples, answer.observed.unknown) == (197, 3)
