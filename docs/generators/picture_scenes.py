@@ -1,6 +1,6 @@
 """The short scenarios that pictures of expectations are drawn from, and those expectations."""
 
-from tests.assertions.evidence import collected
+from tests.assertions.evidence import pictures
 
 HEAD = """
 scenario: {title}
@@ -124,79 +124,12 @@ steps:
     "camera": EYE % "0.12",
     "camera behind a wall": EYE % "-0.1",
 }
-LINE = "{line: {start: {xyz: [0.2, -0.08, 0.1]}, end: {xyz: [0.2, 0.08, 0.1]}}, "
-BACK = "{line: {start: {xyz: [0.2, 0.08, 0.1]}, end: {xyz: [0.2, -0.08, 0.1]}}, "
 PICTURES = {
-    **{word: evidence.picture for word, evidence in collected().items()},
-    "lifted": (
-        ("pick", "{object: red_box, above: 5 cm, for: 0.5 s}"),
-        ("slippery", "{object: red_box, above: 5 cm, for: 1 s}"),
-    ),
-    "grasped": (
-        ("pick", "{object: red_box, during: lift}"),
-        ("slippery", "{object: red_box, during: hold}"),
-    ),
-    "released": (("pick", "red_box"), ("pick", "{object: red_box, during: lift}")),
-    "placed": (("pick", "red_box"), ("pick", "{object: red_box, during: hold}")),
-    "on": (
-        ("pick", "{object: red_box, support: ground_plane}"),
-        ("pick", "{object: red_box, support: ground_plane, during: lift}"),
-    ),
-    "in": (
-        ("cup", "{object: ball, container: cup}"),
-        ("tipping cup", "{object: ball, container: cup}"),
-    ),
-    "displaced": (
-        ("pick", "{object: red_box, at_least: 5 cm, during: lift}"),
-        ("pick", "{object: red_box, at_least: 5 cm}"),
-    ),
-    "static": (
-        ("pick", "red_box"),
-        ("pick", "always: {static: {object: red_box, during: lift}}"),
-    ),
-    "in_contact": (
-        ("pick", "{between: [gripper, red_box]}"),
-        ("pick", "{between: [gripper, red_box], min_force: 40 N}"),
-    ),
-    "collision": (("pick", "never: {collision: {}}"), ("wall", "never: {collision: {}}")),
-    "clearance": (
-        ("pick", "{between: [robot, post], at_least: 4 cm}"),
-        ("pick", "{between: [robot, post], at_least: 8 cm}"),
-    ),
-    "tcp_pose": (
-        ("pick", "{pose: {xyz: [0.25, 0, 0.06]}, position_only: true, during: reach}"),
-        ("pick", "{pose: {xyz: [0.252, 0, 0.06]}, position_only: true, during: reach}"),
-    ),
-    "tcp_path": (
-        ("paths", LINE + "max_deviation: 2 mm, during: straight}"),
-        ("paths", BACK + "max_deviation: 2 mm, during: bent}"),
-    ),
-    "joints": (
-        ("late", "{positions: {joint1: 40 deg}, tolerance: 1 deg}"),
-        ("stalled", "{positions: {joint1: 40 deg}, tolerance: 1 deg}"),
-    ),
-    "named_target": (("pick", "{state: open, group: gripper}"), ("wall", "home")),
-    "gripper": (("pick", "open"), ("pick", "close")),
-    "within_limits": (
-        ("late", "always: {within_limits: {position: false, effort: false}}"),
-        ("hammer", "always: {within_limits: {position: false, effort: false}}"),
-    ),
-    "tracking_error": (("pick", "1 deg"), ("late", "1 deg")),
-    "effort": (("pick", "0.9"), ("wall", "0.9")),
-    "duration": (
-        ("pick", "{at_most: 2 s, during: lift}"),
-        ("pick", "{at_most: 0.8 s, during: lift}"),
-    ),
-    "path_length": (
-        ("paths", "{at_most: 16.2 cm, during: straight}"),
-        ("paths", "{at_most: 16.2 cm, during: bent}"),
-    ),
-    "fraction": (("paths", "{at_least: 0.4}"), ("paths", "{at_least: 0.5}")),
+    **pictures(),
     "sees": (
         ("camera", "{camera: eye, object: red_box}"),
         ("camera behind a wall", "{camera: eye, object: red_box}"),
     ),
-    "slip": (("pick", "red_box"), ("slippery", "red_box")),
 }
 """For each predicate an expectation that passes and one that fails, each with its scene."""
 

@@ -115,7 +115,7 @@ class _Record:
         """
         if fault.before == fault.after:
             return replace(fault, receipt="no_effect", evidence="it was so already")
-        first = max(0, step.end_index - 1)
+        first = step.end_index - 1
         last = len(self.signals.times) if set_again is None else max(set_again, first + 1)
         rows = slice(first, last)
         if fault.fault == "push":

@@ -1,13 +1,15 @@
 """Evidence that an expectation cannot pass wrongly, and where the tests find it.
 
-The test module of an expectation in `tests/expectations` states its evidence as `EVIDENCE`. The
-tables of `test_three_runs`, `mutation_cases`, `free_shifts` and the pictures of the reference start
-with what these modules state.
+The test module of an expectation states its evidence as `EVIDENCE`, and `test_three_runs`,
+`test_mutations`, `test_metamorphic` and the pictures of the reference judge what these modules
+state.
 """
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 
@@ -65,15 +67,35 @@ class Evidence:
         free_shifts: Shifts of a signal that make no difference.
     """
 
-    three_runs: tuple[Three, ...]
-    mutation_cases: tuple[tuple[object, Run, str], ...]
-    picture: tuple[tuple[str, str], tuple[str, str]]
+    three_runs: tuple[Three, ...] = ()
+    mutation_cases: tuple[tuple[object, Run, str], ...] = ()
+    picture: tuple[tuple[str, str], ...] = ()
     free_shifts: tuple[Free, ...] = ()
 
 
-def collected() -> dict[str, Evidence]:
-    """The evidence of each test module that states some, by the word of its expectation."""
-    folder = Path(__file__).parents[1] / "expectations"
-    files = [file for file in sorted(folder.glob("test_*.py")) if "EVIDENCE = " in file.read_text()]
-    modules = [import_module(f"tests.expectations.{file.stem}") for file in files]
-    return {module.EVIDENCE.three_runs[0].spec.word: module.EVIDENCE for module in modules}
+@cache
+def collected() -> tuple[Evidence, ...]:
+    """The evidence of each test module that states some."""
+    tests = Path(__file__).parents[1]
+    files = [
+        file
+        for folder in ("expectations", "assertions")
+        for file in sorted((tests / folder).glob("test_*.py"))
+        if re.search(r"^EVIDENCE = ", file.read_text(encoding="utf-8"), re.MULTILINE)
+    ]
+    names = [f"tests.{file.parent.name}.{file.stem}" for file in files]
+    return tuple(import_module(name).EVIDENCE for name in names)
+
+
+def word_of(spec: object) -> str:
+    """The word of an expectation, or of the one inside a temporal word."""
+    return getattr(spec, "predicate", spec).word
+
+
+def pictures() -> dict[str, tuple[tuple[str, str], ...]]:
+    """A passing and a failing expectation with their scenes, by the word of the expectation."""
+    return {
+        word_of(evidence.three_runs[0].spec): evidence.picture
+        for evidence in collected()
+        if evidence.picture
+    }

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from harness.core.pose_arrays import quat_product
-from tests.assertions.free_shifts import DRIFT
+from tests.assertions.evidence import DRIFT
 
 SIZES = (0.02, 0.3, 3.0, 30.0)
 """In the signal's own unit; of a pose m and rad."""

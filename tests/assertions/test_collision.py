@@ -9,6 +9,8 @@ from harness.core.geometry import Box
 from harness.expectations.collision import Collision
 from harness.expectations.eventually import Eventually
 from harness.expectations.never import Never
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import Evidence, Free, Three
 from tests.assertions.synthetic_run import (
     BOX,
     TABLE,
@@ -298,3 +300,44 @@ def test_links_inside_each_other_that_the_srdf_excludes_count_where_allowed_pair
     assert "arm_link and palm are up to 40.0 mm inside each other from t=0.500 s" in answer.reason
     elsewhere = Never(predicate=Collision(between=("palm", "box"), count_allowed=True))
     assert not collides(run, elsewhere)
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            Never(predicate=Collision(between=("robot", "box"))),
+            shared.near(0.05),
+            shared.touched(0.05),
+            -0.05,
+            "N",
+        ),
+    ),
+    mutation_cases=(
+        (
+            Never(predicate=Collision(between=("robot", "box"))),
+            shared.late(
+                contact_forces={("arm_link", "box"): force(shared.N, (20, 60))},
+                clearances={("robot", "box"): shared.DISTANT},
+            ),
+            "late",
+        ),
+        (
+            Never(predicate=Collision(count_allowed=True)),
+            shared.late(
+                link_overlaps={("arm_link", "palm"): force(shared.N, (20, 60), value=0.04)}
+            ),
+            "late",
+        ),
+        (
+            Never(predicate=Collision()),
+            shared.late(clearances={("robot", "box"): shared.DISTANT}),
+            "late",
+        ),
+    ),
+    picture=(("pick", "never: {collision: {}}"), ("wall", "never: {collision: {}}")),
+    free_shifts=(
+        Free("less than no contact is none", "collision", "contact_forces", "-"),
+        Free("less than no overlap is none", "collision 2", "link_overlaps", "-"),
+        Free("contacts decide; how near it came is shown", "collision 3", "clearances", "+-"),
+    ),
+)

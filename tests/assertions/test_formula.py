@@ -14,6 +14,8 @@ from harness.expectations.formula import Formula
 from harness.language.formula.formula import Comparison, Const, Interval, Logic, Signal, Temporal
 from harness.language.formula.parser import parse_formula
 from harness.language.formula.text import FormulaError
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import AT_ONCE, Evidence, Free
 from tests.assertions.synthetic_run import at, force, heights, lift_run, make_run, verdict
 
 EPS = 1e-9
@@ -282,3 +284,69 @@ def test_a_formula_that_cannot_be_read_is_refused_at_its_place(text, start, mess
         parse_formula(text)
     assert caught.value.message == message
     assert caught.value.span[0] == start
+
+
+EVIDENCE = Evidence(
+    mutation_cases=(
+        (
+            Formula(
+                formula="always (z(box) < 0.1 and force(Table, box) > 0.5 and tilt(box) < 0.1"
+                ") and eventually z(tcp) > 0.49"
+            ),
+            shared.standing(tcp_pose=shared.ALONG),
+            "late",
+        ),
+        (
+            Formula(formula="eventually (speed(box) > 0.05 and speed(box) < 1)"),
+            shared.late(object_poses={"box": shared.SWING}),
+            "",
+        ),
+        (
+            Formula(
+                formula="always (abs(position(shoulder) - command(shoulder)) < 0.05"
+                " and velocity(shoulder) < 0.1 and effort(shoulder) < 2"
+                " and distance(robot, box) > 0.01)"
+            ),
+            shared.late(**shared.MOVING, clearances={("robot", "box"): shared.DISTANT}),
+            "late",
+        ),
+    ),
+    free_shifts=(
+        Free("further away is clear", "formula 3", "clearances", "+"),
+        Free("the formula requires `force > 0.5`", "formula", "contact_forces", "+"),
+        Free(
+            "the formula requires `z(box) < 0.1` and a tilt",
+            "formula",
+            "object_poses",
+            "+-x +-y -z +-yaw",
+        ),
+        Free(
+            "the formula requires `z(tcp) > 0.49`",
+            "formula",
+            "tcp_pose",
+            "+-x +-y +z +-roll +-pitch +-yaw",
+        ),
+        Free(
+            "turning is no speed of the origin", "formula 2", "object_poses", "+-roll +-pitch +-yaw"
+        ),
+        Free(
+            "the same motion elsewhere is as fast",
+            "formula 2",
+            "object_poses",
+            "+-x +-y +-z",
+            (AT_ONCE,),
+        ),
+        Free(
+            "the formula does not name the finger",
+            "formula 3",
+            "joint_positions, joint_commands, joint_velocities, joint_efforts",
+            "+-finger",
+        ),
+        Free(
+            "the formula requires less than a limit",
+            "formula 3",
+            "joint_velocities, joint_efforts",
+            "-shoulder",
+        ),
+    ),
+)

@@ -19,8 +19,9 @@ from harness.expectations.lifted import Lifted
 from harness.expectations.released import Released
 from harness.expectations.until import Until
 from harness.expectations.upright import Upright
+from tests.assertions.evidence import word_of
 from tests.assertions.synthetic_run import lift_run
-from tests.assertions.test_three_runs import THREE, word
+from tests.assertions.test_three_runs import THREE
 from tests.assertions.world_changes import (
     doubled,
     in_other_units,
@@ -53,7 +54,7 @@ WORDS = [
     ("always in a step", Always(predicate=Released(object="box")), lift_run(), "approach"),
 ]
 CASES = [
-    *((f"{word(three.spec)} {kind}", three.spec, getattr(three, kind), three.during)
+    *((f"{word_of(three.spec)} {kind}", three.spec, getattr(three, kind), three.during)
       for three in THREE for kind in ("satisfied", "barely")),
     *WORDS,
 ]  # fmt: skip

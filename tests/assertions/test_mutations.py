@@ -39,9 +39,9 @@ from harness.expectations.until import Until
 from harness.language.language import PREDICATES
 from harness.recording.run import Signals
 from harness.recording.step_results import SavedResult
-from tests.assertions.evidence import AT_ONCE, COURSES
+from tests.assertions.evidence import AT_ONCE, COURSES, collected
+from tests.assertions.evidence_runs import N
 from tests.assertions.free_shifts import FREE, free_shifts
-from tests.assertions.mutation_cases import CASES, N
 from tests.assertions.picture_mutants import SUBJECTS, corrupted, seen_run
 from tests.assertions.signal_shifts import array_of, directions, shifted, with_array
 from tests.assertions.synthetic_run import lift_run
@@ -150,6 +150,9 @@ MEASURED = [
 def name_of(spec):
     inner = spec if isinstance(spec, Until) else getattr(spec, "predicate", spec)
     return inner.word
+
+
+CASES = [case for evidence in collected() for case in evidence.mutation_cases]
 
 
 def names_of_cases():

@@ -15,6 +15,7 @@ from harness.assertions.temporal import (
     never,
     range_min,
     trailing_max,
+    until,
 )
 
 EPS = 1e-9
@@ -141,3 +142,25 @@ def test_minus_infinity_stays_where_it_is():
     times = np.arange(4) * 0.1
     assert eventually(values, times, hold=0.1).value == 2.0
     assert always(values, times).value == -np.inf
+
+
+@pytest.mark.parametrize("hold", [None, 0.02])
+def test_an_until_is_decided_inside_the_span_in_which_the_second_held(hold):
+    """Held from sample 4 on: samples after the span of the hold do not decide, however low."""
+    times = np.arange(8) * 0.01
+    second = np.array([-1, -1, -1, -1, 0.5, 0.4, 0.6, -2.0])
+    first = np.full(8, 3.0)
+    decision, is_second = until(first, second, times, hold, None)
+    assert is_second
+    assert decision.holds
+    expected = (0.4, 5) if hold else (0.6, 6)
+    assert (decision.value, decision.index) == expected
+
+
+def test_an_until_that_does_not_hold_before_is_decided_by_the_first():
+    times = np.arange(5) * 0.01
+    first = np.array([1.0, -0.3, 1.0, 9.0, -9.0])
+    second = np.array([-1.0, -1.0, -1.0, 0.5, 0.5])
+    decision, is_second = until(first, second, times, None, None)
+    assert (is_second, decision.holds) == (False, False)
+    assert (decision.value, decision.index) == (-0.3, 1)

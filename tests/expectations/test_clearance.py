@@ -8,6 +8,8 @@ import pytest
 from harness.expectations.clearance import Clearance
 from harness.expectations.never import Never
 from harness.reporting.margins import margin_share
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import Evidence, Free, Three
 from tests.assertions.synthetic_run import BOX, TABLE, attachment, changed, make_run, thing, verdict
 
 
@@ -125,3 +127,40 @@ def test_a_distance_that_was_recorded_as_at_least_that_far_has_the_largest_margi
     near = make_run(clearances={("robot", "box"): np.full(200, 0.10)})
     answer = verdict(near, Clearance(between=("robot", "box"), at_least=0.05))
     assert margin_share(answer) == pytest.approx(0.5)
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            Clearance(between=("robot", "box"), at_least=0.01),
+            shared.near(0.05),
+            shared.near(0.0099),
+            -1e-4,
+            "m",
+            replace(shared.near(np.nan), objects=(TABLE, replace(BOX, present=()))),
+        ),
+    ),
+    mutation_cases=(
+        (
+            Clearance(between=("robot", "box"), at_least=0.01),
+            shared.late(clearances={("robot", "box"): shared.DISTANT}),
+            "late",
+        ),
+        (
+            Clearance(between=("robot", "box"), max_below_plan=0.01),
+            shared.late(
+                clearances={("robot", "box"): shared.DISTANT},
+                planned_clearances={("robot", "box"): np.full(shared.N, 0.055)},
+            ),
+            "late",
+        ),
+    ),
+    picture=(
+        ("pick", "{between: [robot, post], at_least: 4 cm}"),
+        ("pick", "{between: [robot, post], at_least: 8 cm}"),
+    ),
+    free_shifts=(
+        Free("further away is clear", "clearance, clearance 2", "clearances", "+"),
+        Free("less was planned than there was", "clearance 2", "planned_clearances", "-"),
+    ),
+)

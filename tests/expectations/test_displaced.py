@@ -11,7 +11,9 @@ from harness.expectations.in_ import In
 from harness.expectations.never import Never
 from harness.expectations.static import Static
 from harness.expectations.upright import Upright
-from tests.assertions.synthetic_run import BOX, TABLE, at, make_run, thing, verdict
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import Evidence, Free, Three
+from tests.assertions.synthetic_run import BOX, TABLE, at, heights, make_run, thing, verdict
 
 ABSENT = np.full((200, 7), np.nan)
 
@@ -44,3 +46,36 @@ def test_what_only_the_planner_believes_is_no_observation():
         answer = verdict(run, spec)
         assert answer.status == "not observable", answer
         assert "belief is not in the physics" in answer.reason
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            Displaced(object="box", at_least=0.05),
+            make_run(object_poses={"box": heights(np.linspace(0.02, 0.08, shared.N))}),
+            make_run(object_poses={"box": heights(np.linspace(0.02, 0.069, shared.N))}),
+            -0.001,
+            "m",
+            shared.NO_BOX,
+        ),
+    ),
+    mutation_cases=(
+        (
+            Displaced(object="box", at_least=0.05),
+            shared.late(object_poses={"box": shared.halves((0.3, 0, 0.02, 0), (0, 0, 0.02, 0))}),
+            "late",
+        ),
+    ),
+    picture=(
+        ("pick", "{object: red_box, at_least: 5 cm, during: lift}"),
+        ("pick", "{object: red_box, at_least: 5 cm}"),
+    ),
+    free_shifts=(
+        Free(
+            "further away, and aside, is displaced too",
+            "displaced",
+            "object_poses",
+            "-x +-y +-z +-roll +-pitch +-yaw",
+        ),
+    ),
+)

@@ -3,6 +3,8 @@
 import pytest
 
 from harness.expectations.duration import DurationCheck
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import Evidence, Three
 from tests.assertions.synthetic_run import make_run, step, verdict
 
 
@@ -14,3 +16,22 @@ def test_durations_of_steps_and_runs():
     assert verdict(run, DurationCheck(at_most=5), "broken").status == "not reached"
     early = make_run(ended_early="GOAL_IN_COLLISION")
     assert verdict(early, DurationCheck(at_most=5)).status == "not reached"
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            DurationCheck(at_most=0.5),
+            shared.lasting(49),
+            shared.lasting(51),
+            -0.01,
+            "s",
+            during="move",
+        ),
+    ),
+    mutation_cases=((DurationCheck(at_most=1.0, at_least=0.9), shared.late(), "late"),),
+    picture=(
+        ("pick", "{at_most: 2 s, during: lift}"),
+        ("pick", "{at_most: 0.8 s, during: lift}"),
+    ),
+)

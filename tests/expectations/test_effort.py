@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from harness.expectations.effort import Effort
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import Evidence, Three
 from tests.assertions.synthetic_run import make_run, verdict
 
 
@@ -16,3 +18,14 @@ def test_effort_is_a_share_of_the_limit():
     assert verdict(run, Effort(max_fraction=0.6)).margin == pytest.approx(0.1)
     assert verdict(run, Effort(max_fraction=0.4)).status == "failed"
     assert verdict(run, Effort(during="gone")).status == "not reached"
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            Effort(max_fraction=0.5), make_run(), shared.with_joint(joint_efforts=5.05), -0.005, "1"
+        ),
+    ),
+    mutation_cases=((Effort(max_fraction=0.5), shared.late(**shared.MOVING), "late"),),
+    picture=(("pick", "0.9"), ("wall", "0.9")),
+)

@@ -6,6 +6,8 @@ import pytest
 from harness.expectations.fraction import FractionCheck
 from harness.expectations.tcp_path import TcpPath
 from harness.reporting.margins import allowance_used, margin_share
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import Evidence, Three
 from tests.assertions.synthetic_run import followed, heights, make_run, step, verdict
 
 LINE = {"start": {"xyz": [0, 0, 0.3]}, "end": {"xyz": [0, 0, 0.5]}}
@@ -44,3 +46,19 @@ def test_a_share_that_is_complete_uses_none_of_its_allowance():
     half = verdict(along_z(end=0.495), TcpPath(line=LINE, max_deviation=1.0))
     assert allowance_used(half.measures[0]) == pytest.approx(0.5, abs=1e-6)
     assert margin_share(half) == pytest.approx(0.5, abs=1e-6)
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            FractionCheck(at_least=0.8),
+            shared.path_run(0.8),
+            shared.path_run(0.79),
+            -0.01,
+            "1",
+            make_run(),
+        ),
+    ),
+    mutation_cases=((FractionCheck(at_least=0.8), make_run(steps=shared.REPORTS), ""),),
+    picture=(("paths", "{at_least: 0.4}"), ("paths", "{at_least: 0.5}")),
+)

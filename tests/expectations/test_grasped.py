@@ -11,6 +11,8 @@ from harness.expectations.gripper import GripperState
 from harness.expectations.lifted import Lifted
 from harness.expectations.placed import Placed
 from harness.expectations.released import Released
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import AT_ONCE, Evidence, Free, Three
 from tests.assertions.synthetic_run import (
     BOX,
     ROBOT,
@@ -146,3 +148,47 @@ def test_a_grasp_lasts_for_a_tenth_of_a_second(samples, status):
     answer = verdict(run, Grasped(object="box"))
     assert answer.status == status
     assert (answer.status == "passed") or "held for 0.08000 s of 0.1000 s" in answer.reason
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            Grasped(object="box"),
+            lift_run(),
+            shared.slid(lift_run(), 0.0051),
+            -1e-4,
+            "m",
+            shared.NO_BOX,
+        ),
+    ),
+    mutation_cases=((Grasped(object="box"), lift_run(), ""),),
+    picture=(
+        ("pick", "{object: red_box, during: lift}"),
+        ("slippery", "{object: red_box, during: hold}"),
+    ),
+    free_shifts=(
+        Free(
+            "a firmer grip is a grip",
+            "grasped",
+            "contact_forces left_finger, contact_forces right_finger",
+            "+",
+        ),
+        Free(
+            "where a finger presses is free, only that they press against each other as far"
+            " apart as the object is thick",
+            "grasped",
+            "presses left_finger",
+            "+-x +-z -y +force_y",
+        ),
+        Free(
+            "the same from the other side", "grasped", "presses right_finger", "+-x +-z +y -force_y"
+        ),
+        Free(
+            "an object that was held elsewhere all the time has not moved in the hand",
+            "grasped",
+            "object_poses box, tcp_pose",
+            "+-x +-y +-z +-roll +-pitch +-yaw",
+            (AT_ONCE,),
+        ),
+    ),
+)

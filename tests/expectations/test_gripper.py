@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from harness.expectations.gripper import GripperState
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import Evidence, Free, Three
 from tests.assertions.synthetic_run import gripped, make_run, step, verdict
 
 
@@ -29,3 +31,33 @@ def test_the_gripper_by_state_position_width_and_report():
     assert verdict(run, GripperState(stalled=False), "open").status == "passed"
     assert verdict(run, GripperState(stalled=False), "never").status == "not reached"
     assert verdict(make_run(), GripperState(stalled=False)).status == "not reached"
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            GripperState(position=0.0199, tolerance=0.001),
+            make_run(),
+            make_run(joint_positions=np.tile([0.0, 0.02095], (shared.N, 1))),
+            -5e-5,
+            "m",
+        ),
+    ),
+    mutation_cases=(
+        (
+            GripperState(position=0.02),
+            shared.late(joint_positions=shared.columns(0, (0, 0.02))),
+            "late",
+        ),
+        (
+            GripperState(width=0.04),
+            shared.late(joint_positions=shared.columns(0, (0, 0.02))),
+            "late",
+        ),
+        (GripperState(stalled=True), make_run(steps=shared.REPORTS), "late"),
+    ),
+    picture=(("pick", "open"), ("pick", "close")),
+    free_shifts=(
+        Free("the other group's joints", "gripper, gripper 2", "joint_positions", "+-shoulder"),
+    ),
+)

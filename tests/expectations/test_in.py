@@ -9,6 +9,8 @@ from harness.assertions.window import Window
 from harness.core.geometry import Box, Cylinder, Plane, Shape
 from harness.core.spatial import SE3
 from harness.expectations.in_ import In
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import Evidence, Free, Three
 from tests.assertions.synthetic_run import BOX, at, make_run, thing, verdict
 
 ABSENT = np.full((200, 7), np.nan)
@@ -115,3 +117,32 @@ def test_what_lies_under_a_table_is_not_in_it():
     answer = verdict(run, In(object="box", container="bin"))
     assert (answer.status, answer.unit) == ("failed", "1")
     assert "inside the outline of bin, which is neither under it nor around it" in answer.reason
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            In(object="box", container="bin"),
+            shared.in_bin(0.0),
+            shared.in_bin(0.0205),
+            -0.0005,
+            "m",
+        ),
+    ),
+    mutation_cases=((In(object="box", container="bin"), shared.IN_BIN, "late"),),
+    picture=(
+        ("cup", "{object: ball, container: cup}"),
+        ("tipping cup", "{object: ball, container: cup}"),
+    ),
+    free_shifts=(
+        Free(
+            "a container that turns about its opening's axis stays upright",
+            "in",
+            "object_poses bin",
+            "+-yaw",
+        ),
+        Free(
+            "its origin is what is in something", "in", "object_poses box", "+-roll +-pitch +-yaw"
+        ),
+    ),
+)

@@ -4,7 +4,9 @@ import pytest
 
 from harness.expectations.in_contact import InContact
 from harness.expectations.never import Never
-from tests.assertions.synthetic_run import force, make_run, verdict
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import DRIFT, Evidence, Free, Three
+from tests.assertions.synthetic_run import force, lift_run, make_run, verdict
 
 
 def test_contact_counts_from_the_required_force_on():
@@ -18,3 +20,33 @@ def test_contact_counts_from_the_required_force_on():
     assert verdict(run, Never(predicate=InContact(between=("box", "any")))).status == "failed"
     assert verdict(run, InContact(between=("box", "Table"))).status == "failed"
     assert verdict(run, InContact(between=("box", "ghost"))).status == "not observable"
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            InContact(between=("robot", "box"), min_force=1.0),
+            shared.touched(2.0),
+            shared.touched(0.99),
+            -0.01,
+            "N",
+        ),
+    ),
+    mutation_cases=(
+        (InContact(between=("left_finger", "box"), min_force=0.5), lift_run(), "lift"),
+    ),
+    picture=(
+        ("pick", "{between: [gripper, red_box]}"),
+        ("pick", "{between: [gripper, red_box], min_force: 40 N}"),
+    ),
+    free_shifts=(
+        Free("a harder contact is one", "in_contact", "contact_forces", "+"),
+        Free(
+            "it is to be true once, and was before the force had drifted away",
+            "in_contact",
+            "contact_forces",
+            "-",
+            (DRIFT,),
+        ),
+    ),
+)

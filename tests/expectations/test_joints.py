@@ -6,6 +6,8 @@ import pytest
 from harness.expectations.gripper import GripperState
 from harness.expectations.joints import Joints
 from harness.expectations.named_target import NamedTarget
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import Evidence, Three
 from tests.assertions.synthetic_run import make_run, verdict
 
 
@@ -30,3 +32,23 @@ def test_an_angle_s_default_tolerance_is_not_taken_for_a_sliding_joint():
     assert verdict(run, GripperState(named_target="closed")).status == "failed"
     assert verdict(run, GripperState(named_target="closed", tolerance=0.006)).status == "passed"
     assert verdict(run, NamedTarget(state="closed", group="gripper")).status == "failed"
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            Joints(positions={"shoulder": 0.0}),
+            make_run(),
+            shared.with_joint(joint_positions=0.0101),
+            -1e-4,
+            "rad",
+        ),
+    ),
+    mutation_cases=(
+        (Joints(positions={"shoulder": 0.0, "finger": 0.02}), shared.late(**shared.MOVING), "late"),
+    ),
+    picture=(
+        ("late", "{positions: {joint1: 40 deg}, tolerance: 1 deg}"),
+        ("stalled", "{positions: {joint1: 40 deg}, tolerance: 1 deg}"),
+    ),
+)

@@ -7,6 +7,8 @@ import pytest
 
 from harness.expectations.displaced import Displaced
 from harness.expectations.lifted import Lifted
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import AT_ONCE, DRIFT, Evidence, Free, Three
 from tests.assertions.synthetic_run import (
     BOX,
     TABLE,
@@ -167,3 +169,69 @@ def test_an_object_that_moves_through_the_hand_is_not_lifted():
     assert verdict(changed(run, object_poses={"box": sliding}), spec).status == "failed"
     sliding[100:, 0] /= 1.5  # 40 mm/s
     assert verdict(changed(run, object_poses={"box": sliding}), spec).status == "passed"
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            Lifted(object="box", above=0.05),
+            lift_run(),
+            lift_run(height=0.049),
+            -0.001,
+            "m",
+            shared.NO_BOX,
+        ),
+    ),
+    mutation_cases=((Lifted(object="box", above=0.05), lift_run(), "lift"),),
+    picture=(
+        ("pick", "{object: red_box, above: 5 cm, for: 0.5 s}"),
+        ("slippery", "{object: red_box, above: 5 cm, for: 1 s}"),
+    ),
+    free_shifts=(
+        Free(
+            "higher is lifted too; where, and how it is turned, is not spoken of",
+            "lifted",
+            "object_poses box",
+            "+-x +-y +z +-roll +-pitch +-yaw",
+            (AT_ONCE,),
+        ),
+        Free(
+            "a hand that stands elsewhere, or higher, raises it as much",
+            "lifted",
+            "tcp_pose",
+            "+-x +-y +z +-roll +-pitch +-yaw",
+            (AT_ONCE,),
+        ),
+        Free(
+            "friction sideways carries nothing, and more of it upwards carries more",
+            "lifted",
+            "frictions",
+            "+-x +-y +z",
+        ),
+        Free("less of a support's force is no support", "lifted", "contact_forces Table", "-"),
+        Free(
+            "a firmer grip is a grip",
+            "lifted",
+            "contact_forces left_finger, contact_forces right_finger",
+            "+",
+        ),
+        Free(
+            "where a finger presses is free, only that they press against each other as far"
+            " apart as the object is thick",
+            "lifted",
+            "presses left_finger",
+            "+-x +-z -y +force_y",
+        ),
+        Free(
+            "the same from the other side", "lifted", "presses right_finger", "+-x +-z +y -force_y"
+        ),
+        Free(
+            "past the other finger: a ring that is held from inside",
+            "lifted",
+            "presses left_finger",
+            "+y",
+            (DRIFT,),
+        ),
+        Free("the same from the other side", "lifted", "presses right_finger", "-y", (DRIFT,)),
+    ),
+)

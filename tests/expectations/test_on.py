@@ -8,6 +8,8 @@ import pytest
 from harness.core.geometry import Box
 from harness.expectations.on import On
 from harness.expectations.placed import Placed
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import Evidence, Free, Three
 from tests.assertions.synthetic_run import BOX, CYLINDER, TABLE, at, force, make_run, thing, verdict
 
 ABSENT = np.full((200, 7), np.nan)
@@ -49,3 +51,26 @@ def test_standing_on_something_means_that_it_carries_half_the_weight():
         assert answer.status == status
         assert answer.margin == pytest.approx(value - 0.5 * weight)
     assert verdict(absent_box(), On(object="box", support="Table")).status == "not reached"
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            On(object="box", support="Table"),
+            shared.on_table(0.98),
+            shared.on_table(0.48),
+            -0.01,
+            "N",
+            shared.NO_BOX,
+        ),
+    ),
+    mutation_cases=((On(object="box", support="Table"), shared.standing(), "late"),),
+    picture=(
+        ("pick", "{object: red_box, support: ground_plane}"),
+        ("pick", "{object: red_box, support: ground_plane, during: lift}"),
+    ),
+    free_shifts=(
+        Free("to stand more heavily is to stand", "on", "contact_forces Table", "+"),
+        Free("to stand more heavily is to stand", "on", "support_forces", "+"),
+    ),
+)

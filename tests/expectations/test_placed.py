@@ -1,4 +1,4 @@
-"""placed: the object rests on a support, released and still, at a pose if one is given."""
+"""placed: the object rests on a support, released and still, at a pose if one is shared."""
 
 import numpy as np
 import pytest
@@ -8,6 +8,8 @@ from harness.core.spatial import SE3
 from harness.expectations.placed import Placed
 from harness.expectations.static import Static
 from harness.language.poses import Pose, PoseTolerance
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import AT_ONCE, Evidence, Free, Three
 from tests.assertions.synthetic_run import (
     BOX,
     DT,
@@ -143,3 +145,39 @@ def test_what_the_robot_holds_is_no_support_unless_it_is_named():
     )
     assert verdict(held, PLACED).status == "failed"
     assert verdict(held, Placed(object="box", on="tray")).status == "passed"
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            Placed(object="box", pose=Pose(xyz=(0, 0, 0.02))),
+            shared.on_table(1.0),
+            shared.on_table(1.0, object_poses={"box": at(shared.N, (0.0101, 0, 0.02))}),
+            -1e-4,
+            "m",
+            shared.NO_BOX,
+        ),
+    ),
+    mutation_cases=(
+        (Placed(object="box", on="Table", pose=Pose(xyz=(0, 0, 0.02))), shared.standing(), "late"),
+    ),
+    picture=(("pick", "red_box"), ("pick", "{object: red_box, during: hold}")),
+    free_shifts=(
+        Free(
+            "no force of the fingers is released",
+            "placed",
+            "contact_forces left_finger, contact_forces right_finger",
+            "-",
+        ),
+        Free("to stand more heavily is to stand", "placed", "contact_forces Table", "+"),
+        Free("to stand more heavily is to stand", "placed", "support_forces", "+"),
+        Free(
+            "`placed` requires how upright it stands, and that it rests; about the vertical it"
+            " may be turned",
+            "placed",
+            "object_poses box",
+            "+-yaw",
+            (AT_ONCE,),
+        ),
+    ),
+)

@@ -3,6 +3,8 @@
 import pytest
 
 from harness.expectations.released import Released
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import Evidence, Free, Three
 from tests.assertions.synthetic_run import attachment, lift_run, verdict
 
 
@@ -14,3 +16,27 @@ def test_a_box_let_go_is_released_and_one_still_touched_or_attached_is_not():
     attached = lift_run(grip=(50, 150), attachments=[attachment("box", 60, 200)])
     assert verdict(attached, Released(object="box")).reason.startswith("the robot touches box")
     assert verdict(attached, Released(object="box")).status == "failed"
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            Released(object="box"),
+            shared.touched(0.0),
+            lift_run(value=0.00052),
+            -4e-5,
+            "N",
+            shared.NO_BOX,
+        ),
+    ),
+    mutation_cases=((Released(object="box"), shared.standing(), "late"),),
+    picture=(("pick", "red_box"), ("pick", "{object: red_box, during: lift}")),
+    free_shifts=(
+        Free(
+            "no force of the fingers is released",
+            "released",
+            "contact_forces left_finger, contact_forces right_finger",
+            "-",
+        ),
+    ),
+)

@@ -8,6 +8,8 @@ import pytest
 from harness.core.spatial import SE3
 from harness.expectations.slip import Slip
 from harness.observation.tracking import held_finding as finding_of_hold
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import AT_ONCE, DRIFT, Evidence, Free, Three
 from tests.assertions.synthetic_run import (
     BOX,
     CYLINDER,
@@ -112,3 +114,56 @@ def test_an_object_that_falls_before_the_arm_moves_on_was_lost():
         ),
     )  # fmt: skip
     assert "the physics lost it at 1.00 s" in held_finding(run).message
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            Slip(object="box"),
+            lift_run(**shared.HELD),
+            shared.slid(lift_run(**shared.HELD), 0.0031),
+            -1e-4,
+            "m",
+            make_run(),
+        ),
+    ),
+    mutation_cases=(
+        (
+            Slip(object="box"),
+            lift_run(attachments=[attachment("box", 45, shared.N)]),
+            "",
+        ),
+    ),
+    picture=(("pick", "red_box"), ("slippery", "red_box")),
+    free_shifts=(
+        Free(
+            "a firmer grip is a grip",
+            "slip",
+            "contact_forces left_finger, contact_forces right_finger",
+            "+",
+        ),
+        Free(
+            "where a finger presses is free, only that they press against each other as far"
+            " apart as the object is thick",
+            "slip",
+            "presses left_finger",
+            "+-x +-z -y +force_y",
+        ),
+        Free("the same from the other side", "slip", "presses right_finger", "+-x +-z +y -force_y"),
+        Free(
+            "past the other finger: a ring that is held from inside",
+            "slip",
+            "presses left_finger",
+            "+y",
+            (DRIFT,),
+        ),
+        Free("the same from the other side", "slip", "presses right_finger", "-y", (DRIFT,)),
+        Free(
+            "an object that was held elsewhere all the time has not moved in the hand",
+            "slip",
+            "object_poses box, tcp_pose",
+            "+-x +-y +-z +-roll +-pitch +-yaw",
+            (AT_ONCE,),
+        ),
+    ),
+)

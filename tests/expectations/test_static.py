@@ -9,6 +9,8 @@ from harness.expectations.always import Always
 from harness.expectations.eventually import Eventually
 from harness.expectations.placed import Placed
 from harness.expectations.static import Static
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import AT_ONCE, Evidence, Free, Three
 from tests.assertions.synthetic_run import BOX, DT, TABLE, at, changed, make_run, step, verdict
 
 ABSENT = np.full((200, 7), np.nan)
@@ -56,3 +58,40 @@ def test_what_was_seen_for_less_than_50_ms_is_not_known_to_stand_still():
     assert verdict(run, Static(object="box", max_velocity=0.2), "first").status == "not reached"
     assert verdict(run, Placed(object="box", max_velocity=0.2), "first").status == "not reached"
     assert verdict(run, Eventually(predicate=Static(object="box"))).status == "failed"
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            Static(object="box"),
+            make_run(),
+            make_run(object_poses={"box": shared.creeping(0.0051)}),
+            -1e-4,
+            "m/s",
+            shared.NO_BOX,
+        ),
+    ),
+    mutation_cases=(
+        (Static(object="box"), shared.late(object_poses={"box": shared.SWING}), "late"),
+        (
+            Static(),
+            shared.late(
+                object_poses={"box": shared.SWING}, joint_velocities=shared.columns((1, 0), (1, 0))
+            ),
+            "late",
+        ),
+    ),
+    picture=(
+        ("pick", "red_box"),
+        ("pick", "always: {static: {object: red_box, during: lift}}"),
+    ),
+    free_shifts=(
+        Free(
+            "what stood elsewhere all the time has not moved",
+            "static, static 2",
+            "object_poses",
+            "+-x +-y +-z +-roll +-pitch +-yaw",
+            (AT_ONCE,),
+        ),
+    ),
+)

@@ -11,6 +11,8 @@ from harness.expectations.fraction import FractionCheck
 from harness.expectations.tcp_path import TcpPath, along_arc, along_line
 from harness.recording.run import LinkPlacement
 from harness.reporting.margins import allowance_used, margin_share
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import Evidence, Free, Three
 from tests.assertions.synthetic_run import (
     ROBOT,
     at,
@@ -222,3 +224,26 @@ def test_a_line_is_longer_than_a_micrometre(length, is_judged):
     else:
         with pytest.raises(NotObservable, match="one point"):
             along_line(end, start, end)
+
+
+PICTURED_LINE = "{line: {start: {xyz: [0.2, -0.08, 0.1]}, end: {xyz: [0.2, 0.08, 0.1]}}, "
+PICTURED_BACK = "{line: {start: {xyz: [0.2, 0.08, 0.1]}, end: {xyz: [0.2, -0.08, 0.1]}}, "
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            TcpPath(line=shared.LINE, max_deviation=0.002),
+            shared.straying(0),
+            shared.straying(0.0021),
+            -1e-4,
+            "m",
+        ),
+    ),
+    mutation_cases=((TcpPath(line=shared.LINE), shared.late(tcp_pose=shared.ALONG), "late"),),
+    picture=(
+        ("paths", PICTURED_LINE + "max_deviation: 2 mm, during: straight}"),
+        ("paths", PICTURED_BACK + "max_deviation: 2 mm, during: bent}"),
+    ),
+    free_shifts=(
+        Free("a path has no orientation", "tcp_path", "tcp_pose", "+-roll +-pitch +-yaw"),
+    ),
+)

@@ -8,6 +8,8 @@ import pytest
 from harness.core.spatial import SE3
 from harness.expectations.tcp_pose import TcpPose
 from harness.language.poses import Pose
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import Evidence, Three
 from tests.assertions.synthetic_run import BOX, TABLE, at, heights, make_run, verdict
 
 ABSENT = np.full((200, 7), np.nan)
@@ -53,3 +55,35 @@ def test_a_link_that_was_not_recorded_cannot_be_judged():
     assert verdict(recorded, spec).status == "passed"
     in_frame = TcpPose(pose=Pose(frame="box", xyz=(0, 0, 0.28)))
     assert verdict(absent_box(), in_frame).status == "not reached"
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            TcpPose(pose=Pose(xyz=(0, 0, 0.3))),
+            make_run(),
+            make_run(tcp_pose=at(shared.N, (0, 0.00105, 0.3))),
+            -5e-5,
+            "m",
+        ),
+    ),
+    mutation_cases=(
+        (
+            TcpPose(pose=Pose(xyz=(0, 0, 0.3), frame="box")),
+            shared.late(
+                tcp_pose=shared.halves((0, 0.1, 0.3, 0.5), (0, 0, 0.32, 0)),
+                object_poses={"box": shared.halves((0.1, 0, 0, 0), (0, 0, 0.02, 0))},
+            ),
+            "late",
+        ),
+        (
+            TcpPose(link="arm_link", pose=Pose(xyz=(0, 0, 0.3))),
+            shared.late(frames={"arm_link": shared.halves((0, 0.1, 0.3, 0.5), (0, 0, 0.3, 0))}),
+            "late",
+        ),
+    ),
+    picture=(
+        ("pick", "{pose: {xyz: [0.25, 0, 0.06]}, position_only: true, during: reach}"),
+        ("pick", "{pose: {xyz: [0.252, 0, 0.06]}, position_only: true, during: reach}"),
+    ),
+)

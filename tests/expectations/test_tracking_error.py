@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from harness.expectations.tracking_error import TrackingError
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import Evidence, Free, Three
 from tests.assertions.synthetic_run import changed, make_run, verdict
 
 
@@ -19,3 +21,20 @@ def test_tracking_is_of_the_arm_s_joints_where_they_have_commands():
     assert verdict(run, TrackingError(max=0.048)).status == "failed"
     uncommanded = changed(run, joint_commands=np.full((200, 2), np.nan))
     assert verdict(uncommanded, TrackingError()).status == "not observable"
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(TrackingError(), make_run(), shared.with_joint(joint_positions=0.051), -0.001, "rad"),
+    ),
+    mutation_cases=((TrackingError(), shared.late(**shared.MOVING), "late"),),
+    picture=(("pick", "1 deg"), ("late", "1 deg")),
+    free_shifts=(
+        Free(
+            "fingers lag their command to press",
+            "tracking_error",
+            "joint_positions, joint_commands",
+            "+-finger",
+        ),
+    ),
+)

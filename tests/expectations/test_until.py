@@ -5,12 +5,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from harness.expectations.displaced import Displaced
 from harness.expectations.in_contact import InContact
 from harness.expectations.lifted import Lifted
 from harness.expectations.on import On
 from harness.expectations.static import Static
 from harness.expectations.until import Until
-from tests.assertions.synthetic_run import BOX, TABLE, lift_run, make_run, verdict
+from harness.expectations.upright import Upright
+from tests.assertions.evidence import AT_ONCE, Evidence, Free
+from tests.assertions.synthetic_run import (
+    BOX,
+    CYLINDER,
+    TABLE,
+    at,
+    heights,
+    lift_run,
+    make_run,
+    verdict,
+)
 
 ABSENT = np.full((200, 7), np.nan)
 
@@ -43,3 +55,76 @@ def test_one_thing_holds_until_another_comes():
     assert verdict(absent_box(), Until(predicate=still, until=touched)).status == "not reached"
     with pytest.raises(ValueError, match="no `for` and no `within`"):
         Until(predicate=Static(**{"for": 1.0}), until=touched)
+
+
+EVIDENCE = Evidence(
+    mutation_cases=(
+        (
+            Until(
+                predicate=On(object="box", support="Table"), until=Lifted(object="box", above=0.05)
+            ),
+            lift_run(
+                leave=140,
+                object_poses={"box": heights([0.02] * 140 + [0.12] * 60)},
+                tcp_pose=heights([0.05] * 140 + [0.15] * 60),
+            ),
+            "",
+        ),
+    ),
+    free_shifts=(
+        Free(
+            "higher is lifted too; where, and how it is turned, is not spoken of",
+            "until",
+            "object_poses box",
+            "+-x +-y +z +-roll +-pitch +-yaw",
+            (AT_ONCE,),
+        ),
+        Free(
+            "a hand that stands elsewhere all the time raises it as much",
+            "until",
+            "tcp_pose",
+            "+-x +-y +-z +-roll +-pitch +-yaw",
+            (AT_ONCE,),
+        ),
+        Free(
+            "friction sideways carries nothing, and more of it upwards carries more",
+            "until",
+            "frictions",
+            "+-x +-y +z",
+        ),
+        Free(
+            "a firmer grip is a grip",
+            "until",
+            "contact_forces left_finger, contact_forces right_finger",
+            "+",
+        ),
+        Free(
+            "where a finger presses is free, only that they press against each other as far"
+            " apart as the object is thick",
+            "until",
+            "presses left_finger",
+            "+-x +-z -y +force_y",
+        ),
+        Free(
+            "the same from the other side", "until", "presses right_finger", "+-x +-z +y -force_y"
+        ),
+        Free(
+            "the support may be lower, elsewhere and turned: `lifted` ends the wait all the same",
+            "until",
+            "object_poses Table",
+            "+-x +-y -z +-roll +-pitch +-yaw",
+        ),
+    ),
+)
+
+
+def test_samples_at_which_either_part_is_unknown_are_counted():
+    """After the second came, one sample of each part is unknown, and one of both."""
+    poses = {name: at(200, (0, 0, 0.02)) for name in ("box", "cylinder")}
+    poses["box"][100:, 2] = 0.1
+    poses["box"][[120, 140]] = poses["cylinder"][[130, 140]] = np.nan
+    run = make_run(objects=(TABLE, BOX, CYLINDER), object_poses=poses)
+    spec = Until(predicate=Upright(object="cylinder"), until=Displaced(object="box", at_least=0.05))
+    answer = verdict(run, spec)
+    assert answer.status == "passed"
+    assert (answer.observed.samples, answer.observed.unknown) == (197, 3)

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from harness.expectations.within_limits import WithinLimits
-from tests.assertions.synthetic_run import changed, make_run, verdict
+from tests.assertions import evidence_runs as shared
+from tests.assertions.evidence import Evidence, Free, Three
+from tests.assertions.synthetic_run import ROBOT, changed, make_run, verdict
 
 
 def positions(shoulder, finger=0.0):
@@ -88,3 +90,48 @@ def test_a_commanded_position_has_no_tolerance(beyond):
 def test_a_measured_velocity_may_exceed_its_limit_by_a_thousandth():
     run = make_run(joint_velocities=positions(2.0019))
     assert verdict(run, WithinLimits()).status == "passed"
+
+
+EVIDENCE = Evidence(
+    three_runs=(
+        Three(
+            WithinLimits(), make_run(), shared.with_joint(joint_velocities=2.012), -0.01, "rad/s"
+        ),
+    ),
+    mutation_cases=(
+        (
+            WithinLimits(acceleration=True),
+            shared.late(
+                **{
+                    **shared.MOVING,
+                    "joint_positions": shared.columns((2.0, 0.0), (0.5, 0.02)),
+                    "joint_velocities": shared.columns((3.0, 0.0), (2.0, 0.0)),
+                }
+            ),
+            "late",
+        ),
+        (
+            WithinLimits(velocity=False, effort=False),
+            replace(
+                shared.late(
+                    joint_positions=shared.columns((2.0, 0.0), -0.0005),
+                    joint_commands=shared.columns(0.0),
+                ),
+                robot=replace(ROBOT, gripper=None),
+            ),
+            "late",
+        ),
+    ),
+    picture=(
+        ("late", "always: {within_limits: {position: false, effort: false}}"),
+        ("hammer", "always: {within_limits: {position: false, effort: false}}"),
+    ),
+    free_shifts=(
+        Free(
+            "acceleration is required of the arm",
+            "within_limits",
+            "joint_command_velocities",
+            "+-finger",
+        ),
+    ),
+)

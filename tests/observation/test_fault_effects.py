@@ -27,6 +27,13 @@ def receipt(fault, *, more=(), **signals):
     return answer
 
 
+def evidence(is_landed, fault, **options):
+    """The evidence of a fault, which must have had an effect, or none."""
+    answer = receipt(fault, **options)
+    assert answer.receipt == ("landed" if is_landed else "no_effect")
+    return answer.evidence
+
+
 def ramp(column, by, start=30, stop=60, level=(0.0, 0.02)):
     """Two joints of which one moves by an amount over some samples, shape (N, 2)."""
     rows = np.tile(np.array(level), (N, 1))
@@ -69,11 +76,11 @@ def test_a_push_lands_where_the_object_gains_more_than_a_millimetre_a_second(spe
 def test_a_stall_lands_where_the_joint_is_commanded_to_move(by, landed):
     answer = receipt(STALL, joint_commands=ramp(0, by), joint_positions=ramp(0, 0.0))
     assert (answer.receipt == "landed") is landed
-    answer = receipt(STALL, joint_commands=ramp(0, 0.5), joint_positions=ramp(0, 0.25))
-    assert answer.evidence == "commanded to move by 0.5 rad, it moved by 0.25 rad"
+    moves = {"joint_commands": ramp(0, 0.5), "joint_positions": ramp(0, 0.25)}
+    assert evidence(True, STALL, **moves) == "commanded to move by 0.5 rad, it moved by 0.25 rad"
     sliding = InjectedFault("joint_stall", "finger", False, True)
-    answer = receipt(sliding, joint_commands=ramp(1, 0.01), joint_positions=ramp(1, 0.005))
-    assert answer.evidence == "commanded to move by 0.01 m, it moved by 0.005 m"
+    moves = {"joint_commands": ramp(1, 0.01), "joint_positions": ramp(1, 0.005)}
+    assert evidence(True, sliding, **moves) == "commanded to move by 0.01 m, it moved by 0.005 m"
 
 
 def test_a_fault_counts_from_the_last_sample_of_its_step_until_it_is_set_again():
@@ -94,45 +101,52 @@ def test_a_fault_counts_from_the_last_sample_of_its_step_until_it_is_set_again()
 
 def test_friction_matters_where_the_hand_grips_or_the_object_slides():
     gripped = {("left_finger", "box"): force(N, (50, 60))}
-    answer = receipt(FRICTION, contact_forces=gripped)
-    assert answer.evidence == "it was gripped, or slid in contact, for 0.10 s afterwards"
+    said = evidence(True, FRICTION, contact_forces=gripped)
+    assert said == "it was gripped, or slid in contact, for 0.10 s afterwards"
     early = {("left_finger", "box"): force(N, (5, 15))}
-    assert receipt(FRICTION, contact_forces=early).receipt == "no_effect"
+    assert evidence(False, FRICTION, contact_forces=early)
     table = {("Table", "box"): force(N, (0, N))}
-    assert receipt(FRICTION, contact_forces=table).evidence == "nothing pulled at it afterwards"
-    for speed, landed in ((0.0011, True), (0.0009, False)):
+    said = evidence(False, FRICTION, contact_forces=table)
+    assert said == "nothing pulled at it afterwards"
+    for speed, is_landed in ((0.0011, True), (0.0009, False)):
         sliding = {"box": going(speed, 40, 60)}
-        answer = receipt(FRICTION, contact_forces=table, object_poses=sliding)
-        assert (answer.receipt == "landed") is landed
-        assert receipt(FRICTION, object_poses=sliding).receipt == "no_effect", "it touches nothing"
+        assert evidence(is_landed, FRICTION, contact_forces=table, object_poses=sliding)
+        assert evidence(False, FRICTION, object_poses=sliding), "it touches nothing"
     reverse = {("box", "Table"): force(N, (0, N))}
-    answer = receipt(FRICTION, contact_forces=reverse, object_poses={"box": going(0.1, 40, 60)})
-    assert "for 0.20 s" in answer.evidence
+    poses = {"box": going(0.1, 40, 60)}
+    assert "for 0.20 s" in evidence(True, FRICTION, contact_forces=reverse, object_poses=poses)
 
 
 def test_the_gripper_s_effort_matters_while_fingers_press_something():
     pressed = {("box", "right_finger"): force(N, (40, 65))}
-    answer = receipt(EFFORT, contact_forces=pressed)
-    assert answer.evidence == "the gripper pressed for 0.25 s with 40% of its effort"
-    idle = receipt(EFFORT, contact_forces={("arm_link", "box"): force(N, (40, 65))})
-    assert idle.evidence == "the gripper pressed on nothing afterwards"
+    said = evidence(True, EFFORT, contact_forces=pressed)
+    assert said == "the gripper pressed for 0.25 s with 40% of its effort"
+    idle = {("arm_link", "box"): force(N, (40, 65))}
+    said = evidence(False, EFFORT, contact_forces=idle)
+    assert said == "the gripper pressed on nothing afterwards"
 
 
 def test_noise_and_latency_say_by_how_much_and_zero_sets_them_back():
     positions = ramp(0, 0.0)
     positions[50, 0] = -0.04
     positions[19, 0] = 0.5
-    answer = receipt(NOISE, joint_positions=positions)
-    assert answer.evidence == "joints were up to 0.04 rad off their set points"
+    said = evidence(True, NOISE, joint_positions=positions)
+    assert said == "joints were up to 0.04 rad off their set points"
     for fault in (NOISE, LATENCY):
         back = InjectedFault(fault.fault, "", 0.1, 0.0)
-        assert receipt(back).evidence == "set back"
-    assert receipt(LATENCY).evidence == "no joint was commanded to move afterwards"
-    answer = receipt(LATENCY, joint_commands=ramp(0, 0.3), joint_positions=ramp(0, 0.0))
-    assert answer.evidence == "joints lagged up to 0.3 rad behind their set points"
-    for by, landed in ((0.00011, True), (0.00009, False)):
-        answer = receipt(LATENCY, joint_commands=ramp(0, by))
-        assert (answer.receipt == "landed") is landed
+        assert evidence(True, back) == "set back"
+    assert evidence(False, LATENCY) == "no joint was commanded to move afterwards"
+    moves = {"joint_commands": ramp(0, 0.3), "joint_positions": ramp(0, 0.0)}
+    assert evidence(True, LATENCY, **moves) == "joints lagged up to 0.3 rad behind their set points"
+    for by, is_landed in ((0.00011, True), (0.00009, False)):
+        assert evidence(is_landed, LATENCY, joint_commands=ramp(0, by))
+
+
+def test_noise_of_the_last_sample_alone_is_not_seen():
+    last = step("first", 90, N, "inject", result={"faults": [NOISE.plain()]})
+    steps, findings = with_receipts((last,), make_run(N).signals, ROBOT, (TABLE, BOX))
+    assert faults_of(steps[0])[0].evidence == "no time passed afterwards"
+    assert len(findings) == 1
 
 
 def test_steps_without_faults_stay_as_they_are_and_each_fault_has_its_receipt():

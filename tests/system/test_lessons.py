@@ -59,7 +59,7 @@ def test_what_the_steps_of_the_flagship_added_is_gone_at_the_end(flagship):
     added = ("hanging_box", "upper_box", "cylinder", "low_box")
     there = {obj.name: obj.present[-1][1] for obj in run.objects}
     cleared = {record.id: record for record in run.steps}["cleared"]
-    assert set(cleared.result["removed"]) == {"cylinder", "low_box"}
+    assert set(cleared.result.plain()["removed"]) == {"cylinder", "low_box"}
     assert all(there[name] <= end for name in added)
     assert not any(attachment.end_time > end for attachment in run.attachments)
 

@@ -1,0 +1,96 @@
+"""What a run reports without a request, from records made by hand."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from harness.cell.cell import Belief
+from harness.core.geometry import Box, Cylinder, Plane, Shape, Sphere
+from harness.core.spatial import SE3
+from harness.observation.beliefs import believed_poses
+from harness.observation.findings import findings_of, overlap_findings
+from harness.observation.looks_differ import looks_differ
+from harness.ports import Touch
+from tests.assertions.synthetic_run import BOX, heights, step
+
+
+@pytest.mark.parametrize(
+    ("distance", "text"), [(-0.0004, "0.4 mm deep"), (0.0, "0.0 mm apart"), (0.002, "2.0 mm apart")]
+)
+def test_a_lowered_margin_is_reported_with_its_step_and_distance(distance, text):
+    entry = {"pair": ["box", "Table"], "start_distance": distance, "margin": 0.01}
+    quiet = step("quiet", 0, 10)
+    lift = step("lift", 20, 30, explanation={"lowered_margins": [entry, entry]})
+    found = findings_of([quiet, lift])
+    assert [each.kind for each in found] == ["lowered_margin"] * 2
+    assert f"box and Table stood {text}" in found[0].message
+    assert (found[0].step, found[0].time) == ("lift", pytest.approx(0.2))
+    assert found[0].values["start_distance"] == distance
+    assert findings_of([quiet]) == ()
+
+
+def test_bodies_that_overlap_at_the_start_are_reported_with_their_depth():
+    [found] = overlap_findings([Touch("box", "Table", -0.0031)])
+    assert (found.kind, found.time) == ("overlap", 0.0)
+    assert found.values == {"pair": ["box", "Table"], "depth": 0.0031}
+    assert "overlap by 3.1 mm" in found.message
+
+
+def test_a_belief_lasts_until_the_next_one_and_a_carried_object_moves_with_its_link():
+    class Lift:
+        """Every link is as high as the joint's number."""
+
+        def link_poses(self, positions, links):
+            assert links == ["hand"]
+            return heights(positions[:, 0])[:, None]
+
+    beliefs = {
+        "ghost": [
+            Belief(2, "", SE3.from_xyz_rpy((0, 0, 0.5))),
+            Belief(4, "hand", SE3.from_xyz_rpy((0, 0, 0.1))),
+            Belief(7, "", None),
+        ]
+    }
+    poses = believed_poses(beliefs, np.arange(9.0)[:, None], Lift())["ghost"][:, 2]
+    assert np.isnan(poses[[0, 1, 7, 8]]).all()
+    assert poses[2:7] == pytest.approx([0.5, 0.5, 4.1, 5.1, 6.1])
+
+
+def shown(geometry, place=(0, 0, 0), real=None):
+    record = replace(BOX, shapes=(Shape(real or Box((0.1, 0.2, 0.04))),))
+    return replace(record, visuals=(Shape(geometry, SE3.from_xyz_rpy(place)),))
+
+
+@pytest.mark.parametrize(
+    ("size", "place", "differs"),
+    [
+        ((0.1, 0.2, 0.04), (0, 0, 0), False),
+        ((0.1, 0.2, 0.0499), (0, 0, 0), False),  # a side is off by 4.95 mm
+        ((0.1, 0.2, 0.0501), (0, 0, 0), True),
+        ((0.1, 0.239, 0.04), (0, 0, 0), False),  # by 19.5 mm, a tenth of the extent is 20 mm
+        ((0.1, 0.241, 0.04), (0, 0, 0), True),
+        ((0.1, 0.2, 0.04), (0.0099, 0, 0), False),
+        ((0.1, 0.2, 0.04), (-0.0101, 0, 0), True),
+    ],
+)
+def test_pictures_differ_where_a_side_is_off_by_5_mm_and_a_tenth_of_the_extent(
+    size, place, differs
+):
+    assert bool(looks_differ([shown(Box(size), place)])) is differs
+
+
+def test_the_axis_that_differs_most_is_named_with_both_lengths():
+    [found] = looks_differ([shown(Box((0.12, 0.5, 0.04)))])
+    assert found.values == {
+        "object": "box", "shown": pytest.approx(0.5), "real": pytest.approx(0.2)
+    }  # fmt: skip
+    for text in ("500.0 mm long along its y axis", "are 200.0 mm", "off by 150.0 mm"):
+        assert text in found.message
+    [round_one] = looks_differ([shown(Sphere(0.3), real=Cylinder(0.1, 0.6))])
+    assert round_one.values["shown"] == pytest.approx(0.6)
+    assert round_one.values["real"] == pytest.approx(0.2)
+
+
+def test_objects_without_pictures_of_their_own_and_planes_do_not_differ():
+    assert looks_differ([BOX, shown(Plane()), replace(shown(Box((1, 1, 1))), shapes=())]) == ()
