@@ -36,7 +36,7 @@ def linkage_mimics(
     gravity, contacts and actuators; each other joint of the loop follows a line through these.
 
     Args:
-        model: The compiled file.
+        model: The model that MuJoCo compiled from the file.
         mimics: The joints that follow others already.
         notes: Receives how far joints are from their lines.
     """
