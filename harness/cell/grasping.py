@@ -25,6 +25,8 @@ JAW_CLEARANCE = 0.004
 GAP_SLACK = 0.001
 """How much a gap between the pads may differ from what the robot's table says [m]."""
 MAX_LEAN = 10.0  # [degrees]
+AT_THE_PALM = 1e-4
+"""Distance up to which a TCP is at the origin of the palm [m]."""
 UP = np.array([0.0, 0.0, 1.0])
 EIGHTHS = [eighth * math.pi / 4 for eighth in (0, 4, 1, -1, 2, -2, 3, -3)]
 """Turns about the vertical, least first, half a turn being as good as none [rad]."""
@@ -33,12 +35,16 @@ EIGHTHS = [eighth * math.pi / 4 for eighth in (0, 4, 1, -1, 2, -2, 3, -3)]
 def gripper_axes(cell: Cell) -> tuple[FloatArray, FloatArray]:
     """Unit approach and closing axes in the TCP frame, shape (3,) each.
 
-    The approach axis points from the palm to the TCP, the closing axis from one pad to the other
-    with the hand open: closed, the frames of the pads may be in one place. A single jaw has the
-    closing axis in which it moves.
+    The approach axis points from the palm to the TCP, or to the pads where those are in one place;
+    the closing axis from one pad to the other with the hand open: closed, the frames of the pads
+    may be in one place. A single jaw has the closing axis in which it moves.
     """
     palm, first, second = _in_tcp(cell, cell.gripper.open_position)
     approach = -palm.translation
+    if np.linalg.norm(approach) < AT_THE_PALM:  # then it points to the middle of the pads' shapes
+        placed = zip(cell.gripper.pads.values(), (first, second), strict=True)
+        middles = [at.apply(cell.scene.corners(link)).mean(axis=0) for link, at in placed]
+        approach = np.mean(middles, axis=0)
     closing = second.translation - first.translation
     if _has_single_jaw(cell):
         closing = _jaw_travel(cell)

@@ -103,6 +103,7 @@ def _world(arguments: argparse.Namespace) -> int:
         meshes = {target.parent / name: stl_bytes(mesh) for name, mesh in scene.meshes.items()}
     else:
         imported = load_sdf(source, [Path(folder) for folder in arguments.model_path])
+    imported.refuse_unusable()
     text = world_text(imported.world, target.parent, _comment(source, imported.notes))
     _write({**meshes, target: text.encode()}, is_forced=arguments.force)
     for note in imported.notes:

@@ -25,6 +25,8 @@ def unknown_names(facts: RobotYaml, urdf: Urdf, srdf: Srdf) -> Iterator[Unknown]
         yield from _unknown(("flange_link",), facts.flange_link, links, "link", "URDF")
     if facts.flange is not None:
         yield from _unknown(("flange", "link"), facts.flange.link, links, "link", "URDF")
+    for name in facts.collision:
+        yield from _unknown(("collision", name), name, links, "link", "URDF")
     for name in facts.joints:
         yield from _unknown(("joints", name), name, joints, "joint", "URDF")
     movable = [joint.name for joint in urdf.joints if joint.is_movable]

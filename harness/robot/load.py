@@ -117,7 +117,12 @@ def load_robot(
     if spec.model is None and main is not None:
         description = with_possible_accelerations(description, known)
     description = with_options(description, spec)
-    return with_collision_shapes(description, spec.collision, collision)
+    links = spec.collision
+    if not isinstance(links, str):
+        parts = [part for part in (main, tool) if part is not None]
+        own = {link: mode for part in parts for link, mode in part.facts.collision.items()}
+        links = {**own, **(links or {})}
+    return with_collision_shapes(description, links, collision)
 
 
 def _calibrated(main: RobotPart | None, path: Path) -> RobotPart:

@@ -78,7 +78,7 @@ class PackagePath:
         of descriptions has the robot's file.
 
         Args:
-            name: The name of the package.
+            name: The name of the package in the file.
             inside: The required path in it; empty for any.
 
         Raises:

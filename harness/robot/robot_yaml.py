@@ -11,6 +11,7 @@ from pydantic import Field, ValidationError, model_validator
 from pydantic_core import ErrorDetails
 
 from harness.core.errors import Problem, SpecError
+from harness.core.geometry import CollisionMode
 from harness.language.base import Length, Name, Rpy, SpecModel, Xyz
 from harness.language.cameras import CameraFields
 from harness.language.files.source import Loc, Source, SourceMap
@@ -176,6 +177,11 @@ class RobotYaml(SpecModel):
     ik_solver: IkSolverName = Field(
         default="numeric",
         description="Inverse kinematics; `auto`: the first of the others that fits.",
+    )
+    collision: dict[Name, CollisionMode] = Field(
+        default_factory=dict[Name, CollisionMode],
+        description="How the meshes of links collide, by link: `hull`, `parts` or `exact`, where a "
+        "scenario's `robot: {collision: ...}` does not state it.",
     )
     start_state: StartState = Field(
         default=StartState(), description="Where the robot stands at the start of a run."

@@ -184,6 +184,8 @@ def _world(loaded: LoadedScenario) -> ImportedWorld:
             searched = [file_path(each, folder) for each in choice.model_path]
             foreign = read_foreign_world(world_path(choice.name, folder), searched)
             if foreign is not None:
+                objects = loaded.scenario.objects
+                foreign.refuse_unusable({spec.name for spec in objects if spec.replace})
                 return foreign
         world = load_world(choice.name, folder)
     except SpecError as error:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
+from harness.core.errors import Problem, SpecError
 from harness.language.world import WorldSpec
 from harness.world.notes import Note
 
@@ -17,8 +19,20 @@ class ImportedWorld:
         world: The world as a world file describes it; mesh files have absolute paths.
         path: The path of the imported file.
         notes: Notes on elements that are left out or changed.
+        unusable: Objects that lack a mesh file, and why; the world has their places only.
     """
 
     world: WorldSpec
     path: Path
     notes: tuple[Note, ...] = ()
+    unusable: tuple[tuple[str, Problem], ...] = ()
+
+    def refuse_unusable(self, replaced: Collection[str] = ()) -> None:
+        """Refuse objects that lack a mesh file, except those that a scenario replaces.
+
+        Raises:
+            SpecError: Such an object is not replaced; each at its place.
+        """
+        problems = [problem for name, problem in self.unusable if name not in replaced]
+        if problems:
+            raise SpecError(problems)

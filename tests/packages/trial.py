@@ -1,4 +1,4 @@
-"""One arm of a package: loaded, its two models compared, and moved."""
+"""One arm of a package: loaded, its two models compared, moved, and picking a box."""
 
 from __future__ import annotations
 
@@ -16,6 +16,9 @@ from harness.planning.backend import make_planning
 from harness.robot.description import RobotDescription
 from harness.robot.find_file import find_file
 from harness.robot.load import load_robot
+from harness.robot_tools.first_scenario import first_scenario
+from harness.robot_tools.robot_check import check_robot
+from harness.robot_tools.robot_source import RobotSource, load_source
 from harness.simulation.servo import bare_robot
 from tests.packages.arms import PackageArm
 from tests.running import run_case
@@ -68,6 +71,33 @@ def try_arm(arm: PackageArm, folder: Path) -> Trial:
         trial.reason = (said or [result.message])[0]
     trial.reason = trial.reason or "no free state among the random ones"
     return trial
+
+
+@dataclass(frozen=True)
+class PickTrial:
+    """What became of a scenario that `harness new` wrote for an arm with fingers.
+
+    Attributes:
+        wrong: What `harness robot check` finds wrong, the first of each kind.
+        picks: Whether the scenario is a pick, which was run once and passed.
+        reason: Why it is not.
+    """
+
+    wrong: tuple[str, ...]
+    picks: bool
+    reason: str
+
+
+def try_pick(arm: PackageArm, folder: Path) -> PickTrial:
+    """Look an arm over, and let a first scenario be written and run."""
+    words, _ = loaded(arm, Trial())
+    uri = str(words[arm.kind])
+    source = RobotSource(uri, srdf=str(words.get("srdf", "")), **arm.options)
+    found = check_robot(load_source(source), uri, samples=200).report.findings
+    wrong = tuple((each.details or (each.text,))[0] for each in found if not each.is_good)
+    written = first_scenario(source, folder / "first.scenario.yaml")
+    reason = written.no_pick or written.trouble
+    return PickTrial(wrong, not reason, reason)
 
 
 def loaded(arm: PackageArm, trial: Trial) -> tuple[dict[str, object], RobotDescription]:

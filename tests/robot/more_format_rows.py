@@ -6,6 +6,7 @@ import numpy as np
 
 from tests.robot.arm_files import URDF
 from tests.robot.format_rows import END, FRAME, ignored, link, read, refused
+from tests.robot.mjcf_arm import LINKAGE, MJCF
 
 NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 XACRO = (
@@ -102,6 +103,9 @@ MJCF_ROWS = (
     read("`<equality>` of joints", "a mimic; of a curve the slope, reported", "0.4 0 0 0",
          "0.5 0 0 0",
          lambda arm: arm.joint_by_name["pinch"].mimic.multiplier == 0.5),
+    read("`<equality>`: `<connect>` in a closed linkage", "its joints follow the driven one; "
+         "how far they are from a line is reported", MJCF, LINKAGE,
+         lambda arm: getattr(arm.joint_by_name.get("left_rocker"), "mimic", None) is not None),
     ignored("any other equality", "reported", EQUALITY, EQUALITY + '<weld body1="finger"/>',
             "an equality of the kind weld is ignored"),
     read("`<keyframe>`", "a state of its name", 'qpos="0.1 0.5', 'qpos="0.1 0.6',

@@ -188,6 +188,27 @@ def test_a_missing_visual_mesh_is_a_note(tmp_path):
         assert note.startswith("link 'upper': the visual is not drawn: ")
 
 
+def test_a_robots_folder_says_how_its_links_collide_unless_the_scenario_does(tmp_path):
+    write_obj(tmp_path / "bin.obj", *vessel(**BIN))
+    mesh = '<collision><geometry><mesh filename="bin.obj"/></geometry></collision>'
+    (tmp_path / "arm.urdf").write_text(URDF.replace(SHAPE, mesh))
+    (tmp_path / "arm.srdf").write_text(SRDF)
+    (tmp_path / "robot.yaml").write_text(
+        "robot: three\nkind: arm\nurdf: arm.urdf\nsrdf: arm.srdf\narm_group: manipulator\n"
+        "tcp_link: tool\ncollision: {upper: hull, lower: exact}\n"
+    )
+
+    def modes(**words):
+        arm = load_robot(RobotSpec.model_validate({"model": str(tmp_path), **words}))
+        named = [each for each in arm.links if each.collisions]
+        return {each.name: each.collisions[0].geometry.collision for each in named}
+
+    assert modes() == {"upper": "hull", "lower": "exact", "wrist": "parts"}
+    given = modes(collision={"lower": "hull"})
+    assert given == {"upper": "hull", "lower": "hull", "wrist": "parts"}
+    assert set(modes(collision="exact").values()) == {"exact"}
+
+
 def test_a_check_of_a_robot_says_what_stands_for_its_meshes(tmp_path):
     write_obj(tmp_path / "bin.obj", *vessel(**BIN))
     mesh = '<collision><geometry><mesh filename="bin.obj"/></geometry></collision>'

@@ -112,6 +112,11 @@ def test_a_folder_next_to_the_scenario_is_a_robot(tmp_path):
         ("palm_link: link5", "palm_link: link55", ["gripper.palm_link: the URDF has no link"]),
         ("group: gripper", "group: hand", ["gripper.group: the SRDF has no group 'hand'"]),
         ("pad: gripper_left_link", "pad: link5", ["gripper.sides.left.pad: the side has no link"]),
+        (
+            "kind: arm",
+            "kind: arm\ncollision: {lnk2: hull}",
+            ["collision.lnk2: the URDF has no link"],
+        ),
         ("friction: 1.0", "friction: 1e308", ["gripper.friction: ", "1e+308"]),
     ],
 )

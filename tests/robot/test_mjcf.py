@@ -11,7 +11,7 @@ from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.load import load_robot
 from harness.simulation.servo import bare_robot
 from tests.engine.front_door import run
-from tests.robot.mjcf_arm import MJCF, TIP
+from tests.robot.mjcf_arm import LINKAGE, MJCF, TIP
 
 JOINTS = ("pan", "lift", "elbow", "slide", "pinch")
 LINKS = ("base", "upper", "lower", "wrist", "finger")
@@ -189,3 +189,18 @@ def test_a_missing_texture_is_not_needed(tmp_path):
     assert (text.count("wood"), text.count('"m"')) == (2, 2)
     write(tmp_path, text)
     assert set(load(tmp_path).joint_names) == set(JOINTS)
+
+
+def test_joints_of_a_closed_linkage_follow_its_driven_joint(tmp_path):
+    """As in Robotiq's 2F-85 of the MuJoCo Menagerie: a tree cannot hold the loop."""
+    write(tmp_path, LINKAGE)
+    arm = load_robot(RobotSpec(mjcf="arm.xml"), tmp_path)
+    mimics = {joint.name: joint.mimic for joint in arm.movable_joints if joint.mimic}
+    assert {name: mimic.joint for name, mimic in mimics.items()} == dict.fromkeys(
+        ("right_crank", "left_rocker", "left_pad", "right_rocker", "right_pad"), "left_crank"
+    )
+    assert mimics["right_rocker"].multiplier == pytest.approx(1, abs=0.02)
+    assert mimics["right_pad"].multiplier == pytest.approx(-1, abs=0.02)
+    assert arm.gripper.joint == "left_crank"
+    assert sorted(arm.gripper.pads.values()) == ["left_pad", "right_pad"]
+    assert not any("connect" in note for note in arm.notes)

@@ -152,4 +152,6 @@ def text_with(kind="", snippet=""):
 
 def load(folder, text):
     """What a text imports as."""
-    return load_sdf(write(folder, text))
+    imported = load_sdf(write(folder, text))
+    imported.refuse_unusable()
+    return imported

@@ -1,12 +1,14 @@
 """SDF worlds as a scenario's: run, checked, reported in report and check."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
 
 from harness.cli.main import main
 from harness.core.errors import SpecError
+from harness.core.geometry import Box
 from harness.language.reading.load import parse_scenario
 from harness.recording.store import read_run
 from harness.robot.mesh_file import hull_points
@@ -142,6 +144,24 @@ def test_a_mesh_that_cannot_be_touched_is_reported_at_its_line_in_the_sdf_file(t
     with pytest.raises(SpecError, match="is flat: it encloses nothing") as caught:
         load(tmp_path, text)
     assert text.splitlines()[caught.value.problems[0].line - 1].startswith("<uri>flat.obj")
+
+
+def test_an_object_that_lacks_its_mesh_is_refused_alone_unless_it_is_replaced(tmp_path):
+    text = text_with("mesh", "\n<uri>gone.stl</uri>")
+    write(tmp_path, text)
+    path = tmp_path / "a.scenario.yaml"
+    scenario = "scenario: x\nrobot: ur3e\nworld: world.sdf\nsteps: [wait: 0.1 s]\n"
+    path.write_text(scenario)
+    with pytest.raises(SpecError) as caught:
+        prepare(path)
+    [problem] = caught.value.problems
+    assert text.splitlines()[problem.line - 1].startswith("<uri>gone.stl")
+    assert problem.hint.startswith("name its folder in `world: {name: ..., model_path: [...]}`")
+    name = re.search("`name: (.+)` with `replace: true` in `objects`", problem.hint)[1]
+    box = "box: {size: [0.1, 0.1, 0.1]}, pose: {xyz: [1, 0, 0.1]}"
+    path.write_text(scenario + f"objects: [{{name: {name}, replace: true, {box}}}]\n")
+    [obj] = [each for each in prepare(path).program.world.objects if each.name == name]
+    assert isinstance(obj.shapes[0].geometry, Box)
 
 
 def test_a_missing_visual_mesh_is_a_note(tmp_path):

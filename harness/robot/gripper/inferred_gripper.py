@@ -280,8 +280,12 @@ def _sides(hand: _Hand, fingers: Sequence[tuple[str, ...]]) -> tuple[tuple[str, 
         np.sum([hand.middle(link, upper) - hand.middle(link, lower) for link in links], axis=0)
         for links in shaped
     ]
-    first = [links for links, move in zip(shaped, moves, strict=True) if moves[0] @ move > 0]
-    second = [links for links, move in zip(shaped, moves, strict=True) if moves[0] @ move <= 0]
+    along = max(moves, key=np.linalg.norm)
+    if not along.any():
+        raise NoGripperError("its fingers do not move")
+    along = along if moves[0] @ along >= 0 else -along
+    first = [links for links, move in zip(shaped, moves, strict=True) if along @ move > 0]
+    second = [links for links, move in zip(shaped, moves, strict=True) if along @ move <= 0]
     sides = tuple(tuple(link for links in side for link in links) for side in (first, second))
     if sides[1]:
         return sides

@@ -15,6 +15,7 @@ from harness.core.spatial import SE3, rotation_from_quat_wxyz
 from harness.core.types import FloatArray
 from harness.language.files.xml_file import XmlElement
 from harness.robot.description import Joint, Mimic
+from harness.robot.mjcf.linkages import linkage_mimics
 
 SLIDE = 2  # of mjtJoint
 
@@ -137,15 +138,15 @@ def _driven_together(model: Any, mimics: Mapping[str, Mimic]) -> dict[str, Mimic
 
 
 def with_mimics(model: Any, joints: Iterable[Joint], notes: list[str]) -> list[Joint]:
-    """Linear joint equalities as mimic joints."""
+    """Joints that follow others: by linear equalities, by one tendon, or in closed linkages."""
     import mujoco
 
     mimics: dict[str, Mimic] = {}
+    ignored: list[str] = []
     for number in range(model.neq):
         kind = mujoco.mjtEq(int(model.eq_type[number]))
         if kind != mujoco.mjtEq.mjEQ_JOINT or model.eq_obj2id[number] < 0:
-            word = kind.name.removeprefix("mjEQ_").lower()
-            notes.append(f"an equality of the kind {word} is ignored")
+            ignored.append(kind.name.removeprefix("mjEQ_").lower())
             continue
         offset, slope, *curve = (float(value) for value in model.eq_data[number][:5])
         first, second = int(model.eq_obj1id[number]), int(model.eq_obj2id[number])
@@ -161,7 +162,22 @@ def with_mimics(model: Any, joints: Iterable[Joint], notes: list[str]) -> list[J
     for name, mimic in _driven_together(model, dict.fromkeys(followed, Mimic(""))).items():
         notes.append(f"joint '{name}' follows '{mimic.joint}': one actuator pulls both by a tendon")
         mimics[name] = mimic
-    return [replace(j, mimic=mimics[j.name]) if j.name in mimics else j for j in joints]
+    linked, count = linkage_mimics(model, mimics, notes)
+    for _ in range(count):
+        ignored.remove("connect")
+    notes += [f"an equality of the kind {word} is ignored" for word in ignored]
+    mimics |= linked
+    followers = [replace(j, mimic=mimics[j.name]) if j.name in mimics else j for j in joints]
+    ranges = {joint.name: (joint.lower, joint.upper) for joint in followers}
+    return [_widened(j, ranges) if j.name in linked else j for j in followers]
+
+
+def _widened(joint: Joint, ranges: Mapping[str, tuple[float, float]]) -> Joint:
+    """A joint of a linkage whose limits do not stop its leader: the file's linkage reaches both."""
+    if joint.mimic is None:
+        return joint
+    ends = [joint.mimic.multiplier * end + joint.mimic.offset for end in ranges[joint.mimic.joint]]
+    return replace(joint, lower=min(joint.lower, *ends), upper=max(joint.upper, *ends))
 
 
 def mjcf_pose(position: Any, quat_wxyz: Any) -> SE3:

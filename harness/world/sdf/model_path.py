@@ -25,6 +25,10 @@ FUEL_CACHE = "GZ_FUEL_CACHE_PATH"
 HINT = "name its folder in `world: {name: ..., model_path: [...]}` or in GZ_SIM_RESOURCE_PATH"
 
 
+class MissingFileError(SpecError):
+    """A file or folder of an SDF does not exist."""
+
+
 class ModelPath:
     """Folders that files may be read from.
 
@@ -67,7 +71,8 @@ class ModelPath:
             base_folder: Folder of the element's file; relative paths start there.
 
         Raises:
-            SpecError: It does not exist, or is in none of the folders.
+            MissingFileError: It does not exist.
+            SpecError: It is in none of the folders, or is no path.
         """
         scheme, separator, rest = uri.partition("://")
         if not uri.isprintable() or not uri:
@@ -92,8 +97,8 @@ class ModelPath:
             element.refuse(f"`{uri}` is outside the folders that may be read", HINT)
         if scheme in ("http", "https"):
             hint = "nothing is downloaded: get the model with `gz fuel download -u ADDRESS`"
-            element.refuse(f"`{uri}` is not in Gazebo's cache", hint)
-        raise SpecError([element.problem(f"`{uri}` is not found", HINT)])
+            raise MissingFileError([element.problem(f"`{uri}` is not in Gazebo's cache", hint)])
+        raise MissingFileError([element.problem(f"`{uri}` is not found", HINT)])
 
     def _cached(self, uri: str) -> list[Path]:
         """Candidates for a Fuel model in Gazebo's cache: the newest version."""

@@ -20,7 +20,7 @@ from harness.robot.mesh_file import convex_hull
 from harness.world.notes import Notes
 from harness.world.plain_values import facing, pose_spec, rounded
 from harness.world.sdf.elements import WORDS, note_unread_elements
-from harness.world.sdf.model_path import ModelPath
+from harness.world.sdf.model_path import MissingFileError, ModelPath
 from harness.world.sdf.values import number, numbers_of, positive, text_of
 
 PLAIN_COLORS: Mapping[str, Rgba] = {
@@ -137,7 +137,7 @@ class ShapeReader:
             element.refuse("a <mesh> has a <uri>")
         path = self.model_path.find(uri.text.strip(), uri, folder)
         if not path.is_file():
-            uri.refuse(f"`{uri.text.strip()}` is not a file")
+            raise MissingFileError([uri.problem(f"`{uri.text.strip()}` is not a file")])
         scale = element.find("scale")
         values = (1.0, 1.0, 1.0) if scale is None else numbers_of(scale, 3)
         if 0 in values:

@@ -4,20 +4,23 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from harness.core.errors import Problem
+from harness.language.base import SMALLEST_SIZE
 from harness.language.cameras import CameraSpec
 from harness.language.files.xml_file import XmlElement
 from harness.language.world import LightSpec, ObjectSpec, PhysicsSpec, WorldSpec
 from harness.world.imported import ImportedWorld
 from harness.world.notes import Notes
-from harness.world.plain_values import rounded
+from harness.world.plain_values import pose_spec, rounded
 from harness.world.sdf.bodies import bodies_of
 from harness.world.sdf.cameras import cameras_of
 from harness.world.sdf.elements import note_unread_elements
-from harness.world.sdf.model_path import ModelPath
+from harness.world.sdf.model_path import MissingFileError, ModelPath
 from harness.world.sdf.object import LONGEST_NAME, object_of
 from harness.world.sdf.shapes import ShapeReader
 from harness.world.sdf.tree import SdfLight, SdfTree
@@ -34,7 +37,8 @@ def load_sdf(path: Path, folders: Sequence[Path] = ()) -> ImportedWorld:
         folders: Folders to search for models and meshes before those of the environment.
 
     Raises:
-        SpecError: A file is not valid SDF; located in the file with the mistake.
+        SpecError: A file is not valid SDF; located in the file with the mistake. An object without
+            its mesh file is not refused here, since a scenario may replace it.
     """
     model_path = ModelPath(path.parent, folders)
     tree = SdfTree(path, model_path)
@@ -42,8 +46,16 @@ def load_sdf(path: Path, folders: Sequence[Path] = ()) -> ImportedWorld:
     reader = ShapeReader(model_path, notes)
     objects: list[ObjectSpec] = []
     cameras: list[tuple[str, CameraSpec]] = []
+    unusable: list[tuple[str, Problem]] = []
     for body in bodies_of(tree.world, notes):
-        item = object_of(body, reader)
+        try:
+            item = object_of(body, reader)
+        except MissingFileError as error:
+            [problem] = error.problems
+            unusable.append((body.name, replace(problem, hint=_options(problem, body.name))))
+            dot = {"radius": SMALLEST_SIZE}
+            words = {"name": body.name, "pose": pose_spec(body.pose), "static": True, "sphere": dot}
+            item = ObjectSpec.model_validate(words)
         objects += [item] if item is not None else []
         found = cameras_of(body, notes, is_there=item is not None)
         cameras += [(body.name, camera) for camera in found]
@@ -56,7 +68,13 @@ def load_sdf(path: Path, folders: Sequence[Path] = ()) -> ImportedWorld:
         lights=tuple(item for item in lights if item is not None),
         physics=_physics(tree.root, notes),
     )
-    return ImportedWorld(world, path, notes.all())
+    return ImportedWorld(world, path, notes.all(), tuple(unusable))
+
+
+def _options(problem: Problem, name: str) -> str:
+    """What helps against a missing mesh."""
+    other = f"put another object in its place: `name: {name}` with `replace: true` in `objects`"
+    return f"{problem.hint}; or {other}" if problem.hint else other
 
 
 def _named_apart(cameras: Sequence[tuple[str, CameraSpec]]) -> tuple[CameraSpec, ...]:
