@@ -33,7 +33,7 @@ class Background(Generic[T]):
         Args:
             function: Returns a value that can be pickled; reports its progress to its argument.
         """
-        self._function = function
+        self._function: Callable[[Activity], T] | None = function
         self._pid = 0
         if len(list(_TASKS.iterdir())) > 1:
             return
@@ -43,6 +43,16 @@ class Background(Generic[T]):
             self._reading.close()  # so that writing fails once the parent is gone
             _compute(function, writing)
         writing.close()
+        self._function = None  # so that this process does not keep what it refers to
+
+    @property
+    def is_apart(self) -> bool:
+        """Whether another process computes the value."""
+        return self._pid > 0
+
+    def is_ready(self) -> bool:
+        """Whether the value, or a report of progress, can be read without waiting."""
+        return not self._pid or self._reading.poll()
 
     def result(self, activity: Activity) -> T:
         """The value, as soon as it is known; its progress is reported until then.
@@ -51,7 +61,7 @@ class Background(Generic[T]):
             HarnessError: The process ended without a value.
             Exception: What the function raised.
         """
-        if not self._pid:
+        if self._function is not None:
             return self._function(activity)
         try:
             while True:
@@ -65,7 +75,7 @@ class Background(Generic[T]):
             _, status = os.waitpid(self._pid, 0)
             self._pid = 0
             code = os.waitstatus_to_exitcode(status)
-            raise HarnessError(f"the process that draws pictures ended with code {code}") from None
+            raise HarnessError(f"a process of this run ended with code {code}") from None
         finally:
             self.close()
 
