@@ -27,6 +27,7 @@ from harness.core.antipodal import (
 from harness.core.pose_arrays import compose, conjugate, quat_product, relative, rotation_angle
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import Run
+from harness.recording.step_results import GraspMode
 
 HOLD_TIME = 0.1
 """How long fingers must have touched an object without a break to hold it [s].
@@ -215,7 +216,7 @@ def welded(run: Run, name: str) -> BoolArray:
     """Samples at which a grasp with `mode: weld` has an object fixed to the hand, shape (N,)."""
     times = run.signals.times
     mask = np.zeros(len(times), dtype=bool)
-    welds = [step for step in run.steps if step.result.get("mode") == "weld"]
+    welds = [step for step in run.steps if step.result.find(GraspMode) == GraspMode("weld")]
     for record in run.attachments:
         if name in (record.object, record.represents) and any(
             step.start_time <= record.start_time <= step.end_time for step in welds

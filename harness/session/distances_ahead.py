@@ -49,7 +49,7 @@ class DistancesAhead:
         """Begin to measure the parts that are complete by now, unless others are being measured."""
         from harness.observation.sampled_clearance import complete_parts
 
-        if self._background is not None and not self._background.is_ready():
+        if self._background is not None and not self._background.has_message():
             return
         self._take()
         complete = complete_parts(simulator.sample_count, simulator.timestep)
