@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from harness.core.activity import Activity, unobserved
 from harness.engine.execute import ProgramExecution
 from harness.observation.beliefs import believed_poses
+from harness.ports import Simulator
 from harness.recording.motion import Motion
 from harness.session.background import Background
 from harness.session.prepare import Prepared
@@ -45,10 +46,16 @@ class DistancesAhead:
         if self._background is not None:
             self._background.close()
 
-    def look(self, execution: ProgramExecution, simulator: MujocoSimulator) -> None:
-        """Begin to measure the parts that are complete by now, unless others are being measured."""
-        from harness.observation.sampled_clearance import complete_parts
+    def look(self, execution: ProgramExecution, simulator: Simulator) -> None:
+        """Begin to measure the parts that are complete by now, unless others are being measured.
 
+        Only the record of the physics is complete at once; that of a robot arrives later.
+        """
+        from harness.observation.sampled_clearance import complete_parts
+        from harness.simulation.mujoco_simulator import MujocoSimulator
+
+        if not isinstance(simulator, MujocoSimulator):
+            return
         if self._background is not None and not self._background.has_message():
             return
         self._take()
