@@ -22,7 +22,8 @@ from harness.recording.run import AttachmentRecord, ObjectRecord, StepRecord, St
 
 TIMEOUT_SLACK = 0.05  # [s] how often the physics is looked at while something is waited for
 
-OnStep = Callable[[Literal["step_started", "step_finished"], ProgramStep, StepRecord | None], None]
+StepEvent = Literal["step_started", "step_finished"]
+OnStep = Callable[[StepEvent, ProgramStep, StepRecord | None], None]
 
 
 @dataclass(frozen=True)

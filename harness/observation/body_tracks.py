@@ -15,7 +15,8 @@ from harness.core.geometry import Shape
 from harness.core.spatial import rotation_from_quat_wxyz
 from harness.core.types import BoolArray, FloatArray
 from harness.planning.collision.geometry import coal_geometry
-from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
+from harness.recording.motion import Motion
+from harness.recording.run import AttachmentRecord, ObjectRecord
 from harness.robot.forward_kinematics import LinkPoses
 
 
@@ -79,7 +80,7 @@ def carried_track(link: BodyTrack, pose_in_link: Sequence[float]) -> BodyTrack:
 def object_track(
     record: ObjectRecord,
     attachments: Sequence[AttachmentRecord],
-    signals: Signals,
+    motion: Motion,
     links: LinkPoses,
 ) -> BodyTrack:
     """An object's track: as the physics recorded it, otherwise as the planning scene assumes it.
@@ -87,8 +88,8 @@ def object_track(
     An object of the planning scene alone stays where it is added, moves with the link to which it
     is attached, and stays where it is detached.
     """
-    times = signals.times
-    recorded = signals.object_poses.get(record.name)
+    times = motion.times
+    recorded = motion.object_poses.get(record.name)
     if recorded is not None:
         track = track_of_poses(np.asarray(recorded, dtype=float))
     else:
@@ -125,6 +126,8 @@ class TrackedShape:
         pose: T_body_shape as Coal's transform.
         center: The bounding sphere's centre in the body frame [m].
         radius: The bounding sphere's radius [m]; inf for a half space.
+        lower: The lower corner of the bounding box in the shape's frame [m]; -inf for a half space.
+        upper: The upper corner of the bounding box in the shape's frame [m]; inf for a half space.
     """
 
     body: str
@@ -132,6 +135,14 @@ class TrackedShape:
     pose: coal.Transform3s
     center: FloatArray
     radius: float
+    lower: FloatArray
+    upper: FloatArray
+
+    def gap(self, points: FloatArray) -> FloatArray:
+        """Distance of points in the body frame, shape (N, 3), from the bounding box [m], (N,)."""
+        seen = (points - self.pose.getTranslation()) @ self.pose.getRotation()
+        outside = seen - np.clip(seen, self.lower, self.upper)
+        return np.sqrt(np.einsum("ij,ij->i", outside, outside))
 
 
 def tracked_shapes(body: str, shapes: Sequence[Shape]) -> tuple[TrackedShape, ...]:
@@ -148,6 +159,8 @@ def tracked_shapes(body: str, shapes: Sequence[Shape]) -> tuple[TrackedShape, ..
                 coal.Transform3s(shape.pose.rotation, shape.pose.translation),
                 center,
                 float(geometry.aabb_radius),
+                np.array(geometry.aabb_local.min_).reshape(3),
+                np.array(geometry.aabb_local.max_).reshape(3),
             )
         )
     return tuple(found)
@@ -160,16 +173,28 @@ def relative_track(first: BodyTrack, second: BodyTrack) -> BodyTrack:
     return BodyTrack(turned @ first.rotations, (turned @ offset)[:, :, 0])
 
 
-def travel(seen: BodyTrack, shape: TrackedShape) -> FloatArray:
-    """Bound the path length of every point of a shape since the first sample [m], shape (N,).
+def centers_of(seen: BodyTrack, shapes: Sequence[TrackedShape]) -> FloatArray:
+    """The centres of the balls about shapes of a body along its track [m], shape (N, 3, shapes)."""
+    centers = np.column_stack([shape.center for shape in shapes])
+    return seen.translations[:, :, None] + seen.rotations @ centers
 
-    Between two samples a point of the shape moves at most as far as the centre of its sphere plus
-    the sphere's radius times the angle turned.
+
+def travels(seen: BodyTrack, centers: FloatArray, radii: FloatArray) -> FloatArray:
+    """Bound the path length of every point of shapes since the first sample [m], (N, shapes).
+
+    Between two samples a point of a shape moves at most as far as the centre of its ball plus the
+    ball's radius times the angle turned.
+
+    Args:
+        seen: The track of the shapes' body.
+        centers: The centres of the balls, as `centers_of` returns them.
+        radii: The radii of the balls [m], shape (shapes,).
     """
-    centers = seen.translations + seen.rotations @ shape.center
     steps = np.diff(centers, axis=0)
-    shifts = np.sqrt(np.einsum("ij,ij->i", steps, steps))
-    return np.concatenate([[0.0], np.cumsum(shifts + shape.radius * seen.turns)])
+    shifts = np.sqrt(np.einsum("ijk,ijk->ik", steps, steps))
+    moved = np.zeros((len(centers), len(radii)))
+    np.cumsum(shifts + seen.turns[:, None] * radii, axis=0, out=moved[1:])
+    return moved
 
 
 def links_with_shapes(

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from harness.observation.body_tracks import (
     relative_track,
     tracked_shapes,
 )
+from harness.observation.measured_clearance import MeasuredClearance
 from harness.observation.nearest import (
     ShapePair,
     largest_travel,
@@ -27,86 +28,21 @@ from harness.observation.nearest import (
 from harness.observation.sampled_clearance import (
     LARGEST_ERROR,
     around_smallest,
-    at_samples,
     between,
     inside_of,
-    interpolated,
     knots,
     largest_dip,
     nearest_measured,
     parts_of,
+    parts_of_run,
 )
 from harness.planning.model.robot_model import RobotModel
+from harness.recording.motion import Motion
 from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
 from harness.robot.description import RobotDescription
 from harness.robot.forward_kinematics import LinkPoses
 
 ROBOT = "robot"
-
-
-@dataclass(eq=False)
-class _Clearances:
-    """Distances of each pair, and the nearest links, while they are being measured."""
-
-    count: int
-    distances: dict[tuple[str, str], FloatArray] = field(default_factory=dict)
-    links: dict[tuple[str, str], IntArray] = field(default_factory=dict)
-    travels: dict[tuple[str, str], FloatArray] = field(default_factory=dict)
-
-    def put(
-        self,
-        key: tuple[str, str],
-        samples: BoolArray,
-        distances: FloatArray,
-        links: IntArray | None,
-        travel: FloatArray,
-    ) -> None:
-        """Set a pair's distances and travel at some samples; NaN or 0 elsewhere until set."""
-        if key not in self.travels:
-            self.travels[key] = np.zeros(self.count)
-        self.travels[key][samples] = travel
-        if key not in self.distances:
-            self.distances[key] = np.full(self.count, np.nan)
-        self.distances[key][samples] = distances
-        if links is not None:
-            if key not in self.links:
-                self.links[key] = np.full(self.count, -1, dtype=np.int64)
-            self.links[key][samples] = links
-
-    def refined(self, finer: _Clearances, samples: IntArray, near: IntArray) -> IntArray:
-        """Merge measurements at further samples; returns all samples in order."""
-        merged = np.union1d(samples, near)
-        old, new = np.searchsorted(merged, samples), np.searchsorted(merged, near)
-        for key, values in self.distances.items():
-            whole = np.full(len(merged), np.nan)
-            whole[old] = values
-            whole[new] = finer.distances.get(key, np.nan)
-            self.distances[key] = whole
-        for key, values in self.links.items():
-            indices = np.full(len(merged), -1, dtype=np.int64)
-            indices[old] = values
-            indices[new] = finer.links.get(key, -1)
-            self.links[key] = indices
-        follows = np.diff(near, prepend=-2) == 1  # the others' travel is since an earlier one
-        for key, values in self.travels.items():
-            travel = np.zeros(len(merged))
-            travel[old] = values
-            if key in finer.travels:
-                travel[new[follows]] = finer.travels[key][follows]
-            self.travels[key] = travel
-        self.count = len(merged)
-        return merged
-
-    def dips(self) -> dict[tuple[str, str], FloatArray]:
-        """By how much each distance may be smaller before the next sample than at both [m].
-
-        Two bodies that are d1 and d2 apart at the ends of an interval in which they move by s
-        against each other are at least (d1 + d2 - s) / 2 apart in it.
-        """
-        return {
-            key: np.nan_to_num((self.travels[key][1:] - np.abs(np.diff(values))) / 2)
-            for key, values in self.distances.items()
-        }
 
 
 class CoalClearance:
@@ -124,13 +60,27 @@ class CoalClearance:
         objects: Sequence[ObjectRecord],
         attachments: Sequence[AttachmentRecord],
         cutoff: float,
+        measured: Callable[[int], MeasuredClearance | None] = lambda _: None,
     ) -> Signals:
-        """The same signals with `clearances` and `clearance_links` filled in."""
+        """The same signals with `clearances` and `clearance_links` filled in.
+
+        Args:
+            signals: The recording of the run.
+            objects: All objects of the run.
+            attachments: All attachments of the run.
+            cutoff: Larger distances are reported as the cutoff [m].
+            measured: What `measured_parts` found in a part of the run, or None.
+        """
         count = len(signals.times)
         if not count:
             return replace(signals, clearance_cutoff=cutoff)
-        samples = knots(signals.times, objects, attachments)
-        found = self._measured(at_samples(signals, samples), objects, attachments, cutoff)
+        motion = Motion.of(signals)
+        samples = knots(motion.times, objects, attachments)
+        parts = [
+            measured(number) or self._measured(motion.at(part), objects, attachments, cutoff)
+            for number, part in reversed([*enumerate(parts_of_run(motion.times, samples))])
+        ]  # the last ones first: others may still be measured by another process
+        found = MeasuredClearance.joined(parts[::-1])
         if not found.distances:
             return replace(signals, clearance_cutoff=cutoff)
         near = np.union1d(
@@ -138,12 +88,12 @@ class CoalClearance:
             inside_of(samples, largest_dip(found.dips()) > LARGEST_ERROR),
         )
         if len(near):
-            finer = self._measured(at_samples(signals, near), objects, attachments, cutoff)
+            finer = self._measured(motion.at(near), objects, attachments, cutoff)
             samples = found.refined(finer, samples, near)
         distances = {
             key: between(samples, values, count) for key, values in found.distances.items()
         }
-        self._look_between(distances, found, samples, signals, objects, attachments, cutoff)
+        self._look_between(distances, found, samples, motion, objects, attachments, cutoff)
         links = {
             key: nearest_measured(samples, values, distances[key], cutoff)
             for key, values in found.links.items()
@@ -152,12 +102,27 @@ class CoalClearance:
             signals, clearances=distances, clearance_links=links, clearance_cutoff=cutoff
         )
 
+    def measured_parts(
+        self,
+        motion: Motion,
+        objects: Sequence[ObjectRecord],
+        attachments: Sequence[AttachmentRecord],
+        cutoff: float,
+        numbers: range,
+    ) -> dict[int, MeasuredClearance]:
+        """Distances in complete parts of a run that goes on, by the numbers of the parts."""
+        parts = parts_of_run(motion.times, knots(motion.times, objects, attachments))
+        return {
+            number: self._measured(motion.at(parts[number]), objects, attachments, cutoff)
+            for number in numbers
+        }
+
     def _look_between(
         self,
         distances: Mapping[tuple[str, str], FloatArray],
-        found: _Clearances,
+        found: MeasuredClearance,
         samples: IntArray,
-        signals: Signals,
+        motion: Motion,
         objects: Sequence[ObjectRecord],
         attachments: Sequence[AttachmentRecord],
         cutoff: float,
@@ -168,48 +133,46 @@ class CoalClearance:
         if not len(fast):
             return
         owners, shares = parts_of(samples[fast], dips[fast])
-        finer = self._measured(interpolated(signals, owners, shares), objects, attachments, cutoff)
+        finer = self._measured(motion.between(owners, shares), objects, attachments, cutoff)
         for key, values in finer.distances.items():
             absent = np.isnan(distances[key][owners])
             np.fmin.at(distances[key], owners, np.where(absent, np.nan, values))
 
     def distances(
         self,
-        signals: Signals,
+        motion: Motion,
         objects: Sequence[ObjectRecord],
         attachments: Sequence[AttachmentRecord],
         cutoff: float,
     ) -> Mapping[tuple[str, str], FloatArray]:
         """Distances at every given sample, by pair as in `Signals.clearances`."""
-        return self._measured(signals, objects, attachments, cutoff).distances
+        return self._measured(motion, objects, attachments, cutoff).distances
 
     def _measured(
         self,
-        signals: Signals,
+        motion: Motion,
         objects: Sequence[ObjectRecord],
         attachments: Sequence[AttachmentRecord],
         cutoff: float,
-    ) -> _Clearances:
+    ) -> MeasuredClearance:
         """Distances at every given sample."""
-        found = _Clearances(len(signals.times))
-        links = LinkPoses(self.description, signals.joint_positions)
+        found = MeasuredClearance(len(motion.times))
+        links = LinkPoses(self.description, motion.joint_positions)
         tracks = {
-            record.name: object_track(record, attachments, signals, links) for record in objects
+            record.name: object_track(record, attachments, motion, links) for record in objects
         }
         shapes = {record.name: tracked_shapes(record.name, record.shapes) for record in objects}
         self._robot_to_itself(found, links, cutoff)
         for record in objects:
-            there = tracks[record.name].present & ~_held(record.name, attachments, signals)
+            there = tracks[record.name].present & ~_held(record.name, attachments, motion)
             self._robot_to_object(
                 found, links, record, tracks[record.name], shapes[record.name], there, cutoff
             )
         for attachment in attachments:
-            self._held_to_objects(
-                found, links, attachment, objects, tracks, shapes, signals, cutoff
-            )
+            self._held_to_objects(found, links, attachment, objects, tracks, shapes, motion, cutoff)
         return found
 
-    def _robot_to_itself(self, found: _Clearances, links: LinkPoses, cutoff: float) -> None:
+    def _robot_to_itself(self, found: MeasuredClearance, links: LinkPoses, cutoff: float) -> None:
         names = list(self._shapes)
         pairs: list[ShapePair] = []
         for later, second in enumerate(names):
@@ -223,7 +186,7 @@ class CoalClearance:
 
     def _robot_to_object(
         self,
-        found: _Clearances,
+        found: MeasuredClearance,
         links: LinkPoses,
         record: ObjectRecord,
         track: BodyTrack,
@@ -244,41 +207,41 @@ class CoalClearance:
 
     def _held_to_objects(
         self,
-        found: _Clearances,
+        found: MeasuredClearance,
         links: LinkPoses,
         attachment: AttachmentRecord,
         objects: Sequence[ObjectRecord],
         tracks: Mapping[str, BodyTrack],
         shapes: Mapping[str, Sequence[TrackedShape]],
-        signals: Signals,
+        motion: Motion,
         cutoff: float,
     ) -> None:
         """Distances of an attached object: in the physics, and as assumed by the planning scene."""
-        times = signals.times
+        times = motion.times
         during = (times >= attachment.start_time) & (times <= attachment.end_time)
         believed = carried_track(link_track(links, attachment.link), attachment.pose_in_link)
         held: dict[str, BodyTrack] = {attachment.object: believed}
         for name in (attachment.object, attachment.represents):
-            if name in signals.object_poses and name in tracks:
+            if name in motion.object_poses and name in tracks:
                 held[name] = tracks[name]
         same = {attachment.object, attachment.represents}
         for name, track in held.items():
             for record in objects:
                 other = tracks[record.name]
                 there = during & track.present & other.present
-                there &= ~_held(record.name, (attachment,), signals)
+                there &= ~_held(record.name, (attachment,), motion)
                 if record.name in same or not there.any():
                     continue
                 seen = relative_track(track.part(there), other.part(there))
                 pairs = pairs_between(shapes.get(name, ()), shapes[record.name], seen)
                 if pairs:
                     distances, _ = smallest_distances(pairs, cutoff)
-                    moved = largest_travel(pairs)
+                    moved = largest_travel(pairs, cutoff)
                     found.put((name, record.name), there, distances, None, moved)
 
     def _measure(
         self,
-        found: _Clearances,
+        found: MeasuredClearance,
         key: tuple[str, str],
         there: BoolArray,
         pairs: Sequence[ShapePair],
@@ -286,7 +249,7 @@ class CoalClearance:
     ) -> None:
         distances, which = smallest_distances(pairs, cutoff)
         of_pair = np.array([self._index[pair.first.body] for pair in pairs] + [-1])
-        found.put(key, there, distances, of_pair[which], largest_travel(pairs))
+        found.put(key, there, distances, of_pair[which], largest_travel(pairs, cutoff))
 
     def _is_self_pair(self, first: str, second: str) -> bool:
         robot = self._robot
@@ -300,9 +263,9 @@ class CoalClearance:
         )
 
 
-def _held(name: str, attachments: Sequence[AttachmentRecord], signals: Signals) -> BoolArray:
+def _held(name: str, attachments: Sequence[AttachmentRecord], motion: Motion) -> BoolArray:
     """Samples in which an object, or the object that represents it, is attached."""
-    times = signals.times
+    times = motion.times
     held = np.zeros(len(times), dtype=bool)
     for attachment in attachments:
         if name in (attachment.object, attachment.represents):

@@ -15,7 +15,7 @@ from harness.observation.body_tracks import (
     relative_track,
 )
 from harness.observation.nearest import ShapePair, pairs_between, smallest_distances
-from harness.observation.sampled_clearance import at_samples, between, knots
+from harness.observation.sampled_clearance import between, knots
 from harness.planning.model.robot_model import RobotModel
 from harness.recording.run import Finding, Pair, Run, Signals
 from harness.robot.description import RobotDescription
@@ -36,8 +36,7 @@ def with_link_overlaps(signals: Signals, description: RobotDescription) -> Signa
     if not count:
         return signals
     samples = knots(signals.times, (), ())
-    measured = at_samples(signals, samples)
-    moving = LinkPoses(description, measured.joint_positions)
+    moving = LinkPoses(description, signals.joint_positions[samples])
     overlaps: dict[Pair, FloatArray] = {}
     for pair, pairs in _pairs_apart_by_design(description, moving):
         distances, _ = smallest_distances(pairs, 0.0)

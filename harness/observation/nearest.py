@@ -11,10 +11,13 @@ import coal
 import numpy as np
 
 from harness.core.types import FloatArray, IntArray
-from harness.observation.body_tracks import BodyTrack, TrackedShape, travel
+from harness.observation.body_tracks import BodyTrack, TrackedShape, centers_of, travels
 
 STILL = 1e-6
 """Relative travel below which a distance is not measured again [m]."""
+
+LOOKS = 8
+"""Samples from one at which the gap of ball and box is computed to the next."""
 
 _FIRST_CHUNK, _LARGEST_CHUNK = 8, 512  # samples looked ahead at once
 
@@ -27,13 +30,16 @@ class ShapePair:
         first: A shape of the moving body.
         second: A shape of the other.
         seen: Track of the first's body as seen from the second's, shape (N, ...).
-        travel: What `travel` says of `first`, shape (N,).
+        travel: What `travels` says of `first`, shape (N,).
+        least: A lower bound of the distance [m], shape (N,): the gap between the ball about `first`
+            and the box about `second` at an earlier sample, less the travel since.
     """
 
     first: TrackedShape
     second: TrackedShape
     seen: BodyTrack
     travel: FloatArray
+    least: FloatArray
 
     def distance(self, sample: int) -> float:
         """Signed distance at a sample [m]."""
@@ -49,20 +55,38 @@ _REQUEST, _RESULT = coal.DistanceRequest(), coal.DistanceResult()
 def pairs_between(
     first: Sequence[TrackedShape], second: Sequence[TrackedShape], seen: BodyTrack
 ) -> list[ShapePair]:
-    """Every shape of one body against every shape of another."""
-    return [
-        ShapePair(a, b, seen, travelled)
-        for a in first
-        for travelled in [travel(seen, a)]
-        for b in second
-    ]
+    """Every shape of one body against every shape of another.
+
+    Args:
+        first: The shapes of the moving body.
+        second: The shapes of the other.
+        seen: Track of the first body as seen from the second.
+    """
+    if not first or not second:
+        return []
+    centers = centers_of(seen, first)
+    travelled = travels(seen, centers, np.array([shape.radius for shape in first]))
+    since = travelled - np.repeat(travelled[::LOOKS], LOOKS, axis=0)[: len(travelled)]
+    pairs: list[ShapePair] = []
+    for column, a in enumerate(first):
+        for b in second:
+            gaps = np.repeat(b.gap(centers[::LOOKS, :, column]), LOOKS)[: len(travelled)]
+            least = gaps - since[:, column] - a.radius
+            pairs.append(ShapePair(a, b, seen, travelled[:, column], least))
+    return pairs
 
 
-def largest_travel(pairs: Sequence[ShapePair]) -> FloatArray:
-    """The most that any of several pairs moves since the sample before [m], shape (N,)."""
+def largest_travel(pairs: Sequence[ShapePair], cutoff: float) -> FloatArray:
+    """The most that a pair moves since the sample before [m], shape (N,).
+
+    Pairs count where they may come nearer than the cutoff in between: two bodies that are d1 and d2
+    apart and move by s against each other are at least (d1 + d2 - s) / 2 apart.
+    """
     moved = np.zeros(len(pairs[0].travel))
     for pair in pairs:
-        moved[1:] = np.maximum(moved[1:], np.diff(pair.travel))
+        steps = np.diff(pair.travel)
+        is_near = pair.least[1:] + pair.least[:-1] - steps < 2 * cutoff
+        moved[1:] = np.maximum(moved[1:], np.where(is_near, steps, 0.0))
     return moved
 
 
@@ -83,7 +107,7 @@ def smallest_distances(pairs: Sequence[ShapePair], cutoff: float) -> tuple[Float
     count = len(pairs[0].travel)
     nearest = np.full(count, cutoff)
     which = np.full(count, -1, dtype=np.int64)
-    first = np.array([pair.distance(0) for pair in pairs])
+    first = np.array([pair.distance(0) if pair.least.min() < cutoff else np.inf for pair in pairs])
     total = np.array([pair.travel[-1] for pair in pairs])
     near = np.flatnonzero(first - total < cutoff)
     if not len(near):

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
 from harness.core.types import BoolArray, FloatArray, IntArray
-from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
+from harness.recording.run import AttachmentRecord, ObjectRecord
 
 SPACING = 0.005
 """Time between samples that are measured [s]; linear in between.
@@ -25,6 +25,12 @@ Where bodies move so fast that it could be, by the bound of their motion, every 
 where it could be between two samples too, positions between them are interpolated, and the smallest
 distance counts for the sample before.
 """
+PART = 5.0
+"""Time of a run that is measured at once [s]."""
+
+AROUND = 2
+"""Samples before and after each coming and going that are measured."""
+
 MOST_PARTS = 200
 """Positions between two samples: enough for 800 m/s at 1 ms."""
 
@@ -34,17 +40,53 @@ def knots(
 ) -> IntArray:
     """Samples to measure: one every SPACING, and those around every coming and going."""
     count = len(times)
-    step = float(times[1] - times[0]) if count > 1 else SPACING
-    stride = max(1, round(SPACING / step))
     chosen = np.zeros(count, dtype=bool)
-    chosen[::stride] = True
+    chosen[:: _stride(_timestep(times))] = True
     chosen[-1] = True
     changes = [time for record in objects for span in record.present for time in span]
     changes += [time for held in attachments for time in (held.start_time, held.end_time)]
     for time in changes:
         middle = int(np.searchsorted(times, time))
-        chosen[max(0, middle - 2) : middle + 3] = True
+        chosen[max(0, middle - AROUND) : middle + AROUND + 1] = True
     return np.flatnonzero(chosen)
+
+
+def complete_parts(count: int, timestep: float) -> int:
+    """The number of the parts that do not change any more while a run goes on.
+
+    What happens after the last sample changes `AROUND` samples before it, as `knots` says.
+
+    Args:
+        count: The number of samples so far.
+        timestep: Time from one sample to the next [s].
+    """
+    return max(0, count - 2 - AROUND) // _part_length(timestep)
+
+
+def parts_of_run(times: FloatArray, samples: IntArray) -> list[IntArray]:
+    """The measured samples of each part of `PART` seconds; the parts share the samples between.
+
+    Each part is measured as if the run began with it, so that it does not matter when, and in which
+    process, it is measured.
+    """
+    length = _part_length(_timestep(times))
+    bounds = [*range(0, len(times) - 1, length), len(times) - 1] if len(times) > 1 else [0, 0]
+    at = np.searchsorted(samples, bounds)
+    return [samples[first : last + 1] for first, last in pairwise(at.tolist())]
+
+
+def _part_length(timestep: float) -> int:
+    """The number of samples from the beginning of a part to its end."""
+    return _stride(timestep) * round(PART / SPACING)
+
+
+def _stride(timestep: float) -> int:
+    """The number of samples from one that is measured to the next."""
+    return max(1, round(SPACING / timestep))
+
+
+def _timestep(times: FloatArray) -> float:
+    return float(times[1] - times[0]) if len(times) > 1 else SPACING
 
 
 def around_smallest(
@@ -77,38 +119,6 @@ def parts_of(samples: IntArray, dips: FloatArray) -> tuple[IntArray, FloatArray]
     owners = np.repeat(samples, counts)
     shares = [np.arange(1, count + 1) / (count + 1) for count in counts.tolist()]
     return owners, np.concatenate(shares)
-
-
-def interpolated(signals: Signals, owners: IntArray, shares: FloatArray) -> Signals:
-    """The signals that distances are measured from, between samples; linear in between."""
-
-    def mixed(rows: FloatArray) -> FloatArray:
-        share = shares.reshape(-1, *([1] * (rows.ndim - 1)))
-        return (1 - share) * rows[owners] + share * rows[owners + 1]
-
-    def mixed_poses(poses: FloatArray) -> FloatArray:
-        near = np.sum(poses[owners, 3:] * poses[owners + 1, 3:], axis=1) >= 0
-        after = np.where(near[:, None], poses[owners + 1, 3:], -poses[owners + 1, 3:])
-        turned = (1 - shares[:, None]) * poses[owners, 3:] + shares[:, None] * after
-        turned = turned / np.linalg.norm(turned, axis=1, keepdims=True)
-        return np.hstack([mixed(poses[:, :3]), turned])
-
-    return replace(
-        signals,
-        times=mixed(signals.times),
-        joint_positions=mixed(signals.joint_positions),
-        object_poses={name: mixed_poses(poses) for name, poses in signals.object_poses.items()},
-    )
-
-
-def at_samples(signals: Signals, samples: IntArray) -> Signals:
-    """The signals that distances are measured from, at a part of their samples."""
-    return replace(
-        signals,
-        times=signals.times[samples],
-        joint_positions=signals.joint_positions[samples],
-        object_poses={name: poses[samples] for name, poses in signals.object_poses.items()},
-    )
 
 
 def between(samples: IntArray, distances: FloatArray, count: int) -> FloatArray:

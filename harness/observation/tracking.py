@@ -13,8 +13,9 @@ from harness.assertions.joints import gripper_joints
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, NotReached
 from harness.core.pose_arrays import compose
-from harness.core.types import FloatArray, IntArray
+from harness.core.types import FloatArray
 from harness.ports.kinematics import Kinematics
+from harness.recording.motion import Motion
 from harness.recording.run import AttachmentRecord, Finding, Pair, Run, Signals, StepRecord
 from harness.recording.step_results import AllowedCollisions
 
@@ -27,7 +28,7 @@ GRIP_GAP = 0.05
 DIFFERENT = 1e-3
 """Planned and actual clearance that differ by more are reported step by step [m]."""
 
-Distances = Callable[[Signals], Mapping[Pair, FloatArray]]
+Distances = Callable[[Motion], Mapping[Pair, FloatArray]]
 
 
 def plan_against_physics(run: Run, planned: Signals, distances: Distances) -> tuple[Finding, ...]:
@@ -136,7 +137,7 @@ def _clearances(run: Run, planned: Signals, distances: Distances) -> tuple[Findi
     if not moves:
         return ()
     rows = np.array([row for _, (row, _) in moves], dtype=np.int64)
-    expectations = distances(_rows_of(planned, rows))
+    expectations = distances(Motion.of(planned).at(rows))
     found: list[Finding] = []
     compared: list[tuple[float, Finding]] = []
     for place, (step, (row, pair)) in enumerate(moves):
@@ -177,16 +178,6 @@ def _nearest(step: StepRecord, near: Mapping[Pair, FloatArray]) -> tuple[int, Pa
         if best is None or float(part[row]) < best[0]:
             best = float(part[row]), step.start_index + row, pair
     return None if best is None else (best[1], best[2])
-
-
-def _rows_of(signals: Signals, rows: IntArray) -> Signals:
-    """A few samples."""
-    return replace(
-        signals,
-        times=signals.times[rows],
-        joint_positions=signals.joint_positions[rows],
-        object_poses={name: poses[rows] for name, poses in signals.object_poses.items()},
-    )
 
 
 def _allowed_contacts(run: Run) -> tuple[Finding, ...]:

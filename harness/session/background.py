@@ -37,7 +37,7 @@ class Background(Generic[T]):
             despite_threads: Whether a process with threads is forked too. A lock that another
                 thread holds then stays locked in the fork, so the value may never come.
         """
-        self._function = function
+        self._function: Callable[[Activity], T] | None = function
         self._pid = 0
         if not despite_threads and len(list(_TASKS.iterdir())) > 1:
             return
@@ -49,6 +49,12 @@ class Background(Generic[T]):
             self._reading.close()  # so that writing fails once the parent is gone
             _compute(function, writing)
         writing.close()
+        self._function = None  # so that this process does not keep what it refers to
+
+    @property
+    def is_apart(self) -> bool:
+        """Whether another process computes the value."""
+        return self._pid > 0
 
     def has_message(self) -> bool:
         """Whether the value, its failure or its progress is known, so that none is waited for."""
@@ -61,7 +67,7 @@ class Background(Generic[T]):
             HarnessError: The process ended without a value.
             Exception: What the function raised.
         """
-        if not self._pid:
+        if self._function is not None:
             return self._function(activity)
         try:
             while True:

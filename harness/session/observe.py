@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from harness.assertions.facts import remembered_facts
 from harness.engine.execute import Execution
@@ -13,6 +15,9 @@ from harness.observation.tracking import as_commanded, plan_against_physics
 from harness.recording.run import Finding, Run, Signals
 from harness.session.prepare import Prepared
 
+if TYPE_CHECKING:
+    from harness.observation.measured_clearance import MeasuredClearance
+
 
 def with_believed_poses(prepared: Prepared, execution: Execution, recorded: Signals) -> Signals:
     """The recording with the poses of objects that only the planner knows."""
@@ -21,8 +26,18 @@ def with_believed_poses(prepared: Prepared, execution: Execution, recorded: Sign
 
 
 @remembered_facts()
-def observed_run(prepared: Prepared, executed: Run) -> Run:
-    """The run with distances, contacts, and what physics and plan disagree about."""
+def observed_run(
+    prepared: Prepared,
+    executed: Run,
+    measured: Callable[[int], MeasuredClearance | None] = lambda _: None,
+) -> Run:
+    """The run with distances, contacts, and what physics and plan disagree about.
+
+    Args:
+        prepared: The scenario that was executed.
+        executed: What was executed and recorded.
+        measured: The distances in a part of the run that were measured while it went on.
+    """
     from harness.observation.clearance import CoalClearance
     from harness.observation.link_overlaps import link_overlap_findings, with_link_overlaps
     from harness.observation.looks_differ import looks_differ
@@ -33,6 +48,7 @@ def observed_run(prepared: Prepared, executed: Run) -> Run:
         executed.objects,
         executed.attachments,
         prepared.observations.recorded_cutoff,
+        measured,
     )
     run = replace(executed, signals=with_link_overlaps(signals, description))
     signals, findings = _compared_with_plan(prepared, run)
@@ -59,7 +75,7 @@ def _compared_with_plan(prepared: Prepared, run: Run) -> tuple[Signals, tuple[Fi
     findings = plan_against_physics(
         run,
         planned,
-        lambda signals: observer.distances(signals, run.objects, run.attachments, cutoff),
+        lambda motion: observer.distances(motion, run.objects, run.attachments, cutoff),
     )
     findings = (*findings, *coupling_findings(run, prepared.program.description))
     if not prepared.observations.planned_clearances:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
 
 from harness.cell.program import Program, ProgramStep
+from harness.engine.execute import StepEvent
 from harness.ports.simulation import Simulator
 from harness.recording.run import StepRecord
 from harness.recording.store import StoredRun
@@ -40,7 +40,7 @@ class Progress:
     def step(
         self,
         simulator: Simulator,
-        kind: Literal["step_started", "step_finished"],
+        kind: StepEvent,
         step: ProgramStep,
         record: StepRecord | None,
     ) -> None:

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import gc
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 from harness.assertions.judge import judge
+from harness.cell.program import ProgramStep
 from harness.core.errors import HarnessError, SpecError
-from harness.engine.execute import execute_program
+from harness.engine.execute import ProgramExecution, StepEvent
 from harness.ports.scene import Touch
 from harness.recording.digest import digest
-from harness.recording.run import Run
+from harness.recording.run import Run, StepRecord
 from harness.recording.store import PAGE, StoredRun
 from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.terminal import verdict_warnings
+from harness.session.distances_ahead import DistancesAhead
 from harness.session.external import ExternalSession, MakeSession, no_programs
 from harness.session.observe import observed_run, with_believed_poses
 from harness.session.pictures import Pictures
@@ -53,13 +55,15 @@ def run_case(
     progress = Progress(notify, prepared.program)
     progress.compiled()
     try:
-        session = make_session(prepared, begun.simulator)
-        executed = _executed(request, begun, clock, progress, session)
-        refusal = session.refusal()
-        del begun, session  # the simulator is the largest object, and the run holds its recording
-        gc.collect()  # parts of the simulator refer to each other
-        with Pictures(request, prepared, executed) as pictures:
-            judged = _judged(request, executed, prepared, pictures, clock, progress)
+        with ExitStack() as stack:
+            ahead = stack.enter_context(DistancesAhead(prepared))
+            session = make_session(prepared, begun.simulator)
+            executed = _executed(request, begun, clock, progress, session, ahead)
+            refusal = session.refusal()
+            del begun, session  # the simulator is the largest object; the run holds its recording
+            gc.collect()  # parts of the simulator refer to each other
+            pictures = stack.enter_context(Pictures(request, prepared, executed))
+            judged = _judged(request, executed, prepared, pictures, clock, progress, ahead)
             if refusal and judged.outcome != "passed":
                 judged = replace(judged, outcome="error")
             result = _result(request, prepared, judged, overlaps, draw, refusal)
@@ -72,21 +76,33 @@ def run_case(
 
 
 def _executed(
-    request: RunRequest, start: Start, clock: Clock, progress: Progress, session: ExternalSession
+    request: RunRequest,
+    start: Start,
+    clock: Clock,
+    progress: Progress,
+    session: ExternalSession,
+    ahead: DistancesAhead,
 ) -> Run:
     """Plan and simulate the steps, and record what happens."""
     prepared, simulator, _ = start
     progress.activity("setting up planning and physics")
+
+    def on_step(kind: StepEvent, step: ProgramStep, record: StepRecord | None) -> None:
+        progress.step(simulator, kind, step, record)
+        ahead.look(program_execution, simulator)
+
     with clock.part("execute"):
-        execution = execute_program(
+        program_execution = ProgramExecution(
             prepared.program,
             prepared.scene,
             prepared.kinematics,
             prepared.planner,
             simulator,
-            partial(progress.step, simulator),
+            on_step,
             external=session,
         )
+        program_execution.run(prepared.program.steps)
+        execution = program_execution.finish()
     # what is not physics in execution is planning
     executed = clock.seconds.pop("execute")
     clock.seconds["plan"] = max(0.0, executed - clock.seconds.get("simulate", 0.0))
@@ -107,11 +123,12 @@ def _judged(
     pictures: Pictures,
     clock: Clock,
     progress: Progress,
+    ahead: DistancesAhead,
 ) -> StoredRun:
     """The observed run with its verdicts; a strict request fails with a warning."""
     progress.activity("measuring distances and contacts")
     with clock.part("judge"):
-        run = observed_run(prepared, executed)
+        run = observed_run(prepared, executed, ahead.part)
     with clock.part("render"):
         run = pictures.captured(run, progress.activity)
     progress.activity("judging")

@@ -164,6 +164,10 @@ class Recording:
         """Time between samples [s]."""
         return float(self._physics.model.opt.timestep)
 
+    def times(self) -> FloatArray:
+        """Simulation time of every sample [s], shape (N,)."""
+        return np.arange(self.count, dtype=np.float64) * self.timestep
+
     def joint_positions(self, first: int) -> FloatArray:
         """Measured positions from a sample on, description order, shape (N, n)."""
         return self._qpos[first : self.count, self._physics.qpos]
@@ -230,7 +234,7 @@ class Recording:
         frames = self._sensors[:count, :frame_end].reshape(count, -1, 7)
         contacts = self._contacts.forces(0, count)
         return Signals(
-            times=np.arange(count, dtype=np.float64) * self.timestep,
+            times=self.times(),
             joint_positions=self.joint_positions(0).copy(),
             joint_velocities=self.joint_velocities(0).copy(),
             joint_efforts=efforts,

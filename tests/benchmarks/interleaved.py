@@ -1,8 +1,22 @@
 """Timings taken in turns, so that a busy machine slows all of them alike."""
 
+import os
 import statistics
 import time
 from collections.abc import Callable, Mapping
+from pathlib import Path
+
+
+def with_bytecode(folder: Path) -> dict[str, str]:
+    """The environment of a command that finds its modules compiled, as an installation does.
+
+    Without bytecode, importing the modules of a run takes half as long again.
+
+    Args:
+        folder: Keeps the bytecode from one command to the next.
+    """
+    kept = {key: word for key, word in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
+    return {**kept, "PYTHONPYCACHEPREFIX": str(folder)}
 
 
 def median_seconds(

@@ -6,24 +6,27 @@ import sys
 import pytest
 
 from harness.core.resources import data_folder
-from tests.benchmarks.interleaved import median_seconds
+from tests.benchmarks.interleaved import median_seconds, with_bytecode
 
 FLAGSHIP = data_folder("scenarios") / "lessons/03_ur_sixteen_steps.scenario.yaml"
 GOALS = {"harness --help": 5, "harness check": 15}
 REPETITIONS = 9
 
 
-def command(*arguments):
-    return lambda: subprocess.run([sys.executable, *arguments], check=True, capture_output=True)
+def command(environment, *arguments):
+    return lambda: subprocess.run(
+        [sys.executable, *arguments], check=True, capture_output=True, env=environment
+    )
 
 
 @pytest.mark.benchmark
-def test_start_up_of_help_and_check_against_a_bare_interpreter(print_row):
+def test_start_up_of_help_and_check_against_a_bare_interpreter(print_row, tmp_path):
+    environment = with_bytecode(tmp_path)
     seconds = median_seconds(
         {
-            "python -c pass": command("-c", "pass"),
-            "harness --help": command("-m", "harness.cli", "--help"),
-            "harness check": command("-m", "harness.cli", "check", str(FLAGSHIP)),
+            "python -c pass": command(environment, "-c", "pass"),
+            "harness --help": command(environment, "-m", "harness.cli", "--help"),
+            "harness check": command(environment, "-m", "harness.cli", "check", str(FLAGSHIP)),
         },
         REPETITIONS,
     )

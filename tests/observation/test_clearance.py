@@ -8,7 +8,8 @@ import pytest
 from harness.core.geometry import Box, Cylinder, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.observation.clearance import CoalClearance
-from harness.observation.sampled_clearance import LARGEST_ERROR
+from harness.observation.sampled_clearance import LARGEST_ERROR, complete_parts
+from harness.recording.motion import Motion
 from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
 from harness.robot.forward_kinematics import LinkPoses, quats_wxyz
 from tests.planning.lesson import TCP, Cell, at, boxes, tables, thing, ur
@@ -163,6 +164,39 @@ def test_a_held_object_is_measured_as_believed_and_as_it_is():
     )
 
 
+@pytest.mark.parametrize("count", [11_000, 11_004])
+def test_parts_that_are_measured_while_the_run_goes_on_are_those_of_the_whole_run(count):
+    """A box appears when the second part has just ended; an object is held across parts."""
+    cell = Cell(ur("ur3e"), with_tables=False)
+    share = 0.5 - 0.5 * np.cos(np.arange(count) * 1e-3)
+    up, low = cell.named("up"), np.array([0.6, -0.5, 0.9, -1.9, -1.57, 0.4])
+    positions = np.array([cell.with_arm(up + part * (low - up)) for part in share])
+    whole = signals(positions, {})
+    given = replace(whole, times=np.arange(count) * 1e-3)
+    post = thing("post", at(0.3, 0.35, 1.2), Shape(Box((0.05, 0.05, 0.3))))
+    late = thing("late", at(-0.3, 0.35, 1.2), Shape(Box((0.05, 0.05, 0.3))))
+    carried = thing("carried", at(9, 9, 9), Shape(Sphere(0.02)))
+    standing = [record(post, in_simulation=False), record(carried, in_simulation=False)]
+    appears = 10.003
+    objects = [*standing, record(late, in_simulation=False, present=((appears, 1e9),))]
+    held = AttachmentRecord("carried", TCP, 4.9, 1e9, tuple(at(0, 0, 0).as_vector()), "")
+    observer = CoalClearance(cell.description)
+    parts = {}
+    for samples, known in ((5_200, standing), (10_004, standing)):
+        motion = Motion.of(given).at(np.arange(samples))
+        numbers = range(len(parts), complete_parts(samples, 1e-3))
+        parts |= observer.measured_parts(motion, known, [held], CUTOFF, numbers)
+    assert list(parts) == [0, 1]
+    after = observer.observe(given, objects, [held], CUTOFF)
+    ahead = observer.observe(given, objects, [held], CUTOFF, parts.get)
+    assert after.clearances.keys() == ahead.clearances.keys()
+    assert {("robot", "late"), ("carried", "post")} <= after.clearances.keys()
+    for key, distances in after.clearances.items():
+        assert np.array_equal(distances, ahead.clearances[key], equal_nan=True)
+        if key in after.clearance_links:
+            assert np.array_equal(after.clearance_links[key], ahead.clearance_links[key])
+
+
 def test_planning_boxes_stand_where_they_were_added():
     cell = Cell(ur("ur3e"), with_tables=False)
     tip = cell.kinematics.link_pose(cell.with_arm(cell.named("up")), TCP).translation
@@ -204,7 +238,7 @@ def closest_pass(scene, name, speed, offset, step=0.001, duration=0.2):
     found = observer.observe(given, records, [], 0.5).clearances["robot", name]
     fine = np.arange(middle - 0.3 / speed, middle + 0.3 / speed, 2e-5 / speed)
     observer, given, records = observed(fine)
-    true = observer.distances(given, records, [], 0.5)["robot", name]
+    true = observer.distances(Motion.of(given), records, [], 0.5)["robot", name]
     return float(np.nanmin(found)), float(np.nanmin(true))
 
 
