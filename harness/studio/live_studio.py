@@ -137,7 +137,7 @@ class LiveStudio(ABC):
     def open(self, server: viser.ViserServer) -> None:
         """Show the cell in a server's scene, and begin."""
         self.server = server
-        self.view = SceneView(server, self.on_drag)
+        self.view = SceneView(server, self.on_drag, self.on_choose)
         self.show_cell()
         gc.collect()
         gc.freeze()  # what is loaded stays; to walk through it would take 60 ms every few edits
@@ -312,6 +312,10 @@ class LiveStudio(ABC):
     @abstractmethod
     def on_drag(self, client: int, phase: str, pose: SE3, name: str) -> None:
         """A handle was moved on a page; called in the server's thread."""
+
+    @abstractmethod
+    def on_choose(self, client: int, way: int) -> None:
+        """A ghost was clicked on a page; called in the server's thread."""
 
     # -- at once ------------------------------------------------------------------------------
 

@@ -80,8 +80,8 @@ class Session:
     on_defect: Callable[[], None]
     viewers: list[Viewer] = field(default_factory=list[Viewer])
     controller: str = ""
-    _jobs: queue.SimpleQueue[Callable[[], None] | None] = field(
-        default_factory=queue.SimpleQueue[Callable[[], None] | None]
+    _jobs: queue.SimpleQueue[Callable[[], object] | None] = field(
+        default_factory=queue.SimpleQueue[Callable[[], object] | None]
     )
     _last_panel: float = 0.0
     _thread: threading.Thread | None = None
@@ -97,7 +97,7 @@ class Session:
         if self._thread is not None:
             self._thread.join(timeout=5.0)
 
-    def post(self, job: Callable[[], None]) -> None:
+    def post(self, job: Callable[[], object]) -> None:
         """Let the cell's thread do something."""
         self._jobs.put(job)
 

@@ -75,6 +75,12 @@ class Studio(GoalActions):
         self._take_text(self.cell.document.without_object(name).text)
         return {}
 
+    def do_world(self, message: Message) -> Message:
+        """Load a world: a bundled name, or a file."""
+        self._refuse_mistakes()
+        self._take_text(self.cell.document.with_world(str(message["name"])).text)
+        return {}
+
     def do_handle(self, message: Message) -> Message:
         """Put a second handle on an object; an empty name takes it away."""
         name = str(message["name"])
