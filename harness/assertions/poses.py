@@ -107,7 +107,7 @@ def start_poses(run: Run, name: str) -> FloatArray:
     jumps = np.zeros(len(poses))
     jumps[1:] = np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1)
     for step in run.steps:
-        if step_class(step.verb).moves_objects and step.status != "not_reached":
+        if step_class(step.verb).moves_objects and step.status != "not reached":
             moved = slice(step.start_index, step.end_index + 1)
             change = step.result.find(SceneChange)
             is_moved = change is not None and name in (change.moved or ())

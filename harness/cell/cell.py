@@ -137,7 +137,7 @@ class Cell:
         """Leave a part of the step's result in its record, in place of an earlier one of its type.
 
         Args:
-            part: Of one of the types that `results` of the step's class lists.
+            part: The part; its type is one of `results` of the step's class.
 
         Raises:
             TypeError: The step's class does not list the type, so that a saved run would lose it.

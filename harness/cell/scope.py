@@ -17,6 +17,7 @@ from harness.language.poses import Pose
 from harness.language.units import in_si
 from harness.ports import LONGEST_RUN
 from harness.robot.description import RobotDescription
+from harness.robot.tree import is_rigid
 
 Prerequisite = Literal["robot", "world"]
 EVERYTHING: tuple[Prerequisite, ...] = ("robot", "world")
@@ -101,10 +102,11 @@ class Problems:
         self._found.setdefault(loc, locate(loc, message, hint))
 
     def add_in_text(self, loc: Loc, start: int, message: str, hint: str = "") -> None:
-        """Note a problem at a character of a text, from 0."""
-        self._found.setdefault(
-            (*loc, start), self._lines.problem_in_text(loc, start, 1, message, hint)
-        )
+        """Note a problem at a character of a text, from 0, that follows from robot and world."""
+        if not self._missing:
+            self._found.setdefault(
+                (*loc, start), self._lines.problem_in_text(loc, start, 1, message, hint)
+            )
 
     def check_unit(
         self, loc: Loc, unit: str, *, needs: tuple[Prerequisite, ...] = EVERYTHING
@@ -171,11 +173,19 @@ class Scope:
 
     # -- names --------------------------------------------------------------------------------
 
-    def check_frame(self, name: str, loc: Loc) -> None:
-        """`world`, a link, or an object."""
-        frames = ("world", *self.description.link_names)
+    def check_frame(self, name: str, loc: Loc, *, of: str = "") -> None:
+        """`world`, a link, or an object; not one in which the body `of` can never move."""
+        links = self.description.link_names
+        frames = ("world", *links)
         if name not in frames and name not in self.objects:
             self.problems.unknown(loc, "frame", name, (*frames, *self.objects))
+        are_links = name in links and of in links and name != "world"
+        if name == of or (are_links and is_rigid(self.description, name, of)):
+            self.problems.add(
+                loc,
+                f"'{of}' never moves in the frame '{name}': its pose there says nothing",
+                "name the frame of another body, or `world`",
+            )
 
     def check_link(self, name: str | None, loc: Loc) -> None:
         """A robot link."""

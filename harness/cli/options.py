@@ -23,7 +23,7 @@ from harness.cli.robot_options import ROBOT, add_robot_options
 IMPORTS = ("sdf", "scene", "srdf", "moveit")
 FORMATS = ("full", "short", "json", "github")
 BAGS = ("mcap", "sqlite3")
-DOUBTS = ("publishers", "tf", "frames", "steps")
+DOUBTS = ("publishers", "tf", "frames", "steps", "velocities")
 LISTS = (
     "robots",
     "worlds",
@@ -33,6 +33,7 @@ LISTS = (
     "planners",
     "pipelines",
     "ik-solvers",
+    "controllers",
     "world-formats",
     "reporters",
 )

@@ -42,7 +42,7 @@ BUILT_IN = {
     "expectation": "harness.expectations",
     "planner": "harness.planning.search.pipelines",
     "ik_solver": "harness.planning.ik.solvers",
-    "controller": "",
+    "controller": "harness.simulation.controllers",
     "robot": "",
     "world_format": "harness.world.formats",
     "reporter": "harness.reporting.reporters",
@@ -52,6 +52,7 @@ BUILT_IN = {
 NOUNS = {
     "planner": "planning pipeline",
     "ik_solver": "inverse kinematics solver",
+    "controller": "joint controller",
     "robot": "robot collection",
 }
 """What messages call the plug-ins of a kind whose key does not say it."""

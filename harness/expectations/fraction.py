@@ -44,7 +44,7 @@ class FractionCheck(Predicate):
         reporters = [
             (step, followed.fraction)
             for step in run.steps
-            if step.status != "not_reached"
+            if step.status != "not reached"
             and (followed := step.result.find(CartesianPathResult)) is not None
             and window.start <= max(step.end_index - 1, step.start_index) < window.stop
         ]

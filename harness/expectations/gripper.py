@@ -107,7 +107,7 @@ def _stalled(expected: bool, window: Window) -> MarginSignal:
     reported = np.full(len(run.signals.times), np.nan)
     for step in run.steps:
         outcome = step.result.find(GripperOutcome)
-        if step.status != "not_reached" and outcome is not None:
+        if step.status != "not reached" and outcome is not None:
             reported[max(step.end_index - 1, 0) :] = float(outcome.stalled)
     reported = window.cut(reported)
     if np.isnan(reported).all():

@@ -12,7 +12,7 @@ from harness.recording.plain import PlainError, from_plain
 from harness.recording.run import Floats, Pair
 
 StageName = Literal["reach", "inverse kinematics", "start state", "path", "time parameterisation"]
-StageStatus = Literal["passed", "failed", "not reached"]
+StageStatus = Literal["passed", "failed", "skipped"]
 
 STAGES: tuple[StageName, ...] = (
     "reach",

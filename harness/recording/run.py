@@ -16,7 +16,7 @@ from harness.core.quantity import distinct
 from harness.core.types import FloatArray, IntArray
 from harness.recording.commands import CommandRecord
 
-StepStatus = Literal["passed", "failed", "expected_error", "not_reached"]
+StepStatus = Literal["passed", "failed", "expected error", "not reached"]
 VerdictStatus = Literal["passed", "failed", "not reached", "not observable"]
 Outcome = Literal["passed", "failed", "invalid", "error"]
 Pair = tuple[str, str]

@@ -1,6 +1,6 @@
 """What steps report, as typed parts: those that verdicts read, and how a saved run gives them back.
 
-A part that nobody else reads is defined in the file of its step. The keys of `result` in run.json
+A part that only reports show is defined in the file of its step. The keys of `result` in run.json
 are the fields of all parts.
 """
 

@@ -45,6 +45,8 @@ def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescrip
         description = replace(description, start_state=start)
     if spec.ik_solver is not None:
         description = replace(description, ik_solver=spec.ik_solver)
+    if spec.joint_controller is not None:
+        description = replace(description, joint_controller=spec.joint_controller)
     for name, position in description.start_state.items():
         _within(description, name, position, "start_state")
     return description

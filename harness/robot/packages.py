@@ -78,7 +78,7 @@ class PackagePath:
         of descriptions has the robot's file.
 
         Args:
-            name: The package.
+            name: The name of the package.
             inside: The required path in it; empty for any.
 
         Raises:

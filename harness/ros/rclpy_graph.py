@@ -13,6 +13,7 @@ from typing import Any
 from harness.core.errors import Problem, SpecError
 from harness.ros.graph import Publisher, Reply, ServiceClient
 from harness.ros.interfaces import CANCEL, decoded, typestore
+from harness.ros.names import Names
 
 _PARTS = ("SendGoal", "GetResult")
 
@@ -103,6 +104,8 @@ class RclpyGraph:
             said = f"rclpy cannot be imported: {error}"
             raise SpecError([Problem("--adapter rclpy", 0, 0, said)]) from error
         self._say = say
+        self._published: set[str] = set()
+        self._subscribed: set[str] = set()
         self._context = rclpy.Context()
         rclpy.init(context=self._context, domain_id=domain)
         self._node = rclpy.create_node(node, context=self._context)
@@ -124,6 +127,7 @@ class RclpyGraph:
         if folder == "msg" and importlib.util.find_spec(package) is None:
             self._say(f"note: --adapter rclpy: {topic} is not published: {_advice(package)}")
             return _Silent()
+        self._published.add(topic)
         codec = self._codec(kind)
         profile = self._profile(latched, reliable, depth)
         return _Publisher(self._node.create_publisher(codec.ros_type, topic, profile), codec)
@@ -137,6 +141,7 @@ class RclpyGraph:
         latched: bool = False,
         reliable: bool = True,
     ) -> None:
+        self._subscribed.add(topic)
         codec, profile = self._codec(kind), self._profile(latched, reliable, 10)
 
         def take(content: Any) -> None:
@@ -157,6 +162,13 @@ class RclpyGraph:
     def client(self, name: str, kind: str) -> ServiceClient:
         service, request, response = self._service(kind)
         return _Client(self._node.create_client(service, name), request, response)
+
+    def names(self) -> tuple[Names, Names]:
+        node, own = self._node, Names.of(self._published, self._subscribed)
+        topics = [name for name, _ in node.get_topic_names_and_types()]
+        published = [n for n in topics if node.count_publishers(n) > (n in own.published)]
+        subscribed = [n for n in topics if node.count_subscribers(n) > (n in own.subscribed)]
+        return own, Names.of(published, subscribed)
 
     def spin(self, until: float) -> None:
         self._executor.spin_once(timeout_sec=0.0)

@@ -105,7 +105,8 @@ class RemoteArm:
         found = self._wait(lambda: any(a.is_ready for a in self._arms.values()), PATIENCE)
         if not found:
             required = " or ".join(f"/{name}/follow_joint_trajectory" for name in self._arms)
-            _unreachable(f"no action server {required} answers in this domain")
+            served = ", ".join(graph.names()[1].actions) or "no action"
+            _unreachable(f"{required} is not served in this domain; served are: {served}")
         self._arm = next(arm for arm in self._arms.values() if arm.is_ready)
         if not self._wait(lambda: bool(self._times), PATIENCE):
             _unreachable(

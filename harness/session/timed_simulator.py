@@ -10,6 +10,7 @@ from harness.core.types import FloatArray
 from harness.ports import GripperResult
 from harness.session.timing import Clock
 from harness.simulation.mujoco_simulator import MujocoSimulator
+from harness.simulation.set_points import SetPoints
 
 SAMPLES_BETWEEN_LOOKS = 32
 """Samples between two calls of `watch`; the results do not depend on it."""
@@ -28,16 +29,13 @@ class TimedSimulator(MujocoSimulator):
         self._clock = clock
         self.watch: Callable[[], None] | None = None
 
-    def _advance(
-        self, controls: FloatArray, commands: FloatArray, command_velocities: FloatArray
-    ) -> None:
+    def _step(self, points: SetPoints, controls: FloatArray) -> None:
         if self.watch is None:
-            return super()._advance(controls, commands, command_velocities)
-        for begin in range(0, len(commands), SAMPLES_BETWEEN_LOOKS):
-            end = min(begin + SAMPLES_BETWEEN_LOOKS, len(commands))
-            super()._advance(
-                controls[begin : end + 1], commands[begin:end], command_velocities[begin:end]
-            )
+            return super()._step(points, controls)
+        count = len(points) - 1
+        for begin in range(0, count, SAMPLES_BETWEEN_LOOKS):
+            end = min(begin + SAMPLES_BETWEEN_LOOKS, count)
+            super()._step(points.part(begin, end), controls[begin : end + 1])
             self.watch()
         return None
 

@@ -16,6 +16,7 @@ from harness.cell.grasping import (
     check_opening,
     grasp_points,
     gripper_axes,
+    has_simple_shape,
     top_grasps,
     top_grasps_at,
 )
@@ -73,9 +74,9 @@ class Pick(Step):
 
     Without a `grasp_pose` the object's shape gives the grasps from above that are as good as each
     other: half a turn of the gripper, a box's other side if it fits, eight turns about what is
-    round. With a `grasp_pose` that has no rotation the same rotations are tried at its point. The
-    first grasp that the arm can approach, and lift from, is taken; the step reports which `grasp`
-    of how many `grasps`.
+    round; a mesh, or several shapes, are taken as the box around them. With a `grasp_pose` that has
+    no rotation the same rotations are tried at its point. The first grasp that the arm can
+    approach, and lift from, is taken; the step reports which `grasp` of how many `grasps`.
 
     An arm of fewer than six joints turns to the object by itself: it grasps the middle of the
     object, or its upper part, with the first pitch of the gripper that works, from level (0) to
@@ -305,8 +306,9 @@ def grasp_goals(step: Pick, cell: Cell) -> list[TcpGoal]:
             else top_grasps_at(given.translation, obj, object_pose, cell)
         )
         return [TcpGoal(world_pose_spec(pose)) for pose in poses]
-    check_opening(obj, object_pose, cell)
-    points = grasp_points(obj, object_pose) if given is None else [given.translation]
+    if given is None or has_simple_shape(obj):
+        check_opening(obj, object_pose, cell)
+    points = grasp_points(obj, object_pose, cell) if given is None else [given.translation]
     return [
         TcpGoal(Position(xyz=(float(x), float(y), float(z))), pitch)
         for x, y, z in points

@@ -75,5 +75,5 @@ def _is_decided(placed: PlacedExpectation, verdict: Verdict, run: Run) -> bool:
     specs = (placed.spec, *placed.spec.predicates().values())
     name = next((spec.during for spec in specs if spec.during), placed.step)
     if name:
-        return any(name in (s.id, s.path) and s.status != "not_reached" for s in run.steps)
+        return any(name in (s.id, s.path) and s.status != "not reached" for s in run.steps)
     return verdict.status == "failed" and placed.spec.word in FINAL_FAILURES

@@ -58,6 +58,7 @@ class LiveStudio(ABC):
         self.problems: list[Problem] = []
         self._cell: LiveCell | None = None
         self.is_alone = False
+        self._unkept = ""
         self.session = Session(
             self.do,
             self._frame,
@@ -122,6 +123,13 @@ class LiveStudio(ABC):
             return False
         self.is_alone = True
         return is_new
+
+    def keep_unsaved(self, text: str) -> None:
+        """Keep a copy of the text; where that is not possible, say so once."""
+        problem = self.files.keep_unsaved(text)
+        if problem and problem != self._unkept:
+            self.say("warning", problem)
+        self._unkept = problem
 
     def _compile(self, text: str) -> bool:
         document = Document(text, str(self.files.path))

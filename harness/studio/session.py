@@ -181,8 +181,16 @@ class Session:
             return reply({"error": "another page controls the cell; request control first"})
         if name in self.at_once:
             return reply(guarded(lambda: self.at_once[name](message)))
-        self.post(lambda: reply(guarded(lambda: self.on_request(name, message))))
-        return None
+
+        def job() -> None:
+            try:
+                answer = guarded(lambda: self.on_request(name, message))
+            except Exception:  # the page waits for a reply
+                reply({"error": f"'{printable(name)}' met a defect of the program"})
+                raise
+            reply(answer)
+
+        return self.post(job)
 
     def _control(self, viewer: Viewer, word: str) -> None:
         """Request control, pass it on, or take it where no page has it."""

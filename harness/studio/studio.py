@@ -126,7 +126,7 @@ class Studio(GoalActions):
             self.show_cell()
             self.session.broadcast(robot_message(self.cell))
         if text != self.saved:
-            self.files.keep_unsaved(text)
+            self.keep_unsaved(text)
         document = self.document_message()
         self.session.broadcast(document, but=self.session.controller)
         return {"document": document}
@@ -228,7 +228,7 @@ class Studio(GoalActions):
         self.files.refuse_outside(document)
         is_new = self.cell.load(document)
         self.text, self.problems = text, []
-        self.files.keep_unsaved(text)
+        self.keep_unsaved(text)
         if is_new:
             self.verdicts.forget()
             self.show_cell()

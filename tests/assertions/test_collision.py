@@ -208,7 +208,7 @@ def test_objects_that_are_not_held_may_touch():
 
 
 def test_a_step_that_was_not_reached_has_no_collisions_to_be_proud_of():
-    run = make_run(steps=(step("later", 200, 200, status="not_reached"),))
+    run = make_run(steps=(step("later", 200, 200, status="not reached"),))
     assert verdict(run, NEVER, "later").status == "not reached"
 
 

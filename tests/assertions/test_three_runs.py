@@ -68,7 +68,7 @@ def quantity_of(word, measure):
     return None
 
 
-UNREACHED = make_run(steps=(step("later", N, N, status="not_reached"),))
+UNREACHED = make_run(steps=(step("later", N, N, status="not reached"),))
 NO_BOX = make_run(objects=(TABLE, replace(BOX, present=())), object_poses={"box": at(N) * np.nan})
 
 

@@ -17,7 +17,7 @@ def test_the_gripper_by_state_position_width_and_report():
         steps=(
             step("open", 0, 50, "gripper", result=gripped(stalled=False)),
             step("squeeze", 50, 100, "gripper", result=gripped(stalled=True)),
-            step("never", 200, 200, "gripper", "not_reached"),
+            step("never", 200, 200, "gripper", "not reached"),
         ),
     )
     assert verdict(run, GripperState(named_target="open")).margin == pytest.approx(0.001)

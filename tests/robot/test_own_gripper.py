@@ -1,5 +1,6 @@
 """The gripper that an imported arm brings: recognised from its SRDF, or named."""
 
+import math
 from itertools import pairwise
 
 import numpy as np
@@ -184,6 +185,25 @@ def test_a_gripper_is_found_without_an_srdf(tmp_path, hand, joint, opening):
     assert (arm.gripper.joint, arm.gripper.group) == (joint, "gripper")
     assert arm.gripper.widths[:, 1].max() == pytest.approx(opening, abs=1e-6)
     assert arm.groups["gripper"].joint_names == (joint,)
+
+
+def test_the_opening_of_a_jaw_that_always_touches_at_its_hinge_is_that_of_its_outer_half(tmp_path):
+    """As on the SO-101: the jaw lies on the palm when closed, and turns about its lower edge."""
+    flat = (
+        '<link name="{0}"><inertial><mass value="0.05"/><inertia ixx="1e-5" iyy="1e-5" izz="1e-5"/>'
+        '</inertial><collision><origin xyz="0 {1} 0.05"/><geometry><box size="0.04 0.02 0.1"/>'
+        "</geometry></collision></link>"
+    )
+    hinge = (
+        '<joint name="jaw_joint" type="revolute"><parent link="palm"/><child link="jaw"/>'
+        '<axis xyz="-1 0 0"/><limit lower="0" upper="1.2" velocity="1" effort="2"/></joint>'
+    )
+    fixed = PALM.replace(f'<link name="palm">{INERTIAL}</link>', flat.format("palm", -0.01))
+    write(tmp_path, fixed + flat.format("jaw", 0.01) + hinge, group="")
+    gripper = load_arm(tmp_path, srdf=None).gripper
+    assert (gripper.closed_position, gripper.widths[0, 1]) == pytest.approx((0, 0), abs=1e-6)
+    corner = 0.05 * math.sin(1.2)
+    assert gripper.widths[-1, 1] == pytest.approx(corner, rel=0.05)
 
 
 def test_fingers_that_no_group_names_are_found_too(tmp_path):

@@ -15,7 +15,10 @@ from harness.recording.step_results import SavedResult
 
 RESOLUTION = 1e-6
 """Tolerance of comparisons of times [s]; stamps are whole nanoseconds."""
-STATUSES: Mapping[str, StepStatus] = {status: status for status in get_args(StepStatus)}
+STATUSES: Mapping[str, StepStatus] = {
+    **{status: status for status in get_args(StepStatus)},
+    "expected_error": "expected error",  # of bags that earlier versions wrote
+}
 Timed = tuple[float, dict[str, Any]]
 StepInterval = tuple[float, float]
 
@@ -42,7 +45,7 @@ def steps_of(
     steps: list[StepRecord] = []
     for number, (begin, event) in enumerate(events):
         if event.get("event") == "step_not_reached":
-            steps.append(_step(event, known, (begin, begin), times, "not_reached"))
+            steps.append(_step(event, known, (begin, begin), times, "not reached"))
         elif event.get("event") == "step_started":
             end, final = _end(event, events[number + 1 :], float(times[-1]))
             status = STATUSES.get(str(final.get("status")), "passed")

@@ -9,6 +9,7 @@ from typing import Any
 
 from harness.ros.graph import Reply
 from harness.ros.interfaces import CANCEL, decoded, message, typestore
+from harness.ros.names import Names
 from harness.ros.rtps import wire
 from harness.ros.rtps.participant import Participant
 from harness.ros.rtps.reader import Received
@@ -167,6 +168,10 @@ class RtpsGraph:
         client = _Client(writer, kind, own, reader.writers.keys())  # pyright: ignore[reportArgumentType]
         return client
 
+    def names(self) -> tuple[Names, Names]:
+        own, others = self.participant.own_topics(), self.participant.known_topics()
+        return _names(*own), _names(*others)
+
     def spin(self, until: float) -> None:
         self.participant.spin(until)
 
@@ -227,6 +232,11 @@ class RtpsGraph:
         own = gid(self.participant.guid(wire.PARTICIPANT))
         info = message(kind, gid=own, node_entities_info_seq=[node])
         self._discovery.write(bytes(typestore().serialize_cdr(info, kind)))
+
+
+def _names(*topics: set[str]) -> Names:
+    """Names in ROS of what is written and what is read in DDS; services are left out."""
+    return Names.of(*({name[2:] for name in each if name.startswith("rt/")} for each in topics))
 
 
 def _related(received: Received) -> bytes:

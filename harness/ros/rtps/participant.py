@@ -8,6 +8,7 @@ import select
 import socket
 import struct
 import time
+from collections import deque
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -94,6 +95,7 @@ class Participant:
         self._peers: dict[bytes, _Peer] = {}
         self._writers: dict[bytes, Writer] = {}
         self._readers: dict[bytes, Reader] = {}
+        self._arrived: deque[tuple[Callable[[Received], None], Received]] = deque()
         self._entities = 0
         self._next_announcement = self._next_reminder = 0.0
         self._publications = self._builtin_writer(wire.PUBLICATIONS_WRITER)
@@ -117,7 +119,11 @@ class Participant:
     ) -> Reader:
         """A reader of a topic, known to the peers from now on."""
         entity = self._entity(0x04)
-        made = Reader(entity, topic, type_name, qos, self._send, deliver)
+
+        def arrive(received: Received) -> None:
+            self._arrived.append((deliver, received))
+
+        made = Reader(entity, topic, type_name, qos, self._send, arrive)
         self._readers[entity] = made
         self._subscriptions.write(self._endpoint(entity, topic, type_name, qos))
         self._match_known(made)
@@ -127,14 +133,19 @@ class Participant:
         """The GUID of an endpoint of this participant."""
         return self.prefix + entity
 
-    @property
-    def peers(self) -> int:
-        """Number of other participants that are known."""
-        return len(self._peers)
+    def own_topics(self) -> tuple[set[str], set[str]]:
+        """Names in DDS of the topics that are written and read here."""
+        written = {each.topic for each in self._writers.values()}
+        return written, {each.topic for each in self._readers.values()}
 
-    def known_topics(self) -> set[str]:
-        """Names in DDS of the topics that peers write or read."""
-        return {found[0] for peer in self._peers.values() for found in peer.endpoints.values()}
+    def known_topics(self) -> tuple[set[str], set[str]]:
+        """Names in DDS of the topics that peers write and read."""
+        written: set[str] = set()
+        read: set[str] = set()
+        for peer in self._peers.values():
+            for guid, endpoint in peer.endpoints.items():
+                (written if _is_writer(guid) else read).add(endpoint[0])
+        return written, read
 
     # -- time ---------------------------------------------------------------------------------
 
@@ -228,6 +239,9 @@ class Participant:
             if datagram[:4] == b"RTPS" and datagram[8:20] != self.prefix:
                 with suppress(struct.error, IndexError, ValueError):  # garbage is no message
                     self._take(datagram)
+            while self._arrived:
+                deliver, received = self._arrived.popleft()
+                deliver(received)
 
     # -- messages -----------------------------------------------------------------------------
 
@@ -356,7 +370,7 @@ class Participant:
         if peer is None or wire.PID_TOPIC not in known or wire.PID_TYPE not in known:
             return
         reliable, latched = known.get(wire.PID_RELIABILITY), known.get(wire.PID_DURABILITY)
-        is_writer = guid[15] & 0x0F in (0x02, 0x03)
+        is_writer = _is_writer(guid)
         qos = Qos(
             is_reliable=struct.unpack_from("<I", reliable[0])[0] == 2 if reliable else is_writer,
             is_latched=bool(latched) and struct.unpack_from("<I", latched[0])[0] >= 1,
@@ -384,10 +398,9 @@ class Participant:
             reader.writers.pop(guid, None)
 
     def _match_known(self, mine: Writer | Reader) -> None:
-        kinds = (0x04, 0x07) if isinstance(mine, Writer) else (0x02, 0x03)
         for peer in self._peers.values():
             for guid, endpoint in peer.endpoints.items():
-                if guid[15] & 0x0F in kinds:
+                if _is_writer(guid) != isinstance(mine, Writer):
                     _match(mine, guid, endpoint)
 
     def _endpoint(self, entity: bytes, topic: str, type_name: str, qos: Qos) -> bytes:
@@ -420,6 +433,11 @@ class Participant:
     def _entity(self, kind: int) -> bytes:
         self._entities += 1
         return self._entities.to_bytes(3, "big") + bytes([kind])
+
+
+def _is_writer(guid: bytes) -> bool:
+    """Whether an endpoint is a writer, with a key or without."""
+    return guid[15] & 0x0F in (0x02, 0x03)
 
 
 def _match(mine: Writer | Reader, guid: bytes, endpoint: tuple[str, str, Qos, Address]) -> None:
