@@ -46,6 +46,9 @@ def test_the_page_has_a_strict_policy_and_is_not_kept(served):
     assert "script-src 'self';" in policy
     assert "default-src 'none'" in policy
     assert headers["Cache-Control"] == "no-store"
+    scene = status(served, "/scene/1")[1]["Content-Security-Policy"]
+    assert "script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:;" in scene
+    assert "'unsafe-eval'" not in scene
 
 
 @pytest.mark.parametrize("path", ["/studio/ws", "/scene/1"])
