@@ -7,7 +7,6 @@ import threading
 from pathlib import Path
 
 from harness.cli.output import complain, guarded, say
-from harness.core.errors import SpecError
 from harness.suite.discovery import SUFFIX, UsageError
 
 EXTRA = "the studio needs packages that are not installed: pip install 'armharness[studio]'"
@@ -26,7 +25,7 @@ def _run(arguments: argparse.Namespace) -> int:
     from harness.studio.studio import Studio
 
     path, text, time = _start(arguments)
-    files = StudioFiles(Path.cwd(), path)
+    files = StudioFiles(Path.cwd(), path, [Path(arguments.target)])
     restored = files.restored()
     is_restored = restored is not None and restored != text
     notice = ""
@@ -36,8 +35,9 @@ def _run(arguments: argparse.Namespace) -> int:
             " Save keeps it; delete that file to begin again."
         )
     studio = Studio.opened(files, text, restored if is_restored else None, notice)
-    if studio.problems and not files.path.exists():  # the robot that was named is the mistake
-        raise SpecError(studio.problems)
+    if studio.problems and not files.path.exists():  # what the command line names is the mistake
+        said = (": ".join(filter(None, (each.message, each.hint))) for each in studio.problems)
+        raise UsageError("; ".join(said))
     if time is not None:
         say(f"going on to t={time:g} s, as the run did")
         studio.cell.run_until(time)

@@ -120,8 +120,10 @@ def load_robot(
     links = spec.collision
     if not isinstance(links, str):
         parts = [part for part in (main, tool) if part is not None]
-        own = {link: mode for part in parts for link, mode in part.facts.collision.items()}
-        links = {**own, **(links or {})}
+        own: dict[str, CollisionMode] = {}
+        for part in parts:
+            own |= part.facts.collision
+        links = own | (links or {})
     return with_collision_shapes(description, links, collision)
 
 

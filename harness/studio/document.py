@@ -154,10 +154,25 @@ class Document:
             if "name" in item.mapping()
         ]
 
+    def object_specs(self) -> list[dict[str, Plain]]:
+        """The objects of `objects` as plain data."""
+        plain = [item.plain() for item in self._items("objects")]
+        return [dict(item) for item in plain if isinstance(item, dict)]
+
     def object_spec(self, name: str) -> dict[str, Plain]:
         """An object of `objects` as plain data."""
-        item = self._items("objects")[self.object_names().index(name)].plain()
-        return dict(item) if isinstance(item, dict) else {}
+        return next(spec for spec in self.object_specs() if spec.get("name") == name)
+
+    def with_world(self, name: str) -> Document:
+        """The document with another world."""
+        entry = self.root.mapping().get("world")
+        line = f"world: {flow(name)}"
+        if entry is None:
+            at = self.root.mapping()["robot"].key.line - 1
+            return self._with([*self.lines[:at], line, *self.lines[at:]])
+        row = entry.key.line
+        last = self._end_of_item(row, 0, len(self.lines))
+        return self._with([*self.lines[: row - 1], line, *self.lines[last:]])
 
     def with_expectations(self, expectations: Sequence[str], step: int) -> Document:
         """The document with expectations of a step, or with -1 of the whole run."""

@@ -27,11 +27,13 @@ class StudioFiles:
     Attributes:
         root: The folder in which the studio was started; nothing outside is read or written.
         path: The file of the scenario.
+        given: Files that the command line names; they may be read wherever they are.
     """
 
-    def __init__(self, root: Path, path: Path) -> None:
+    def __init__(self, root: Path, path: Path, given: Sequence[Path] = ()) -> None:
         self.root = root.resolve()
         self.path = path
+        self.given = frozenset(each.resolve() for each in given)
 
     @property
     def unsaved(self) -> Path:
@@ -54,17 +56,30 @@ class StudioFiles:
         return path
 
     def save(self, name: str, text: str) -> Path:
-        """Write the scenario, and forget the unsaved copy."""
+        """Write the scenario, and forget the unsaved copy.
+
+        Raises:
+            HarnessError: The file cannot be written, or may not be.
+        """
         path = self.named(name)
-        _write(path, text)
-        self.unsaved.unlink(missing_ok=True)
+        try:
+            _write(path, text)
+        except OSError as error:
+            raise HarnessError(f"'{name}' cannot be written: {error.strerror}") from error
+        with contextlib.suppress(OSError):
+            self.unsaved.unlink(missing_ok=True)
         self.path = path
         return path
 
-    def keep_unsaved(self, text: str) -> None:
-        """Keep a copy of the text that a crash leaves."""
-        with contextlib.suppress(OSError):  # a folder that cannot be written has no copy
+    def keep_unsaved(self, text: str) -> str:
+        """Keep a copy of the text that a crash leaves; returns why that is not possible."""
+        try:
             _write(self.unsaved, text)
+        except OSError as error:
+            return (
+                f"a crash would lose this work: {self.unsaved} cannot be written: {error.strerror}"
+            )
+        return ""
 
     def restored(self) -> str | None:
         """The text that a crash left; None where there is none."""
@@ -83,8 +98,10 @@ class StudioFiles:
         problems: list[Problem] = []
         for words in _words(document.root.plain()):
             given = Path(words).expanduser()
+            path = (folder / given).resolve()
             looks_like_path = words.startswith(("/", "~")) or ".." in given.parts
-            if looks_like_path and not (folder / given).resolve().is_relative_to(self.root):
+            is_allowed = path.is_relative_to(self.root) or path in self.given
+            if looks_like_path and not is_allowed:
                 line = next((n for n, t in enumerate(document.lines, 1) if words in t), 1)
                 message = f"`{words}` is outside {self.root}, where the studio reads nothing"
                 problems.append(Problem(str(self.path), line, 1, message))

@@ -15,12 +15,15 @@ from harness.studio.live_studio import LiveStudio
 from harness.studio.messages import Message, failure_message
 from harness.studio.previews import preview
 from harness.studio.reach import Reach, ReachStudy
-from harness.studio.scene_view import GHOST, PLANNED, REFUSED
+from harness.studio.scene_view import GHOST, PLANNED, REFUSED, Ghost
 from harness.studio.session import RefusedError
 from harness.studio.step_texts import MOTIONS, joint_keys, pose_keys, step_text
 
 MOST_GHOSTS = 4
 """Ways that are drawn at once, nearest first."""
+
+SOLID, FAINT = 0.8, 0.2
+"""Opacity of the way that continues the current posture, and of the others."""
 
 
 class GoalActions(LiveStudio):
@@ -42,6 +45,11 @@ class GoalActions(LiveStudio):
         self._drag = (phase, pose, name)
         if not is_waiting or phase == "end":
             self.session.post(self._answer_drag)
+
+    def on_choose(self, client: int, way: int) -> None:
+        """Choose the way of a ghost that the controlling page clicked."""
+        if self._controls(client):
+            self.session.post(lambda: self._choose(way))
 
     def _controls(self, client: int) -> bool:
         """Whether the page that shows a scene is the one that controls."""
@@ -82,11 +90,17 @@ class GoalActions(LiveStudio):
         if self.follows and best is not None:
             self.target = best.positions
         if self.view is not None:
-            shown = [
-                (way.positions, REFUSED if way.refusal else GHOST)
-                for way in reach.ways[:MOST_GHOSTS]
-            ]
-            self.view.show_ghosts(shown)
+            self.view.show_ghosts(
+                [
+                    Ghost(
+                        way.positions,
+                        REFUSED if way.refusal else GHOST,
+                        SOLID if way is best else FAINT,
+                        number,
+                    )
+                    for number, way in enumerate(reach.ways[:MOST_GHOSTS])
+                ]
+            )
             self.view.show_path(None)
         self.session.broadcast(
             {
@@ -122,11 +136,19 @@ class GoalActions(LiveStudio):
         """Choose one of the ways to the pose."""
         if self.reach is None:
             raise RefusedError("drag the handle first")
-        way = self.reach.ways[int(message["way"])]
+        return {"refusal": printable(self._choose(int(message["way"])))}
+
+    def _choose(self, number: int) -> str:
+        """Take a way as the goal; returns what forbids it."""
+        if self.reach is None or not 0 <= number < len(self.reach.ways):
+            return ""
+        way = self.reach.ways[number]
         self.chosen = way.positions
         if self.view is not None:
-            self.view.show_ghosts([(way.positions, REFUSED if way.refusal else GHOST)])
-        return {"refusal": printable(way.refusal)}
+            color = REFUSED if way.refusal else GHOST
+            self.view.show_ghosts([Ghost(way.positions, color, SOLID, number)])
+        self.session.broadcast({"type": "chosen", "way": number})
+        return way.refusal
 
     # -- plans --------------------------------------------------------------------------------
 
@@ -137,7 +159,7 @@ class GoalActions(LiveStudio):
         if found.record is not None:
             return {"step": text, **failure_message(found.record)}
         if self.view is not None and found.positions is not None:
-            self.view.show_ghosts([(found.positions[-1], PLANNED)])
+            self.view.show_ghosts([Ghost(found.positions[-1], PLANNED)])
             self.view.show_path(found.tcp_path)
         return {
             "step": text,
@@ -158,6 +180,8 @@ class GoalActions(LiveStudio):
             keys = {"named_target": str(message["state"])}
         elif message.get("here"):
             keys = joint_keys(description, group, self.cell.cell.planning_start())
+        elif message.get("joints"):
+            keys = {"joints": self._joint_list(message)}
         elif self.chosen is not None:
             keys = joint_keys(description, group, self.chosen)
         elif self.reach is not None:
@@ -169,8 +193,20 @@ class GoalActions(LiveStudio):
         if verb == "circ":
             keys["interim"] = {"xyz": [round(float(value), 5) for value in message["interim"]]}
         if message.get("planner"):
-            planning = {"planner_id": str(message["planner"])}
-            return f"{step_text(verb, keys)}\n{step_text('planning', planning)}"
+            given = str(message["planner"])
+            planning = given if ":" in given else f"planner_id: {given}"
+            return f"{step_text(verb, keys)}\nplanning: {{{' '.join(planning.split())}}}"
         if set(keys) == {"named_target"}:
             return step_text(verb, keys["named_target"])
         return step_text(verb, keys)
+
+    def _joint_list(self, message: Message) -> dict[str, float]:
+        """The joints of the arm with the positions that a page lists, in degrees or radians."""
+        description = self.cell.description
+        names = description.groups[description.default_group].joint_names
+        values = [float(value) for value in message["joints"]]
+        if len(values) != len(names) or not np.isfinite(values).all():
+            raise RefusedError(f"list {len(names)} positions: {', '.join(names)}")
+        turns = [description.joint_by_name[name].kind != "prismatic" for name in names]
+        factor = np.where(turns, np.pi / 180 if message.get("unit") == "deg" else 1.0, 1.0)
+        return dict(zip(names, (float(v) for v in np.round(factor * values, 6)), strict=True))

@@ -2,53 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from harness.cell.cell import Belief, Cell, Presence
+from harness.cell.cell import Cell
 from harness.cell.program import ProgramStep
 from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.engine.execute import OnStep, ProgramExecution
-from harness.planning.collision.scene import CoalScene, SceneState
+from harness.planning.collision.scene import CoalScene
 from harness.ports.motion_planning import MotionPlan
 from harness.ports.scene import Touch
-from harness.recording.run import AttachmentRecord, StepRecord
+from harness.recording.run import StepRecord
 from harness.robot.description import RobotDescription
 from harness.session.prepare import Prepared, prepare
 from harness.session.start import start_physics
-from harness.simulation.snapshot import PhysicsState
+from harness.studio.cell_state import CellState
 from harness.studio.document import Document
 from harness.studio.live_simulator import LiveSimulator, Pace
 
 
 def _no_step(*_: object) -> None:
     return
-
-
-@dataclass(frozen=True, eq=False)
-class CellState:
-    """A snapshot of the cell after some steps of the file.
-
-    Attributes:
-        steps: The number of steps of the file that were executed.
-        is_run: Whether a run of the file would be in the same state.
-    """
-
-    steps: int
-    is_run: bool
-    physics: PhysicsState
-    scene: SceneState
-    presence: Mapping[str, Presence]
-    attachments: tuple[AttachmentRecord, ...]
-    held: tuple[str, ...]
-    beliefs: Mapping[str, tuple[Belief, ...]]
-    records: tuple[StepRecord, ...]
-    ended_early: str
 
 
 class LiveCell:
@@ -111,7 +90,7 @@ class LiveCell:
         self.cell.later_objects = prepared.program.later_objects
         self.cell.seed = prepared.program.seed
         if equal < self.steps_done:
-            self._forget_steps(equal)
+            self.restore(equal)
         return False
 
     @property
@@ -276,24 +255,35 @@ class LiveCell:
     def record(self, text: str) -> tuple[str, StepRecord]:
         """Put a step into the scenario after those executed, and execute it.
 
+        A step that adds new objects needs another physics: the steps before it are repeated there.
+
         Returns:
             The scenario's text, which has the step only where it succeeded; and what became of it.
         """
-        before = self.document
+        before, count = self.document, self.steps_done
         was_by_hand = self.is_by_hand
-        document = before.with_step(text, self.steps_done)
-        self.load(document)
-        if was_by_hand:
+        is_new = self.load(before.with_step(text, count))
+        if is_new:
+            self._repeat(count)
+        elif was_by_hand:
             self.history[-1] = replace(self.history[-1], is_run=False)
-        self.run_steps(self.steps_done + 1)
-        record = next(
-            r for r in self.execution.records if r.path == f"steps[{self.steps_done - 1}]"
-        )
+        after = self.document.text
+        self.run_steps(count + 1)
+        record = next(r for r in self.execution.records if r.path == f"steps[{count}]")
         if record.status == "failed":
-            self.restore(self.steps_done - 1)
-            self.load(before)
+            self.restore(count)
+            if self.load(before):
+                self._repeat(count)
             return before.text, record
-        return document.text, record
+        return after, record
+
+    def _repeat(self, count: int) -> None:
+        """Execute the first steps as fast as possible."""
+        pace, self.pace = self.pace, None
+        try:
+            self.run_steps(count)
+        finally:
+            self.pace = pace
 
     # -- the live physics ---------------------------------------------------------------------
 
@@ -391,43 +381,13 @@ class LiveCell:
         self.is_by_hand = self._is_idle = False
 
     def _saved(self, steps: int) -> CellState:
-        cell = self.cell
-        return CellState(
-            steps,
-            not self.history or self.is_run,
-            self.simulator.snapshot(),
-            self.scene.snapshot(),
-            _copied(cell.presence),
-            tuple(cell.attachments),
-            tuple(cell.held),
-            {name: tuple(beliefs) for name, beliefs in cell.beliefs.items()},
-            tuple(self.execution.records),
-            self.execution.ended_early,
-        )
+        is_run = not self.history or self.is_run
+        return CellState.of(self.execution, self.simulator, self.scene, steps, is_run=is_run)
 
     def _restore(self, state: CellState) -> None:
-        cell = self.cell
-        self.simulator.restore(state.physics)
-        self.scene.restore(state.scene)
-        cell.presence = _copied(state.presence)
-        cell.attachments[:] = state.attachments
-        cell.held[:] = state.held
-        cell.beliefs = {name: list(beliefs) for name, beliefs in state.beliefs.items()}
-        self.execution.records[:] = state.records
-        self.execution.ended_early = state.ended_early
+        state.restore(self.execution, self.simulator, self.scene)
         self.is_by_hand = self._is_idle = False
-
-    def _forget_steps(self, count: int) -> None:
-        """Go back to the last state that the changed text leaves as it was."""
-        self.restore(count)
 
     def _last_of_run(self) -> int:
         """The last executed step after which a run would be in the same state."""
         return max(state.steps for state in self.history if state.is_run)
-
-
-def _copied(presence: Mapping[str, Presence]) -> dict[str, Presence]:
-    return {
-        name: replace(each, intervals=[list(interval) for interval in each.intervals])
-        for name, each in presence.items()
-    }

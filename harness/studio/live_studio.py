@@ -58,6 +58,7 @@ class LiveStudio(ABC):
         self.problems: list[Problem] = []
         self._cell: LiveCell | None = None
         self.is_alone = False
+        self._unkept = ""
         self.session = Session(
             self.do,
             self._frame,
@@ -123,6 +124,13 @@ class LiveStudio(ABC):
         self.is_alone = True
         return is_new
 
+    def keep_unsaved(self, text: str) -> None:
+        """Keep a copy of the text; where that is not possible, say so once."""
+        problem = self.files.keep_unsaved(text)
+        if problem and problem != self._unkept:
+            self.say("warning", problem)
+        self._unkept = problem
+
     def _compile(self, text: str) -> bool:
         document = Document(text, str(self.files.path))
         self.files.refuse_outside(document)
@@ -137,7 +145,7 @@ class LiveStudio(ABC):
     def open(self, server: viser.ViserServer) -> None:
         """Show the cell in a server's scene, and begin."""
         self.server = server
-        self.view = SceneView(server, self.on_drag)
+        self.view = SceneView(server, self.on_drag, self.on_choose)
         self.show_cell()
         gc.collect()
         gc.freeze()  # what is loaded stays; to walk through it would take 60 ms every few edits
@@ -312,6 +320,10 @@ class LiveStudio(ABC):
     @abstractmethod
     def on_drag(self, client: int, phase: str, pose: SE3, name: str) -> None:
         """A handle was moved on a page; called in the server's thread."""
+
+    @abstractmethod
+    def on_choose(self, client: int, way: int) -> None:
+        """A ghost was clicked on a page; called in the server's thread."""
 
     # -- at once ------------------------------------------------------------------------------
 

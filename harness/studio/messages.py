@@ -16,7 +16,7 @@ from harness.reporting.result import StepLine
 from harness.studio.judging import Judged
 from harness.studio.language_help import Names
 from harness.studio.live_cell import LiveCell
-from harness.studio.step_texts import MOTIONS
+from harness.studio.step_texts import MOTIONS, object_form
 
 Message = dict[str, Any]
 
@@ -26,6 +26,9 @@ MOST_CONTACTS = 8
 
 def robot_message(cell: LiveCell) -> Message:
     """What does not change while the cell is the same."""
+    from harness.language.reading.load import bundled_worlds
+    from harness.planning.search.find_pipeline import planner_names
+
     description = cell.description
     gripper = description.gripper
     actuated = set(cell.simulator.physics.actuated.tolist())
@@ -54,12 +57,14 @@ def robot_message(cell: LiveCell) -> Message:
             "widest": float(gripper.widths[:, 1].max()),
         },
         "frames": ["world", description.base_link, *cell.cell.presence],
-        "objects": cell.document.object_names(),
+        "objects": [object_form(spec) for spec in cell.document.object_specs()],
         "bodies": list(cell.cell.presence),
         "overlaps": [
             f"{touch.first} and {touch.second} overlap by {-1e3 * touch.distance:.1f} mm"
             for touch in cell.overlaps_at_start
         ],
+        "worlds": bundled_worlds(),
+        "planners": list(planner_names()),
         "verbs": list(MOTIONS),
         "steps": [f"{verb}: " for verb in STEPS],
         "cameras": list(cell.prepared.program.cameras),

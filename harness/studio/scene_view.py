@@ -29,6 +29,8 @@ PLANE_SIZE = 6.0  # [m]
 
 Color = tuple[int, int, int]
 OnDrag = Callable[[int, str, SE3, str], None]
+OnChoose = Callable[[int, int], None]
+"""Called with the number of the page's connection and that of the way."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,6 +119,21 @@ def _revolved(profile: FloatArray, sections: int = 24) -> tuple[FloatArray, IntA
     return vertices, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
 
 
+@dataclass(frozen=True, eq=False)
+class Ghost:
+    """The robot a second time, at other joint positions.
+
+    Attributes:
+        positions: Joint positions in description order, shape (n,).
+        way: The number of the way that a click chooses; -1 where there is nothing to choose.
+    """
+
+    positions: FloatArray
+    color: Color
+    opacity: float = 0.25
+    way: int = -1
+
+
 @dataclass
 class _Body:
     """A frame of the scene with the pose that was sent last."""
@@ -143,12 +160,18 @@ def reach_of(description: RobotDescription) -> float:
 class SceneView:
     """Everything that viser shows of one cell; it is cleared and drawn again for another one."""
 
-    def __init__(self, server: viser.ViserServer, on_drag: OnDrag) -> None:
+    def __init__(
+        self,
+        server: viser.ViserServer,
+        on_drag: OnDrag = lambda *_: None,
+        on_choose: OnChoose = lambda *_: None,
+    ) -> None:
         self._server = server
-        self._on_drag = on_drag
+        self._on_drag, self._on_choose = on_drag, on_choose
         self._links: dict[str, _Body] = {}
         self._objects: dict[str, _Body] = {}
-        self._ghosts: list[dict[str, _Body]] = []
+        self._ghosts: Sequence[Ghost] = ()
+        self._bodies: list[dict[str, _Body]] = []
         self.handle: Any = None
         self._object_handle: Any = None
         self._path: Any = None
@@ -159,7 +182,7 @@ class SceneView:
         """Draw another robot, without objects, and put a handle on its TCP where it is given."""
         scene = self._server.scene
         scene.reset()
-        self._objects, self._ghosts = {}, []
+        self._objects, self._ghosts, self._bodies = {}, (), []
         self._path = self._object_handle = self._clearance = None
         self._description = description
         self._shapes = robot_triangles(description)
@@ -210,32 +233,43 @@ class SceneView:
                 if name in objects:
                     body.move(objects[name])
 
-    def show_ghosts(self, ways: Sequence[tuple[FloatArray, Color]]) -> None:
-        """Show the robot a second time at each of some joint positions."""
-        names = list(self._links)
+    def show_ghosts(self, ghosts: Sequence[Ghost]) -> None:
+        """Show these ghosts in place of those shown."""
+        self._ghosts = ghosts
         with self._server.atomic():
-            while len(self._ghosts) < len(ways):
-                number = len(self._ghosts)
-                self._ghosts.append(
-                    {
-                        name: self._body(
-                            f"/ghost/{number}/{name}", self._shapes[name], opacity=0.25
-                        )
-                        for name in names
-                    }
-                )
-            for number, ghost in enumerate(self._ghosts):
-                is_shown = number < len(ways)
-                poses = self._link_poses(ways[number][0], names) if is_shown else []
-                for row, name in enumerate(names):
-                    body = ghost[name]
-                    if body.handle.visible != is_shown:
-                        body.handle.visible = is_shown
-                    if is_shown:
-                        body.move(poses[row])
-                        for child in body.handle.parts:
-                            if tuple(child.color) != ways[number][1]:
-                                child.color = ways[number][1]
+            while len(self._bodies) < len(ghosts):
+                self._bodies.append(self._ghost_body(len(self._bodies)))
+            for bodies in self._bodies[len(ghosts) :]:
+                for body in bodies.values():
+                    if body.handle.visible:
+                        body.handle.visible = False
+            for ghost, bodies in zip(ghosts, self._bodies, strict=False):
+                poses = self._link_poses(ghost.positions, list(bodies))
+                for body, pose in zip(bodies.values(), poses, strict=True):
+                    if not body.handle.visible:
+                        body.handle.visible = True
+                    body.move(pose)
+                    for part in body.handle.parts:
+                        if tuple(part.color) != ghost.color:
+                            part.color = ghost.color
+                        if part.opacity != ghost.opacity:
+                            part.opacity = ghost.opacity
+
+    def _ghost_body(self, number: int) -> dict[str, _Body]:
+        """The links of a further ghost; a click on them chooses its way."""
+        found = {
+            name: self._body(f"/ghost/{number}/{name}", parts, opacity=0.25)
+            for name, parts in self._shapes.items()
+        }
+
+        async def choose(event: Any) -> None:
+            if number < len(self._ghosts) and self._ghosts[number].way >= 0:
+                self._on_choose(event.client_id, self._ghosts[number].way)
+
+        for body in found.values():
+            for part in body.handle.parts:
+                part.on_click(choose)
+        return found
 
     def show_path(self, points: FloatArray | None) -> None:
         """Show the path of the TCP, shape (N, 3); None removes it."""

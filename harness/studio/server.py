@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import io
 import socket
 from collections.abc import Awaitable, Callable
@@ -114,4 +115,6 @@ def _refuse_used_port(host: str, port: int) -> None:
         try:
             probe.bind((host, port))
         except OSError as error:
-            raise PortInUseError(f"cannot listen on {host}:{port}: {error.strerror}") from error
+            advice = "; `--port 0` takes any free port" if error.errno == errno.EADDRINUSE else ""
+            message = f"cannot listen on {host}:{port}: {error.strerror}{advice}"
+            raise PortInUseError(message) from error

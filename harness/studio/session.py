@@ -80,8 +80,8 @@ class Session:
     on_defect: Callable[[], None]
     viewers: list[Viewer] = field(default_factory=list[Viewer])
     controller: str = ""
-    _jobs: queue.SimpleQueue[Callable[[], None] | None] = field(
-        default_factory=queue.SimpleQueue[Callable[[], None] | None]
+    _jobs: queue.SimpleQueue[Callable[[], object] | None] = field(
+        default_factory=queue.SimpleQueue[Callable[[], object] | None]
     )
     _last_panel: float = 0.0
     _thread: threading.Thread | None = None
@@ -97,7 +97,7 @@ class Session:
         if self._thread is not None:
             self._thread.join(timeout=5.0)
 
-    def post(self, job: Callable[[], None]) -> None:
+    def post(self, job: Callable[[], object]) -> None:
         """Let the cell's thread do something."""
         self._jobs.put(job)
 
@@ -181,8 +181,16 @@ class Session:
             return reply({"error": "another page controls the cell; request control first"})
         if name in self.at_once:
             return reply(guarded(lambda: self.at_once[name](message)))
-        self.post(lambda: reply(guarded(lambda: self.on_request(name, message))))
-        return None
+
+        def job() -> None:
+            try:
+                answer = guarded(lambda: self.on_request(name, message))
+            except Exception:  # the page waits for a reply
+                reply({"error": f"'{printable(name)}' met a defect of the program"})
+                raise
+            reply(answer)
+
+        return self.post(job)
 
     def _control(self, viewer: Viewer, word: str) -> None:
         """Request control, pass it on, or take it where no page has it."""

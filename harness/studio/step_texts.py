@@ -68,3 +68,26 @@ def object_spec(name: str, kind: str, size: list[float], xyz: list[float]) -> di
             shape, volume = {"size": size}, float(np.prod(size))
     mass = float(np.clip(round(1000.0 * volume, 3), 0.01, 0.3))
     return {"name": name, kind: dict(shape), "pose": {"xyz": xyz}, "mass": mass}
+
+
+def object_form(spec: Mapping[str, Any]) -> dict[str, Any]:
+    """An object of a scenario as the page's fields have it; without a kind where they cannot."""
+    size: list[Any] = []
+    match spec:
+        case {"box": {"size": [*size]}}:
+            kind = "box"
+        case {"cylinder": {"radius": float() | int() as radius, "length": length}}:
+            kind, size = "cylinder", [2 * radius, length]
+        case {"sphere": {"radius": float() | int() as radius}}:
+            kind, size = "sphere", [2 * radius]
+        case _:
+            kind = ""
+    place = spec.get("pose")
+    xyz = list(place.get("xyz") or ()) if isinstance(place, Mapping) else []
+    are_numbers = all(isinstance(value, (int, float)) for value in [*size, *xyz])
+    return {
+        "name": str(spec.get("name", "")),
+        "kind": kind if are_numbers and len(xyz) == 3 else "",
+        "size": size,
+        "xyz": xyz,
+    }

@@ -75,6 +75,12 @@ class Studio(GoalActions):
         self._take_text(self.cell.document.without_object(name).text)
         return {}
 
+    def do_world(self, message: Message) -> Message:
+        """Load a world: a bundled name, or a file."""
+        self._refuse_mistakes()
+        self._take_text(self.cell.document.with_world(str(message["name"])).text)
+        return {}
+
     def do_handle(self, message: Message) -> Message:
         """Put a second handle on an object; an empty name takes it away."""
         name = str(message["name"])
@@ -120,7 +126,7 @@ class Studio(GoalActions):
             self.show_cell()
             self.session.broadcast(robot_message(self.cell))
         if text != self.saved:
-            self.files.keep_unsaved(text)
+            self.keep_unsaved(text)
         document = self.document_message()
         self.session.broadcast(document, but=self.session.controller)
         return {"document": document}
@@ -222,7 +228,7 @@ class Studio(GoalActions):
         self.files.refuse_outside(document)
         is_new = self.cell.load(document)
         self.text, self.problems = text, []
-        self.files.keep_unsaved(text)
+        self.keep_unsaved(text)
         if is_new:
             self.verdicts.forget()
             self.show_cell()

@@ -86,7 +86,7 @@ class Watch:
     def __enter__(self) -> Watch:
         guard = Guard.of(page_assets("watch.html"), is_open=False)
         self._server = start_server(LOOPBACK[0], 0, guard, self._session.handle)
-        self._view = SceneView(self._server, lambda *_: None)
+        self._view = SceneView(self._server)
         threading.Thread(target=self._accept, name="live-cases", daemon=True).start()
         self._session.start()
         return self

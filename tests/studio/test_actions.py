@@ -156,6 +156,50 @@ def test_a_mistake_in_another_file_is_not_marked_in_the_text(tmp_path):
     assert "w.yaml:2" in problem["text"]
 
 
+def test_a_goal_is_a_list_of_joint_positions_with_keys_of_the_planner(studio):
+    planner = "planner_id: RRTConnect, planning_attempts: 2"
+    goal_of = {"verb": "move_to", "joints": [20, 0, 0, 0], "unit": "deg", "planner": planner}
+    done = reply(studio, "execute", **goal_of)
+    assert done["step"].splitlines() == [
+        "move_to: {joints: {joint1: 0.349066, joint2: 0, joint3: 0, joint4: 0}}",
+        "planning: {planner_id: RRTConnect, planning_attempts: 2}",
+    ]
+    assert studio.cell.joint_positions()[0] == pytest.approx(0.349, abs=5e-3)
+    refused = reply(studio, "plan", **{**goal_of, "joints": [20]})["error"]
+    assert refused == "list 4 positions: joint1, joint2, joint3, joint4"
+    assert "did you mean" in reply(studio, "plan", **{**goal_of, "planner": "RRTConect"})["error"]
+
+
+def test_a_clicked_ghost_becomes_the_goal_of_the_page_that_controls(studio):
+    goal(studio, [0.2, 0, 0.15], 60)
+    studio._choose(0)  # noqa: SLF001 - what a click in the scene does
+    done = reply(studio, "execute", verb="ptp")
+    assert done["step"].startswith("ptp: {joints: {joint1: 0, joint2: ")
+    assert studio.cell.tcp_pose().translation == pytest.approx([0.2, 0, 0.15], abs=2e-3)
+
+
+def test_a_world_is_loaded_and_its_mistakes_are_refused(studio):
+    assert reply(studio, "world", name="lesson_om") == {}
+    assert "world: lesson_om" in studio.text
+    before = studio.text
+    assert "lesson_om" in reply(studio, "world", name="lesson_on")["error"]
+    assert "outside" in reply(studio, "world", name="/etc/passwd")["error"]
+    assert studio.text == before
+
+
+def test_an_object_is_attached_and_detached_as_steps(studio):
+    reply(studio, "add_object", **BOX)
+    for step in ("attach_object: box", "detach_object: box"):
+        assert reply(studio, "execute", step=step)["status"] == "passed"
+    assert studio.cell.document.step_count == 2
+
+
+def test_an_object_of_the_text_fills_the_fields(studio):
+    reply(studio, "add_object", **{**BOX, "kind": "cylinder", "size": [0.04, 0.1]})
+    [form] = studio_module.robot_message(studio.cell)["objects"]
+    assert form == {"name": "box", "kind": "cylinder", "size": [0.04, 0.1], "xyz": [0.2, 0, 0.04]}
+
+
 def test_undo_takes_the_step_out_of_the_text_and_the_state(studio):
     before, start = studio.text, studio.cell.joint_positions()
     reply(studio, "execute", step="ptp: {joints: {joint1: 0.4}}")

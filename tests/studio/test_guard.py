@@ -46,6 +46,9 @@ def test_the_page_has_a_strict_policy_and_is_not_kept(served):
     assert "script-src 'self';" in policy
     assert "default-src 'none'" in policy
     assert headers["Cache-Control"] == "no-store"
+    scene = status(served, "/scene/1")[1]["Content-Security-Policy"]
+    assert "script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:;" in scene
+    assert "'unsafe-eval'" not in scene
 
 
 @pytest.mark.parametrize("path", ["/studio/ws", "/scene/1"])
@@ -143,3 +146,31 @@ def test_unsaved_work_survives_a_crash(serve):
     assert again.cell.document.step_count == 1
     first.reply_to("save")
     assert first.files.restored() is None
+
+
+def test_a_file_that_cannot_be_written_is_said_and_nothing_is_lost(serve):
+    served = serve()
+    (served.files.root / "taken.scenario.yaml").mkdir()
+    said = served.reply_to("save", name="taken.scenario.yaml")["error"]
+    assert said == "'taken.scenario.yaml' cannot be written: Is a directory"
+    served.files.unsaved.mkdir()
+    notes = []
+    served.studio.session.broadcast = lambda message, **_: notes.append(message)
+    for number in range(2):
+        served.reply_to("edit", text=f"{served.studio.saved}# {number}\n")
+    warned = [each["text"] for each in notes if each["type"] == "note"]
+    assert len(warned) == 1
+    assert "a crash would lose this work" in warned[0]
+
+
+def test_a_robot_of_the_command_line_may_be_anywhere(tmp_path):
+    from harness.core.errors import SpecError
+    from harness.studio.document import Document
+    from harness.studio.files import StudioFiles
+
+    robot = tmp_path / "elsewhere" / "arm.urdf"
+    document = Document(f"robot: {{urdf: {robot}}}\n")
+    folder = tmp_path / "here"
+    StudioFiles(folder, folder / "x.scenario.yaml", [robot]).refuse_outside(document)
+    with pytest.raises(SpecError, match="is outside"):
+        StudioFiles(folder, folder / "x.scenario.yaml").refuse_outside(document)

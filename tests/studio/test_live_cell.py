@@ -112,6 +112,24 @@ def test_a_recorded_step_is_in_the_text_and_was_executed(cell):
     assert judged(cell).digest == run_case(RunRequest(cell.path)).digest
 
 
+def test_a_recorded_step_that_adds_an_object_repeats_those_before_it(cell):
+    cell.run_steps(2)
+    before, _ = full_state(cell)
+    ball = "{name: ball, sphere: {radius: 0.02}, pose: {xyz: [0.2, 0.1, 0.02]}}"
+    text, record = cell.record(f"add_object: {ball}")
+    assert (record.verb, record.status, cell.steps_done) == ("add_object", "passed", 3)
+    assert "ball" in cell.object_poses()
+    failing = ball.replace("ball", "bowl").replace("[0.2", "[{}")
+    with pytest.raises(SpecError):
+        cell.record(f"add_object: {failing}")
+    assert (cell.steps_done, cell.document.text) == (3, text)
+    cell.step_back()
+    assert len(full_state(cell)[0]) > len(before), "the physics has one more object"
+    cell.go_to(4)
+    cell.path.write_text(text)
+    assert judged(cell).digest == run_case(RunRequest(cell.path)).digest
+
+
 def test_a_step_that_fails_is_not_recorded_and_changes_nothing(cell):
     cell.run_steps(1)
     before, _ = full_state(cell)

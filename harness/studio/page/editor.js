@@ -33,7 +33,7 @@ export function start() {
           caption: each.text, value: each.kind === "key" ? `${each.text}: ` : each.text,
           meta: each.kind, docText: each.help, score: 1000 - index }))))
   }];
-  editor.commands.addCommand({ name: "leave", bindKey: "Escape", exec: () => $("run-all").focus() });
+  editor.commands.addCommand({ name: "leave", bindKey: "Escape", exec: () => $("log").focus() });
   session.on("change", () => {
     if (setting) return;
     $("file").classList.add("unsaved");

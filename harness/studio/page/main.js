@@ -7,7 +7,8 @@ import { showScene } from "./scene.js";
 import { eulerOf } from "./turns.js";
 import "./verdicts.js";
 
-let robot = null, state = null, reach = null, isMine = false, lastWay = -1;
+let robot = null, state = null, reach = null, isMine = false;
+const LIST = ":joints";
 const sliders = new Map();
 const degrees = (value, joint) => (joint.slides ? `${(1000 * value).toFixed(1)} mm` : `${(180 / Math.PI * value).toFixed(1)}°`);
 
@@ -29,11 +30,15 @@ on("robot", (message) => {
   $("title").textContent = `Studio: ${robot.name}`;
   document.title = `Studio: ${robot.name}`;
   if (isOther) showJoints();
-  options($("goal-kind"), robot.states, [["", "the handle"]]);
+  options($("goal-kind"), robot.states, [["", "the handle"], [LIST, "joint positions"]]);
+  const list = (id, values) => $(id).replaceChildren(...values.map((value) => element("option", { value })));
+  list("planners", robot.planners);
+  list("worlds", robot.worlds);
+  list("objects", robot.bodies);
   options($("verb"), robot.verbs);
   options($("frame"), robot.frames);
   options($("handle-name"), robot.bodies, [["", "none"]]);
-  $("verbs").replaceChildren(...robot.steps.map((value) => element("option", { value })));
+  list("verbs", robot.steps);
   options($("camera"), robot.cameras);
   $("camera-box").hidden = !robot.cameras.length;
   showGripper();
@@ -105,6 +110,11 @@ on("request", (message) => {
   $("log").prepend(line);
 });
 
+on("chosen", (message) => {
+  $("goal-kind").value = "";
+  [...$("ways").children].forEach((button, index) => button.setAttribute("aria-pressed", index === message.way));
+});
+
 on("reach", (message) => {
   reach = message;
   const box = $("reach");
@@ -112,7 +122,7 @@ on("reach", (message) => {
   box.textContent = message.refusal || (message.ways.length ? `${message.ways.length === 1 ? "1 way" : `${message.ways.length} ways`} to the handle` : "");
   $("ways").replaceChildren(...message.ways.map((way, index) => element("button", {
     class: `way${way.refusal ? " refused" : ""}${index === message.best ? " best" : ""}`,
-    onclick: async () => { lastWay = index; await act("choose", { way: index }); $("goal-kind").value = ""; } },
+    onclick: () => act("choose", { way: index }) },
   `${way.name}${way.refusal ? `: ${way.refusal}` : ""}`)));
   if (message.pose) { $("goal-kind").value = ""; showGoal(message.pose); }
 });
@@ -137,7 +147,8 @@ async function run(step) {
   return reply;
 }
 
-const goal = () => ({ verb: $("verb").value, state: $("goal-kind").value, planner: $("planner").value.trim(), frame: $("frame").value,
+const goal = () => ({ verb: $("verb").value, state: $("goal-kind").value === LIST ? "" : $("goal-kind").value,
+  joints: $("goal-kind").value === LIST ? numbers($("goal-joints").value) : [], unit: $("unit").value, planner: $("planner").value.trim(), frame: $("frame").value,
   interim: $("verb").value === "circ" ? numbers($("interim").value) : [] });
 
 function showPlan(reply) {
@@ -178,6 +189,17 @@ function setGoal() {
 }
 
 const object = () => ({ name: $("object-name").value.trim(), kind: $("object-kind").value, size: numbers($("object-size").value), xyz: numbers($("object-xyz").value) });
+$("goal-kind").addEventListener("change", () => { $("goal-joints-row").hidden = $("goal-kind").value !== LIST; });
+$("object-name").addEventListener("change", () => {
+  const known = robot?.objects.find((each) => each.name === $("object-name").value.trim());
+  if (!known?.kind) return;
+  $("object-kind").value = known.kind;
+  $("object-size").value = known.size.join(" ");
+  $("object-xyz").value = known.xyz.join(" ");
+});
+click("world-load", () => act("world", { name: $("world").value.trim() }));
+click("object-attach", () => run(`attach_object: ${$("object-name").value.trim()}`));
+click("object-detach", () => run(`detach_object: ${$("object-name").value.trim()}`));
 click("object-add", () => act("add_object", object()));
 click("object-handle", () => act("handle", { name: $("handle-name").value }));
 click("object-delete", () => act("delete_object", object()));
@@ -213,14 +235,14 @@ document.addEventListener("keydown", (event) => {
     const at = editor.nextBreakpoint();
     return act("run", at ? { until: "line", line: at - 1 } : { until: "end" });
   }
-  const isTyping = event.target.matches("input, textarea, select, .ace_text-input");
-  if (event.key === "Escape" && !event.target.matches(".ace_text-input")) return act("stop");
+  const isTyping = event.target.matches?.("input, textarea, select, .ace_text-input");
+  if (event.key === "Escape" && !event.target.matches?.(".ace_text-input")) return act("stop");
   if (isTyping || event.ctrlKey || event.altKey || event.metaKey) return;
   const gripper = robot?.gripper?.states ?? [];
   const state = (words) => gripper.find((name) => words.includes(name));
   if (event.key === "o" && state(["open"])) run("gripper: open");
   if (event.key === "p" && state(["closed", "close"])) run(`gripper: ${state(["closed", "close"])}`);
-  if (event.key === " " && !event.target.matches("button, summary")) { event.preventDefault(); $("play").click(); }
+  if (event.key === " " && !event.target.matches?.("button, summary")) { event.preventDefault(); $("play").click(); }
 });
 
 showScene();
