@@ -6,7 +6,7 @@ import argparse
 import shlex
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,6 +19,7 @@ from harness.suite.leftovers import clean_report_folder
 from harness.suite.warm import WarmServer
 
 if TYPE_CHECKING:
+    from harness.reporting.result import CaseResult
     from harness.reporting.suite.columns import Columns
     from harness.reporting.terminal import Style
     from harness.session.run_request import RunRequest
@@ -48,14 +49,15 @@ def _run(arguments: argparse.Namespace) -> int:
         if not arguments.in_process and not arguments.cluster:
             server.open()  # it imports for as long as this process takes to get ready
         suite = _suite(arguments, files)
+        live = _live_page(arguments, suite)
         if arguments.format == "json":
             with only_json_on_stdout():
-                suite.collect(server)
+                suite.collect(server, on_result=live)
                 write_files(arguments, suite)
                 _show_interruption(arguments, suite, time.monotonic() - start)
             return show_json(suite)
         if arguments.format != "full":
-            suite.collect(server)
+            suite.collect(server, on_result=live)
             write_files(arguments, suite)
             _show_interruption(arguments, suite, time.monotonic() - start)
             return show_lines(arguments, suite)
@@ -70,7 +72,12 @@ def _run(arguments: argparse.Namespace) -> int:
             is_brief=len(names) > BRIEF_FROM,
             style=Style.of(sys.stdout),
         )
-        suite.collect(server, progress.step, progress.result)
+
+        def on_result(index: int, result: CaseResult) -> None:
+            progress.result(index, result)
+            live(index, result)
+
+        suite.collect(server, progress.step, on_result)
         output().status(lambda: "  writing the results")
     page, columns = write_files(arguments, suite)
     output().status(None)
@@ -166,14 +173,29 @@ def write_files(
     from harness.reporting.suite.github import append_summary
 
     append_summary(suite.record)
-    is_alone = len(suite.plan) == 1 and not suite.is_part
-    if arguments.no_report or is_alone or arguments.repeat > 1:
+    if not has_page(arguments, suite):
         return None, None
     from harness.reporting.suite.history import history_of
     from harness.suite.write import write_results
 
     history = history_of(Path(arguments.history)) if arguments.history else {}
     return write_results(suite, Path(arguments.report_dir), history)
+
+
+def _live_page(arguments: argparse.Namespace, suite: SuiteRun) -> Callable[[int, CaseResult], None]:
+    """What keeps the page of a running suite up to date with each result."""
+    if not has_page(arguments, suite):
+        return lambda *_: None
+    from harness.cli.live_page import LivePage
+
+    page = LivePage(suite, Path(arguments.report_dir))
+    return lambda index, _result: page.result(index)
+
+
+def has_page(arguments: argparse.Namespace, suite: SuiteRun) -> bool:
+    """Whether a suite writes files of its own, next to the reports of its cases."""
+    is_alone = len(suite.plan) == 1 and not suite.is_part
+    return not (arguments.no_report or is_alone or arguments.repeat > 1)
 
 
 def show_json(suite: SuiteRun) -> int:

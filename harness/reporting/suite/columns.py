@@ -147,12 +147,12 @@ class Columns:
         """Indices of the runs that are listed, in their order."""
         return sorted(-index for _, _, index in self._urgent)
 
-    @cached_property
+    @property
     def parameters(self) -> list[Parameter]:
         """Everything that varies in some run, in the order in which the runs name it."""
         return [column.parameter(path) for path, column in self._columns.items()]
 
-    @cached_property
+    @property
     def is_good(self) -> NDArray[np.bool_]:
         """Which of the runs passed."""
         return np.array(self.groups) == PASSED

@@ -12,6 +12,7 @@ import re
 import shutil
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from tempfile import SpooledTemporaryFile
 from typing import IO
@@ -32,6 +33,7 @@ ATTACHMENT = "[[ATTACHMENT|"
 MOST_IN_MEMORY = 1_000_000
 """Bytes of a `testsuite` that are kept in memory until the document is written."""
 
+MARKUP = re.compile('[&<>"]')
 SAMPLE = re.compile(r"(?:^|-)sample\d+$")
 """What the name of a sample adds to its group's."""
 
@@ -109,7 +111,7 @@ class JunitWriter:
         head = f'<testsuites name="{NAME}" {self._counts.attributes}>'
         file.write(f'<?xml version="1.0" encoding="UTF-8"?>\n{head}\n'.encode())
         for name, (counts, text) in self._suites.items():
-            opening = f'<testsuite name="{_escaped(printable(name))}" {counts.attributes}>\n'
+            opening = f'<testsuite name="{_escaped(name)}" {counts.attributes}>\n'
             file.write(opening.encode())
             text.seek(0)
             shutil.copyfileobj(text, file)
@@ -124,13 +126,18 @@ def _spooled() -> IO[bytes]:
 
 def _tag(name: str, attributes: Mapping[str, str], inner: str | None = None) -> str:
     """An element; `inner` is XML."""
-    said = "".join(f' {key}="{_escaped(value)}"' for key, value in attributes.items())
+    said = "".join([f' {key}="{_escaped(value)}"' for key, value in attributes.items()])
     return f"<{name}{said} />" if inner is None else f"<{name}{said}>{inner}</{name}>"
 
 
 def _escaped(text: str) -> str:
-    """Printable text as XML, in an attribute too."""
-    return escape(text, {'"': "&quot;"})
+    """Text in one line as XML, in an attribute too."""
+    return _xml(printable(text))
+
+
+def _xml(text: str) -> str:
+    """Printable text as XML."""
+    return escape(text, {'"': "&quot;"}) if MARKUP.search(text) else text
 
 
 def _may_fail(result: CaseResult, rates: Sequence[SampledRate]) -> bool:
@@ -141,16 +148,20 @@ def _may_fail(result: CaseResult, rates: Sequence[SampledRate]) -> bool:
 
 
 def _testcase(file: str, name: str, seconds: float, parts: Iterable[str]) -> bytes:
-    place = ".".join(Path(file).with_suffix("").with_suffix("").parts).strip("./")
-    said = {"name": name, "classname": place, "file": file, "time": f"{seconds:.3f}"}
-    inner = "".join(f"{part}\n" for part in parts)
-    printed = {key: printable(each) for key, each in said.items()}
-    text = _tag("testcase", printed, f"\n{inner}")
+    said = {"name": name, "classname": _class(file), "file": file, "time": f"{seconds:.3f}"}
+    inner = "".join([f"{part}\n" for part in parts])
+    text = _tag("testcase", said, f"\n{inner}")
     return f"{text}\n".encode()
 
 
+@cache
+def _class(file: str) -> str:
+    """A file's path without its suffix, with dots."""
+    return ".".join(Path(file).with_suffix("").with_suffix("").parts).strip("./")
+
+
 def _properties(found: Iterable[tuple[str, str]]) -> str:
-    lines = (_tag("property", {"name": printable(k), "value": printable(v)}) for k, v in found)
+    lines = [f'<property name="{_escaped(k)}" value="{_escaped(v)}" />' for k, v in found]
     return _tag("properties", {}, "\n".join(lines))
 
 
@@ -158,9 +169,8 @@ def _rate(sampled: SampledRate) -> bytes:
     rate, name = sampled.rate, f"success rate {sampled.group}".strip()
     parts = [_properties([("passed", str(rate.passed)), ("samples", str(rate.total))])]
     if sampled.outcome != "passed":
-        said = printable(rate_text(f"{sampled.file} {sampled.group}".strip(), rate))
-        why = {"message": said, "type": "success rate"}
-        parts.append(_tag("failure", why, _escaped(said)))
+        said = _escaped(rate_text(f"{sampled.file} {sampled.group}".strip(), rate))
+        parts.append(f'<failure message="{said}" type="success rate">{said}</failure>')
     return _testcase(sampled.file, name, 0.0, parts)
 
 
@@ -172,14 +182,14 @@ def _case(case: SuiteCase, *, may_fail: bool) -> bytes:
         lines += ["failed, as samples may; their rate is judged", *causes(result)]
     elif case.cause is not None:
         kind = "failure" if result.outcome == "failed" else "error"
-        why = {"message": printable(case.cause.said), "type": printable(case.cause.group)}
-        parts.append(_tag(kind, why, _escaped("\n".join(causes(result)))))
+        why = {"message": case.cause.said, "type": case.cause.group}
+        parts.append(_tag(kind, why, _xml("\n".join(causes(result)))))
     if result.report_dir:
         lines.append(f"report: {report_link(result)}")
     if lines:
         said = printable_lines("\n".join(lines)).replace(ATTACHMENT, f"[ {ATTACHMENT[1:]}")
         text = "\n".join([said, *_attachments(result)])
-        parts.append(_tag("system-out", {}, _escaped(text)))
+        parts.append(_tag("system-out", {}, _xml(text)))
     return _testcase(result.file, name, _seconds(result), parts)
 
 

@@ -26,6 +26,9 @@ from harness.reporting.terminal import OUTCOMES, Style, failure_place
 FOLDER = Path(__file__).with_name("page")
 SIGNS = Style(has_signs=True)
 MOST_ROWS = 2000
+REFRESH = '<meta http-equiv="refresh" content="5">'
+"""Loads the page of a running suite again."""
+
 HISTORY_HEAD = '<th scope="col" class="history">Worst margin over runs</th>'
 SPARK_WIDTH, SPARK_HEIGHT = 90, 20  # [pixels]
 
@@ -53,8 +56,9 @@ def suite_html(
         title="; ".join(filter(None, (f"{passed} of {total} passed", missed(record.rates)))),
         style=style,
         script=script,
+        refresh=REFRESH if record.progress else "",
         pill="good" if record.outcome == "passed" else "bad",
-        outcome=escape(record.outcome),
+        outcome=escape(f"running: {record.progress}" if record.progress else record.outcome),
         interrupted="".join(
             f" · {escape(each)}"
             for each in (*["interrupted"][: record.is_interrupted], *record.missing_parts)

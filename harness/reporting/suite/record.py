@@ -65,6 +65,7 @@ class SuiteRecord:
         rates: The rates of samples.
         is_interrupted: Whether Ctrl-C ended it early.
         missing_parts: Why a suite that was merged from parts is incomplete, one sentence each.
+        progress: The number of runs that are done while the suite runs; empty when it has ended.
     """
 
     outcome: Outcome
@@ -72,6 +73,7 @@ class SuiteRecord:
     rates: Sequence[SampledRate] = ()
     is_interrupted: bool = False
     missing_parts: Sequence[str] = ()
+    progress: str = ""
 
 
 def results_json(
