@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 BRIEF_FROM = 20
 """With more runs than this a passed one is a line, without its steps."""
 
+LONGEST_WAIT_FOR_PAGE = 10.0
+"""Time after which a run with `--live` begins although its page is not open [s]."""
+
 MOST_FAILURES = 20
 """Failures that are shown in full; the rest is counted."""
 
@@ -40,24 +43,48 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run(arguments: argparse.Namespace) -> int:
     files = discover(arguments.paths)
+    if arguments.live:
+        return _run_live(arguments, files)
     if arguments.robot == "ros2":
         from harness.cli.remote import run_on_ros2
 
         return run_on_ros2(arguments, files)
+    return _run_files(arguments, files)
+
+
+def _run_live(arguments: argparse.Namespace, files: Sequence[Path]) -> int:
+    """Run scenarios while a page shows them."""
+    excluded = {"--on": arguments.cluster, "--robot ros2": arguments.robot == "ros2"}
+    for option, is_given in {**excluded, "--node": arguments.nodes}.items():
+        if is_given:
+            raise UsageError(f"--live and {option} exclude each other")
+    from harness.cli.studio import open_browser, refuse_missing_extra
+
+    refuse_missing_extra()
+    from harness.studio.watch import Watch
+
+    with Watch() as watch:
+        complain(f"live: {watch.page}")
+        if open_browser(watch.page):
+            watch.wait_for_page(LONGEST_WAIT_FOR_PAGE)
+        return _run_files(arguments, files, watch.address)
+
+
+def _run_files(arguments: argparse.Namespace, files: Sequence[Path], live: str = "") -> int:
     start = time.monotonic()
     with WarmServer() as server:
         if not arguments.in_process and not arguments.cluster:
             server.open()  # it imports for as long as this process takes to get ready
-        suite = _suite(arguments, files)
-        live = _live_page(arguments, suite)
+        suite = _suite(arguments, files, live)
+        update_page = _page_updates(arguments, suite)
         if arguments.format == "json":
             with only_json_on_stdout():
-                suite.collect(server, on_result=live)
+                suite.collect(server, on_result=update_page)
                 write_files(arguments, suite)
                 _show_interruption(arguments, suite, time.monotonic() - start)
             return show_json(suite)
         if arguments.format != "full":
-            suite.collect(server, on_result=live)
+            suite.collect(server, on_result=update_page)
             write_files(arguments, suite)
             _show_interruption(arguments, suite, time.monotonic() - start)
             return show_lines(arguments, suite)
@@ -75,7 +102,7 @@ def _run(arguments: argparse.Namespace) -> int:
 
         def on_result(index: int, result: CaseResult) -> None:
             progress.result(index, result)
-            live(index, result)
+            update_page(index, result)
 
         suite.collect(server, progress.step, on_result)
         output().status(lambda: "  writing the results")
@@ -85,7 +112,7 @@ def _run(arguments: argparse.Namespace) -> int:
     return suite.exit_code
 
 
-def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
+def _suite(arguments: argparse.Namespace, files: Sequence[Path], live: str) -> SuiteRun:
     from harness.ros.launch import named_commands
     from harness.suite.plan import SuiteRequest, planned_cases, record_of
     from harness.suite.shards import shard_of, write_shard_record
@@ -129,6 +156,7 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
         reporters=arguments.reporters,
         nodes=named_commands(arguments.nodes) if arguments.nodes else {},
         conditions=conditions,
+        live=live,
     )
     plan = planned_cases(files, request)
     if shard is not None and root is not None:
@@ -182,7 +210,9 @@ def write_files(
     return write_results(suite, Path(arguments.report_dir), history)
 
 
-def _live_page(arguments: argparse.Namespace, suite: SuiteRun) -> Callable[[int, CaseResult], None]:
+def _page_updates(
+    arguments: argparse.Namespace, suite: SuiteRun
+) -> Callable[[int, CaseResult], None]:
     """What keeps the page of a running suite up to date with each result."""
     if not has_page(arguments, suite):
         return lambda *_: None

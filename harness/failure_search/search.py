@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from harness.core.errors import HarnessError, SpecError
+from harness.core.suggestion import did_you_mean
 from harness.failure_search.closeness import failure_kind
 from harness.failure_search.evaluator import Evaluator, OnRun, Sample
 from harness.failure_search.explore import Exploration, explore
 from harness.failure_search.shrink import shrink
 from harness.failure_search.space import Point, SearchSpace, search_space
-from harness.language.files.mistakes import did_you_mean
 from harness.language.reading.load import load_scenario
 from harness.language.variation import Search
 from harness.suite.cases import read_ahead

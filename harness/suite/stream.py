@@ -13,8 +13,11 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import TYPE_CHECKING, Any, BinaryIO
 
+from pydantic_core import from_json
+
 from harness import __version__
 from harness.core.errors import HarnessError
+from harness.recording.older_runs import in_present_words
 from harness.recording.run import Outcome
 from harness.reporting.json_text import compact_json
 from harness.reporting.result import CaseResult
@@ -23,7 +26,8 @@ from harness.session.run_request import RunRequest
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
 
-FORMAT = "armharness-stream/1"
+FORMAT = "armharness-stream/2"
+KNOWN_FORMATS = ("armharness-stream/1", FORMAT)
 FILE = "results.jsonl"
 MESHES = (".stl", ".obj", ".dae")
 INPUTS = (
@@ -237,8 +241,20 @@ def entry_of(line: bytes) -> StreamEntry | None:
     try:
         entry: StreamEntry = validator(StreamEntry).validate_json(line)
     except ValueError:
+        return _older_entry(line)
+    return entry if entry.format in KNOWN_FORMATS else None
+
+
+def _older_entry(line: bytes) -> StreamEntry | None:
+    """A line of the first format; None where it has none of the formats."""
+    try:
+        plain = from_json(line)
+        if plain["format"] not in KNOWN_FORMATS:
+            return None
+        present = {**plain, "format": FORMAT, "result": in_present_words(plain["result"])}
+        return validator(StreamEntry).validate_python(present)
+    except (ValueError, KeyError, TypeError):
         return None
-    return entry if entry.format == FORMAT else None
 
 
 def head_of(line: bytes) -> LineHead | None:
@@ -247,7 +263,7 @@ def head_of(line: bytes) -> LineHead | None:
         head: LineHead = validator(LineHead).validate_json(line)
     except ValueError:
         return None
-    return head if head.format == FORMAT else None
+    return head if head.format in KNOWN_FORMATS else None
 
 
 def result_of(plain: Mapping[str, Any]) -> CaseResult:
