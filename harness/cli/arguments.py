@@ -94,6 +94,13 @@ def whole_number(text: str) -> int:
     return int(text)
 
 
+def batch_size(text: str) -> int:
+    """A number from 2 to 1000."""
+    if not text.isdigit() or not 2 <= int(text) <= 1000:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number from 2 to 1000")
+    return int(text)
+
+
 def port_number(text: str) -> int:
     """A TCP port; 0 is any that is free."""
     if not text.isdigit() or int(text) > 65535:

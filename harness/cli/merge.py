@@ -6,7 +6,7 @@ import argparse
 import time
 from pathlib import Path
 
-from harness.cli.output import complain, guarded, output
+from harness.cli.output import complain, guarded
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -15,9 +15,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    from harness.cli.run import show_lines, show_results, write_files
-    from harness.reporting.json_text import json_text
-    from harness.reporting.suite.record import results_document
+    from harness.cli.run import show_json, show_lines, show_results, write_files
     from harness.suite.merge import merge_parts
 
     start = time.monotonic()
@@ -38,11 +36,11 @@ def _run(arguments: argparse.Namespace) -> int:
         seed=record.seed,
         samples=record.samples,
     )
-    page = write_files(options, suite)
+    page, columns = write_files(options, suite)
     if arguments.format == "json":
-        output().document(json_text(results_document(suite.record, suite.exit_code)))
+        show_json(suite)
     elif arguments.format == "full":
-        show_results(options, suite, time.monotonic() - start, page)
+        show_results(options, suite, time.monotonic() - start, page, columns)
     else:
         show_lines(options, suite)
     for line in suite.missing_parts:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from harness.cli.arguments import (
+    batch_size,
     factor,
     folder,
     metres,
@@ -183,11 +184,18 @@ def for_search(search: argparse.ArgumentParser) -> None:
     add("--seed", metavar="N", type=int, default=None,
         help="seed of every run and of the search, in place of the file's")  # fmt: skip
     add("--case", metavar="NAME", default="", help="the parametrised case, where there are several")
-    add("--runs", metavar="N", type=whole_number, default=100,
-        help="runs of the search, without those that shrink a failure (default: 100)")  # fmt: skip
-    add("--start", metavar="N", type=whole_number, default=32,
+    add("--runs", metavar="N", type=whole_number, default=None,
+        help="runs of the search, without those that shrink a failure"
+             " (default: the file's `search`, or 100)")  # fmt: skip
+    add("--start", metavar="N", type=whole_number, default=None,
         help="how many of them are low-discrepancy samples, which show the rate"
-             " (default: 32)")  # fmt: skip
+             " (default: the file's, or 32)")  # fmt: skip
+    add("--batch", metavar="N", type=batch_size, default=None,
+        help="runs that the optimiser proposes together"
+             " (default: the file's, or 4 + 3 ln(number of parameters))")  # fmt: skip
+    add("--minimise", metavar="NAME", default=None,
+        help="name of the expectation whose margin is minimised"
+             " (default: the file's, or the worst margin)")  # fmt: skip
     add("-j", metavar="N", dest="workers", type=whole_number, default=1,
         help="make N runs side by side")  # fmt: skip
     add("--resume", action="store_true",

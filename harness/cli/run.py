@@ -6,11 +6,12 @@ import argparse
 import shlex
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from harness.cli.output import complain, guarded, only_json_on_stdout, output, say, say_text
+from harness.core.lazy import LazySequence
 from harness.core.registry import registry
 from harness.suite.cases import progress_text
 from harness.suite.discovery import UsageError, discover
@@ -18,6 +19,8 @@ from harness.suite.leftovers import clean_report_folder
 from harness.suite.warm import WarmServer
 
 if TYPE_CHECKING:
+    from harness.reporting.result import CaseResult
+    from harness.reporting.suite.columns import Columns
     from harness.reporting.terminal import Style
     from harness.session.run_request import RunRequest
     from harness.suite.conditions import Conditions
@@ -73,24 +76,22 @@ def _run_files(arguments: argparse.Namespace, files: Sequence[Path], live: str =
         if not arguments.in_process and not arguments.cluster:
             server.open()  # it imports for as long as this process takes to get ready
         suite = _suite(arguments, files, live)
+        update_page = _page_updates(arguments, suite)
         if arguments.format == "json":
-            from harness.reporting.suite.record import results_document
-
-            with only_json_on_stdout() as write_json:
-                suite.collect(server)
+            with only_json_on_stdout():
+                suite.collect(server, on_result=update_page)
                 write_files(arguments, suite)
                 _show_interruption(arguments, suite, time.monotonic() - start)
-                write_json(results_document(suite.record, suite.exit_code))
-            return suite.exit_code
+            return show_json(suite)
         if arguments.format != "full":
-            suite.collect(server)
+            suite.collect(server, on_result=update_page)
             write_files(arguments, suite)
             _show_interruption(arguments, suite, time.monotonic() - start)
             return show_lines(arguments, suite)
         from harness.cli.progress import ProgressLines
         from harness.reporting.terminal import Style
 
-        names = _case_names(arguments, suite.jobs)
+        names = _case_names(arguments, suite)
         progress = ProgressLines(
             output(),
             names,
@@ -98,11 +99,16 @@ def _run_files(arguments: argparse.Namespace, files: Sequence[Path], live: str =
             is_brief=len(names) > BRIEF_FROM,
             style=Style.of(sys.stdout),
         )
-        suite.collect(server, progress.step, progress.result)
+
+        def on_result(index: int, result: CaseResult) -> None:
+            progress.result(index, result)
+            update_page(index, result)
+
+        suite.collect(server, progress.step, on_result)
         output().status(lambda: "  writing the results")
-    page = write_files(arguments, suite)
+    page, columns = write_files(arguments, suite)
     output().status(None)
-    show_results(arguments, suite, time.monotonic() - start, page)
+    show_results(arguments, suite, time.monotonic() - start, page, columns)
     return suite.exit_code
 
 
@@ -134,6 +140,7 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path], live: str) -> S
     if root is not None:
         clean_report_folder(root)
     shard = shard_of(arguments.shard) if arguments.shard else None
+    conditions = _conditions(arguments)
     request = SuiteRequest(
         expression=arguments.expression,
         cases=arguments.cases,
@@ -148,12 +155,14 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path], live: str) -> S
         strict=arguments.strict,
         reporters=arguments.reporters,
         nodes=named_commands(arguments.nodes) if arguments.nodes else {},
-        conditions=_conditions(arguments),
+        conditions=conditions,
         live=live,
     )
     plan = planned_cases(files, request)
     if shard is not None and root is not None:
         write_shard_record(record_of(files, request, shard, root))
+        if conditions is not None:
+            conditions.copy(root)  # a merge has neither the scenario files nor the conditions
     is_whole = arguments.repeat == 1 and (len(plan) > 1 or shard is not None)
     how = SuiteOptions(
         workers=arguments.workers,
@@ -174,35 +183,58 @@ def _conditions(arguments: argparse.Namespace) -> Conditions | None:
         return None
     from harness.suite.conditions import read_conditions
 
-    given = {
-        "--seed": arguments.seed,
-        "--samples": arguments.samples,
-        "--shard": arguments.shard or None,
-    }
+    given = {"--seed": arguments.seed, "--samples": arguments.samples}
     for option, value in given.items():
         if value is not None:
             raise UsageError(f"--conditions and {option} exclude each other")
     return read_conditions(Path(arguments.conditions))
 
 
-def write_files(arguments: argparse.Namespace, suite: SuiteRun) -> Path | None:
-    """The files of a suite; GitHub's summary of the job where there is one."""
+def write_files(
+    arguments: argparse.Namespace, suite: SuiteRun
+) -> tuple[Path | None, Columns | None]:
+    """The files of a suite; GitHub's summary of the job where there is one.
+
+    Returns:
+        The page, and what varies in the cases; None where no files are written.
+    """
     from harness.reporting.suite.github import append_summary
 
     append_summary(suite.record)
-    page = None
-    if not arguments.no_report and (len(suite.plan) > 1 or suite.is_part) and arguments.repeat == 1:
-        from harness.reporting.suite.history import history_of
-        from harness.reporting.suite.write import write_suite
+    if not has_page(arguments, suite):
+        return None, None
+    from harness.reporting.suite.history import history_of
+    from harness.suite.write import write_results
 
-        if any(each.case.sample is not None for each in suite.plan) and not suite.is_part:
-            from harness.suite.conditions import FILE, conditions_of, write_conditions
+    history = history_of(Path(arguments.history)) if arguments.history else {}
+    return write_results(suite, Path(arguments.report_dir), history)
 
-            conditions = conditions_of(suite.plan, suite.results)
-            write_conditions(Path(arguments.report_dir) / FILE, conditions)
-        history = history_of(Path(arguments.history)) if arguments.history else {}
-        page = write_suite(Path(arguments.report_dir), suite.record, suite.exit_code, history)
-    return page
+
+def _page_updates(
+    arguments: argparse.Namespace, suite: SuiteRun
+) -> Callable[[int, CaseResult], None]:
+    """What keeps the page of a running suite up to date with each result."""
+    if not has_page(arguments, suite):
+        return lambda *_: None
+    from harness.cli.live_page import LivePage
+
+    page = LivePage(suite, Path(arguments.report_dir))
+    return lambda index, _result: page.result(index)
+
+
+def has_page(arguments: argparse.Namespace, suite: SuiteRun) -> bool:
+    """Whether a suite writes files of its own, next to the reports of its cases."""
+    is_alone = len(suite.plan) == 1 and not suite.is_part
+    return not (arguments.no_report or is_alone or arguments.repeat > 1)
+
+
+def show_json(suite: SuiteRun) -> int:
+    """Print all results as one JSON document."""
+    from harness.reporting.suite.record import results_json
+
+    for part in results_json(suite.record, suite.exit_code):
+        output().document(part)
+    return suite.exit_code
 
 
 def show_lines(arguments: argparse.Namespace, suite: SuiteRun) -> int:
@@ -210,30 +242,43 @@ def show_lines(arguments: argparse.Namespace, suite: SuiteRun) -> int:
     from harness.reporting.suite.cause import short_lines
     from harness.reporting.suite.github import error_annotations
 
-    results = list(suite.results.values())
     if arguments.format == "github":
-        for line in error_annotations(results):
+        for line in error_annotations(suite.failures()):
             output().command(line)
     else:
-        say(*short_lines(results))
+        say(*short_lines(suite.failures()))
     return suite.exit_code
 
 
-def _case_names(arguments: argparse.Namespace, jobs: Sequence[RunRequest]) -> list[str]:
-    is_alone = arguments.workers == 1
-    names = [str(job.file) if is_alone else job.file.name.split(".")[0] for job in jobs]
-    names = [
-        f"{name} [{job.case}]" if job.case else name for name, job in zip(names, jobs, strict=True)
-    ]
-    if arguments.repeat == 1:
-        return names
-    return [f"{name} #{number % arguments.repeat + 1}" for number, name in enumerate(names)]
+def _case_names(arguments: argparse.Namespace, suite: SuiteRun) -> Sequence[str]:
+    repeat = arguments.repeat
+
+    def name(index: int) -> str:
+        planned = suite.plan[index // repeat]
+        file = planned.file
+        shown = str(file) if arguments.workers == 1 else file.name.split(".")[0]
+        case = f" [{planned.name}]" if planned.name else ""
+        return f"{shown}{case}" + (f" #{index % repeat + 1}" if repeat > 1 else "")
+
+    return LazySequence(len(suite.jobs), name)
 
 
 def show_results(
-    arguments: argparse.Namespace, suite: SuiteRun, seconds: float, page: Path | None
+    arguments: argparse.Namespace,
+    suite: SuiteRun,
+    seconds: float,
+    page: Path | None,
+    columns: Columns | None,
 ) -> None:
-    """Failures, rates, tables and the last lines."""
+    """Failures, rates, tables and the last lines.
+
+    Args:
+        arguments: Those of the command.
+        suite: The suite with its results.
+        seconds: The wall time of the command.
+        page: The page of the suite; None where there is none.
+        columns: What varies in the cases; None where this is not known yet.
+    """
     from harness.reporting.sampled import missed
     from harness.reporting.suite.github import annotations_for_action
     from harness.reporting.terminal import Style, repeats, report_link, summary
@@ -248,22 +293,22 @@ def show_results(
         for index, said in suite.differences.items():
             say(f"  run {index % arguments.repeat + 1} of {suite.jobs[index].file}: {said}")
     else:
-        _print_rates(suite, style)
+        _print_rates(suite, columns, style)
     rates = missed(suite.rates)
     rate_text = f"; {style.outcome('failed', rates)}" if rates else ""
     if suite.results:
-        say(f"{summary(list(suite.results.values()), seconds, style)}{rate_text}")
+        outcomes = (outcome for _, outcome in suite.results.outcomes())
+        say(f"{summary(outcomes, seconds, style)}{rate_text}")
     if len(suite.files) > 1:
         say(suite.files_text)
     if suite.resumed:
         say(f"{suite.resumed} of them were known from before")
-    written = [result for result in suite.results.values() if result.report_dir]
     if page is not None:
         say(f"reports: {style.link(str(page), page.resolve().as_uri())}")
-    elif written:
+    elif written := [result for result in suite.results.values() if result.report_dir]:
         one = report_link(written[0], style)
         say(f"report: {one}" if len(written) == 1 else f"reports: {arguments.report_dir}")
-    for line in annotations_for_action(suite.record):
+    for line in annotations_for_action(suite.failures()):
         output().command(line)
     if len(suite.processors) > 1:
         say(
@@ -293,14 +338,13 @@ def _print_failures(arguments: argparse.Namespace, suite: SuiteRun, style: Style
     from harness.reporting.terminal import failure
     from harness.suite.header import source_lines
 
-    shown_failures = 0
-    for index, result in suite.results.items():
-        is_repetition = index % arguments.repeat > 0 and result.outcome != "error"
-        if result.outcome == "passed" or is_repetition:
-            continue
-        shown_failures += 1
-        if shown_failures > MOST_FAILURES:
-            continue
+    failed = [
+        index
+        for index, outcome in suite.results.outcomes()
+        if outcome != "passed" and (index % arguments.repeat == 0 or outcome == "error")
+    ]
+    for index in failed[:MOST_FAILURES]:
+        result = suite.results[index]
         job = suite.jobs[index]
         again, source = _command(arguments, job), source_lines(job.file)
         say("")
@@ -308,22 +352,22 @@ def _print_failures(arguments: argparse.Namespace, suite: SuiteRun, style: Style
         folder = job.report_dir
         if folder and not result.report_dir and (folder / "run.json").is_file():
             say(f"  no report was written; {folder} is of an earlier run")
-    if shown_failures > MOST_FAILURES:
-        say("", f"... and {shown_failures - MOST_FAILURES} more that did not pass")
+    if len(failed) > MOST_FAILURES:
+        say("", f"... and {len(failed) - MOST_FAILURES} more that did not pass")
 
 
-def _print_rates(suite: SuiteRun, style: Style) -> None:
-    from harness.reporting.sampled import rate_line, table_lines
+def _print_rates(suite: SuiteRun, columns: Columns | None, style: Style) -> None:
+    from harness.reporting.sampled import rate_line
 
     for group in suite.rates:
         name = f"{group.file} [{group.group}]" if group.group else group.file
         say(rate_line(name, group.rate, style))
-    cases = [
-        (values, result.outcome == "passed")
-        for index, result in suite.results.items()
-        if (values := suite.values(index)) and result.outcome != "invalid"
-    ]
-    for line in table_lines(cases, style):
+    if not any(each.header.varied for each in suite.plan.files):
+        return
+    from harness.reporting.suite.columns import Columns
+    from harness.reporting.suite.tables import table_lines
+
+    for line in table_lines(columns or Columns(suite.record.cases), style):
         say(line)
 
 

@@ -55,18 +55,17 @@ def _search(arguments: argparse.Namespace) -> tuple[SearchResult, list[WrittenFa
         )
         from harness.suite.stream import Stream
 
-        request = SearchRequest(
+        names = ("runs", "start", "seed", "batch", "minimise")
+        request = SearchRequest.of(
             files[0],
             dict(arguments.overrides),
             arguments.case,
-            arguments.seed,
-            arguments.runs,
-            min(arguments.start, arguments.runs),
-            arguments.workers,
-            arguments.hard_cap,
+            {name: getattr(arguments, name) for name in names},
+            workers=arguments.workers,
+            hard_cap=arguments.hard_cap,
         )
         folder = search_folder(Path(arguments.report_dir), files[0])
-        progress = _Progress(arguments.runs)
+        progress = _Progress(request.runs)
         with closing(Stream(folder, resume=arguments.resume)) as stream:
             try:
                 found = search(

@@ -37,6 +37,8 @@ def printable(text: str) -> str:
 
     Applying it twice changes nothing more.
     """
+    if text.isascii() and text.isprintable() and "#" not in text:
+        return text
     return _IN_A_LINE.sub(_escaped, text)
 
 
@@ -48,6 +50,8 @@ def printable_lines(text: str) -> str:
 
 def json_printable(text: str) -> str:
     r"""The JSON text with the same meaning in which such characters are `\u` escapes."""
+    if text.isascii() and text.isprintable() and "#" not in text:
+        return text
     import json  # here: `harness --help` has no use for it
 
     def escaped(match: re.Match[str]) -> str:

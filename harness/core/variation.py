@@ -12,11 +12,11 @@ MOST_CASES = 10_000
 MOST_SAMPLES = 100_000
 """Largest number of samples of all cases together."""
 
-Cases = Mapping[str, Sequence[Any]] | Sequence[Mapping[str, Any]]
+Parametrize = Mapping[str, Sequence[Any]] | Sequence[Mapping[str, Any]]
 """A grid of values by path, or named cases."""
 
 
-def count_of(parametrize: Cases | None) -> int:
+def count_of(parametrize: Parametrize | None) -> int:
     """Number of cases of a file, without its samples."""
     if parametrize is None:
         return 1

@@ -33,12 +33,18 @@ def failure_kind(result: CaseResult) -> str:
     return f"{group} (line {cause.line})" if cause.line else group
 
 
-def margins(result: CaseResult) -> dict[Expectation, float]:
-    """The margin of every expectation that has one, in its own unit; negative where it failed."""
+def margins(result: CaseResult, name: str | None = None) -> dict[Expectation, float]:
+    """The margin of every expectation that has one, in its own unit; negative where it failed.
+
+    Args:
+        result: The result of a run.
+        name: The name of the only expectation that counts; None: all count.
+    """
     return {
         (verdict.line, index): verdict.margin
         for index, verdict in enumerate(result.verdicts)
         if not math.isnan(verdict.margin)
+        and (name is None or verdict.expectation.startswith(f"{name} ("))
     }
 
 
@@ -49,11 +55,16 @@ class Closeness:
     others.
     """
 
-    def __init__(self, results: Sequence[CaseResult]) -> None:
-        """Measure how much each margin varies over some runs."""
+    def __init__(self, results: Sequence[CaseResult], name: str | None = None) -> None:
+        """Measure how much each margin varies over some runs.
+
+        Args:
+            results: The results of the runs.
+            name: The name of the only expectation that counts; None: all count.
+        """
         found: dict[Expectation, list[float]] = {}
         for result in results:
-            for expectation, margin in margins(result).items():
+            for expectation, margin in margins(result, name).items():
                 if math.isfinite(margin):
                     found.setdefault(expectation, []).append(margin)
         self._spreads: Mapping[Expectation, float] = {

@@ -66,9 +66,8 @@ class Evaluator:
         jobs = [self._job(point, len(self.samples) + i) for i, point in enumerate(points_run)]
         results: dict[int, CaseResult] = {}
         for index, job in enumerate(jobs):
-            known = self.stream.known(job) if self.stream is not None else None
-            if known is not None:
-                results[index] = known
+            if self.stream is not None and (known := self.stream.known(job)):
+                results[index] = self.stream.entry(known[0]).result
         for index, result in run_isolated(
             jobs,
             self.server,

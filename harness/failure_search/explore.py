@@ -51,6 +51,8 @@ def explore(
     *,
     runs: int,
     start: int,
+    batch: int | None,
+    minimise: str | None,
     seed: int,
 ) -> Exploration:
     """Search for failures of different kinds.
@@ -65,6 +67,8 @@ def explore(
         is_counted: Whether a run is evidence: not one that is invalid.
         runs: How many runs the search may take.
         start: How many of them the low-discrepancy samples are.
+        batch: How many points the optimiser proposes together; None: as many as it recommends.
+        minimise: Name of the expectation whose margin is minimised; None: the worst margin of all.
         seed: Seed of the sequence and of the optimiser.
 
     References:
@@ -75,7 +79,7 @@ def explore(
     """
     shares = _sobol(len(space.parameters), min(start, runs), seed)
     first = evaluate([space.point(row.tolist()) for row in shares])
-    search = _Search(space, evaluate, is_counted, runs, list(first))
+    search = _Search(space, evaluate, is_counted, runs, batch, minimise, list(first))
     search.optimise(shares, np.random.default_rng(seed))
     counted = [each for each in search.samples if is_counted(each)]
     kinds: dict[str, list[Sample]] = {}
@@ -113,13 +117,15 @@ class _Search:
     evaluate: Evaluate
     is_counted: Callable[[Sample], bool]
     runs: int
+    batch: int | None
+    minimise: str | None
     samples: list[Sample]
     failed: set[Expectation] = field(default_factory=set[Expectation])
 
     def optimise(self, shares: FloatArray, rng: np.random.Generator) -> None:
         """Start from the samples that are nearest to failing, one after the other."""
         counted = [each for each in self.samples if self.is_counted(each)]
-        closeness = Closeness([each.result for each in counted])
+        closeness = Closeness([each.result for each in counted], self.minimise)
         for sample in counted:
             self.failed |= failed_expectations(sample.result) if _failed(sample) else set()
         used = set[int]()
@@ -146,7 +152,9 @@ class _Search:
         from cmaes import CMA
 
         bounds = np.tile([0.0, 1.0], (len(origin), 1))
-        optimiser = CMA(mean=origin, sigma=STEP_SIZE, bounds=bounds, seed=seed)
+        optimiser = CMA(
+            mean=origin, sigma=STEP_SIZE, bounds=bounds, seed=seed, population_size=self.batch
+        )
         best, since = np.inf, 0
         while len(self.samples) < self.runs and since < PATIENCE and not optimiser.should_stop():
             proposed = [optimiser.ask() for _ in range(optimiser.population_size)]

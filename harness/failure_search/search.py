@@ -5,22 +5,23 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from harness.core.errors import HarnessError, SpecError
+from harness.core.suggestion import did_you_mean
 from harness.failure_search.closeness import failure_kind
 from harness.failure_search.evaluator import Evaluator, OnRun, Sample
 from harness.failure_search.explore import Exploration, explore
 from harness.failure_search.shrink import shrink
 from harness.failure_search.space import Point, SearchSpace, search_space
+from harness.language.reading.load import load_scenario
+from harness.language.variation import Search
 from harness.suite.cases import read_ahead
 from harness.suite.discovery import UsageError
 from harness.suite.header import read_header
 from harness.suite.stream import Stream
 from harness.suite.variation import Variation
 from harness.suite.warm import WarmServer
-
-DEFAULT_RUNS = 100
-DEFAULT_START = 32
 
 
 @dataclass(frozen=True)
@@ -34,18 +35,62 @@ class SearchRequest:
         seed: Seed of every run and of the search; None takes the file's.
         runs: How many runs the search may take; shrinking takes further ones.
         start: How many of them are low-discrepancy samples.
+        batch: How many runs the optimiser proposes together; None: as many as CMA-ES recommends.
+        minimise: Name of the expectation whose margin is minimised; None: the worst margin of all.
         workers: Runs side by side.
         hard_cap: Wall seconds a run may take; None: the program's own.
     """
 
     file: Path
     overrides: Mapping[str, str]
-    case: str = ""
-    seed: int | None = None
-    runs: int = DEFAULT_RUNS
-    start: int = DEFAULT_START
+    case: str
+    seed: int | None
+    runs: int
+    start: int
+    batch: int | None
+    minimise: str | None
     workers: int = 1
     hard_cap: float | None = None
+
+    @classmethod
+    def of(
+        cls,
+        file: Path,
+        overrides: Mapping[str, str],
+        case: str,
+        settings: Mapping[str, Any],
+        *,
+        workers: int,
+        hard_cap: float | None,
+    ) -> SearchRequest:
+        """What a file's `search` says.
+
+        Args:
+            file: The scenario file that is searched.
+            overrides: Path -> value as YAML; they take precedence over what varies.
+            case: Name of the parametrised case; empty where there is one.
+            settings: Settings that take precedence over the file's; those that are None do not.
+            workers: Runs side by side.
+            hard_cap: Wall seconds a run may take; None: the program's own.
+
+        Raises:
+            UsageError: The case or the expectation does not exist.
+            SpecError: The file is invalid.
+        """
+        variation = read_header(file).variation
+        scenario = load_scenario(
+            file, {**_case_overrides(file, case, variation), **overrides}
+        ).scenario
+        said = (scenario.search or Search()).model_dump()
+        said |= {name: value for name, value in settings.items() if value is not None}
+        names = scenario.expectation_names()
+        if said["minimise"] is not None and said["minimise"] not in names:
+            known = f"; {did_you_mean(said['minimise'], names, 'names')}" if names else ""
+            raise UsageError(
+                f"--minimise: no expectation of '{file}' is called '{said['minimise']}'{known}"
+            )
+        said["start"] = min(said["start"], said["runs"])
+        return cls(file, overrides, case, workers=workers, hard_cap=hard_cap, **said)
 
 
 @dataclass(frozen=True)
@@ -111,7 +156,10 @@ def search(
         HarnessError: The nominal scenario ends in an error.
     """
     variation = read_header(request.file).variation
-    overrides = {**_case_overrides(request, variation), **request.overrides}
+    overrides = {
+        **_case_overrides(request.file, request.case, variation),
+        **request.overrides,
+    }
     space = search_space(request.file, variation, overrides)
     space = SearchSpace(
         tuple(each for each in space.parameters if each.path not in request.overrides)
@@ -148,6 +196,8 @@ def search(
         is_counted,
         runs=request.runs,
         start=request.start,
+        batch=request.batch,
+        minimise=request.minimise,
         seed=variation.seed if request.seed is None else request.seed,
     )
     if not exploration.start:
@@ -166,16 +216,14 @@ def search(
     return SearchResult(request, overrides, space, nominal, exploration, tuple(failures), uncounted)
 
 
-def _case_overrides(request: SearchRequest, variation: Variation) -> dict[str, str]:
+def _case_overrides(file: Path, name: str, variation: Variation) -> dict[str, str]:
     cases = {each.name: each for each in variation.parametrized()}
-    if request.case in cases:
-        return dict(cases[request.case].overrides)
+    if name in cases:
+        return dict(cases[name].overrides)
     known = ", ".join(list(cases)[:10])
-    if not request.case:
-        raise UsageError(
-            f"'{request.file}' has {len(cases)} cases; name one of them with --case: {known}"
-        )
-    raise UsageError(f"'{request.file}' has no case '{request.case}'; cases: {known or 'one'}")
+    if not name:
+        raise UsageError(f"'{file}' has {len(cases)} cases; name one of them with --case: {known}")
+    raise UsageError(f"'{file}' has no case '{name}'; cases: {known or 'one'}")
 
 
 def _shrunk(

@@ -26,7 +26,7 @@ from harness.language.planning import Planning
 from harness.language.plugin_field import PluginName
 from harness.language.poses import Pose
 from harness.language.step import AnyStep
-from harness.language.variation import Distribution, Parametrize, RequiredRate
+from harness.language.variation import Distribution, Parametrize, RequiredRate, Search
 from harness.language.world import ObjectSpec
 
 
@@ -284,6 +284,11 @@ class Scenario(SpecModel):
         default=None,
         description="The required success rate of the samples; without it every sample must pass.",
     )
+    search: Search | None = Field(
+        default=None,
+        description="Settings of `harness search`, which looks for failures in the ranges of "
+        "`randomize`.",
+    )
 
     @model_validator(mode="after")
     def _rate_of_samples(self) -> Scenario:
@@ -296,6 +301,17 @@ class Scenario(SpecModel):
         if self.redraw_overlaps and self.randomize is None:
             raise ValueError("`redraw_overlaps` draws the values of `randomize`: nothing is random")
         return self
+
+    @model_validator(mode="after")
+    def _search_of_random_values(self) -> Scenario:
+        if self.search is not None and self.randomize is None:
+            raise ValueError("`search` is in the ranges of `randomize`: nothing is random")
+        return self
+
+    def expectation_names(self) -> list[str]:
+        """The names of the expectations that have one."""
+        found = [*self.expect, *(each for step in self.steps for each in step.expect)]
+        return [each.name for each in found if each.name]
 
     @model_validator(mode="after")
     def _bounded_cases(self) -> Scenario:

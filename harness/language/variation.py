@@ -8,10 +8,13 @@ from typing import Annotated, Any, cast
 from pydantic import AfterValidator, Field, model_validator
 
 from harness.core.quantity import split_quantity
-from harness.core.variation import MOST_CASES, count_of
-from harness.language.base import Fraction, Share, SpecModel
+from harness.core.variation import MOST_CASES, MOST_SAMPLES, count_of
+from harness.language.base import Count, Fraction, Share, SpecModel
 
-VARIATION_KEYS = ("parametrize", "randomize", "samples", "redraw_overlaps", "expect_rate")
+VARIATION_KEYS = (
+    *("parametrize", "randomize", "samples", "redraw_overlaps", "expect_rate"),
+    "search",
+)
 """Keys that say which cases there are; a case itself has none of them."""
 
 
@@ -87,6 +90,35 @@ class RequiredRate(SpecModel):
     )
     stop_early: bool = Field(
         default=True, description="Whether sampling ends as soon as a sequential test has decided."
+    )
+
+
+class Search(SpecModel):
+    """How `harness search` looks for failures in the ranges of `randomize`.
+
+    Options of the command take precedence. `harness run` does not search: it runs the samples.
+    """
+
+    runs: Annotated[Count, Field(ge=1, le=MOST_SAMPLES)] = Field(
+        default=100, description="The number of runs, without those that shrink a failure."
+    )
+    start: Annotated[Count, Field(ge=1, le=MOST_SAMPLES)] = Field(
+        default=32,
+        description="How many of them are low-discrepancy samples, which show the rate.",
+    )
+    seed: Annotated[Count, Field(ge=0, le=2**31 - 1)] | None = Field(
+        default=None,
+        description="The seed of the search and of every run; the default is the file's `seed`.",
+    )
+    batch: Annotated[Count, Field(ge=2, le=1000)] | None = Field(
+        default=None,
+        description="How many runs the optimiser proposes together; the result depends on it. The "
+        "default is 4 + 3 ln(number of parameters), rounded down.",
+    )
+    minimise: str | None = Field(
+        default=None,
+        description="The `name` of the expectation whose margin the optimiser minimises; the "
+        "default is the worst margin of all.",
     )
 
 

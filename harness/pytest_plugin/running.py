@@ -86,7 +86,7 @@ def run_item(item: pytest.Item, header: ScenarioHeader, case: str, number: int) 
     plan = [
         each
         for each in planned_cases([shown(item.path)], request)
-        if case == (each.case.name if each.case.sample is None else each.case.group)
+        if case == (each.name if each.rate_key is None else each.rate_key[1])
     ]
     sampling = Sampling(plan)
     results = _run(item, plan, sampling)
@@ -108,7 +108,7 @@ def _judge_samples(
     sampling: Sampling,
     results: Mapping[int, CaseResult],
 ) -> None:
-    counted = dict(sorted(sampling.counted(results).items()))
+    counted = {i: each for i, each in sorted(results.items()) if not sampling.is_needless(i)}
     cases = [_suite_case(plan[index], result) for index, result in counted.items()]
     _keep(item, number, cases, sampling.groups())
     item.user_properties += sample_properties(cases)

@@ -52,7 +52,7 @@ class SessionResults:
         except HarnessError as error:
             self._lines.append(str(error))
         self._lines = [terminal_text(line) for line in self._lines]
-        self._lines += map(printable, annotations_for_action(suite))
+        self._lines += map(printable, annotations_for_action(case.result for case in suite.cases))
 
     def pytest_terminal_summary(self, terminalreporter: Any) -> None:
         if self._lines:

@@ -86,7 +86,7 @@ def write_session_files(folder: Path, suite: SuiteRecord, history: Path | None) 
         return ""
     earlier = history_of(history) if history else {}
     try:
-        page = write_suite(folder, suite, EXIT_CODES[suite.outcome], earlier)
+        page, _ = write_suite(folder, suite, EXIT_CODES[suite.outcome], earlier)
     except HarnessError as error:
         return f"no page of the suite: {error}"
     return f"reports: {page}"

@@ -6,11 +6,14 @@ import dataclasses
 import json
 import math
 from collections.abc import Mapping
-from typing import Any, cast
+from typing import Any, Literal, cast
 
 from pydantic_core import to_json
 
 from harness.core.printable import json_printable
+from harness.recording.plain import to_plain
+
+NotFinite = Literal["null", "strings"]
 
 
 def json_text(document: object) -> str:
@@ -23,6 +26,21 @@ def json_text(document: object) -> str:
     except (ValueError, TypeError):  # values that pydantic refuses, such as lone surrogates
         text = json.dumps(_plain(document), indent=2, ensure_ascii=False, allow_nan=False)
     return f"{json_printable(text)}\n"
+
+
+def compact_json(value: object, *, not_finite: NotFinite = "null") -> str:
+    """A value as one line of strict JSON.
+
+    Args:
+        value: Plain data and dataclasses.
+        not_finite: Whether numbers that are not finite are null, or strings such as `NaN`.
+    """
+    try:
+        text = to_json(value, inf_nan_mode=not_finite).decode()
+    except (ValueError, TypeError):  # values that pydantic refuses, such as lone surrogates
+        plain = _plain(value) if not_finite == "null" else to_plain(value)
+        text = json.dumps(plain, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return json_printable(text)
 
 
 def _plain(value: object) -> Any:

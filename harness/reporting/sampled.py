@@ -1,22 +1,16 @@
-"""Success rates of samples, and how they depend on what varies, as lines for the terminal."""
+"""Success rates of samples, as lines for the terminal."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from harness.core.quantity import split_quantity
 from harness.recording.run import Outcome
-from harness.reporting.result import CaseResult
 from harness.reporting.terminal import PLAIN, Style
 
 RateVerdict = Literal["shown", "refuted", "open"]
-
-BINS = 4
-"""Parts of equal size into which numbers are cut for a table."""
-
-MOST_ROWS = 12
 
 
 @dataclass(frozen=True)
@@ -72,13 +66,18 @@ class SampledRate:
     outcome: Outcome
 
 
-def with_starts(rate: SuccessRate, results: Sequence[CaseResult]) -> SuccessRate:
-    """A rate with how many of its samples have overlapping objects at the start."""
+def with_starts(rate: SuccessRate, starts: Sequence[tuple[bool, int]]) -> SuccessRate:
+    """A rate with how many of its samples have overlapping objects at the start.
+
+    Args:
+        rate: The rate without them.
+        starts: Whether objects overlap, and the number of redraws, of samples that have either.
+    """
     return replace(
         rate,
-        overlapping=sum(result.overlap > 0 for result in results),
-        redrawn=sum(result.redraws > 0 for result in results),
-        redraws=sum(result.redraws for result in results),
+        overlapping=sum(is_overlapping for is_overlapping, _ in starts),
+        redrawn=sum(redraws > 0 for _, redraws in starts),
+        redraws=sum(redraws for _, redraws in starts),
     )
 
 
@@ -130,29 +129,6 @@ def rate_text(name: str, rate: SuccessRate) -> str:
     return line
 
 
-def table_lines(
-    cases: Sequence[tuple[Mapping[str, Any], bool]], style: Style = PLAIN
-) -> Iterator[str]:
-    """Passed of all, by each quantity that varies; the worst rows show where to look.
-
-    Args:
-        cases: What varied in each case, and whether it passed.
-        style: The style of the terminal.
-    """
-    paths = dict.fromkeys(path for values, _ in cases for path in values)
-    for path in paths:
-        rows = _rows([(values[path], good) for values, good in cases if path in values])
-        if len(rows) < 2:
-            continue
-        yield style.strong(path)
-        width = max(len(label) for label, _, _ in rows)
-        for label, passed, total in rows[:MOST_ROWS]:
-            mark = style.mark(passed == total)
-            yield f"  {mark} {label:<{width}}  {passed:>4} of {total:<4} {passed / total:7.1%}"
-        if len(rows) > MOST_ROWS:
-            yield f"  ... {len(rows) - MOST_ROWS} more"
-
-
 def short_value(value: Any) -> str:
     """A value that varies with four digits, in the unit that it is written in."""
     try:
@@ -160,31 +136,3 @@ def short_value(value: Any) -> str:
     except ValueError:
         return str(value)
     return f"{number:.4g} {unit}".rstrip()
-
-
-def _rows(entries: Sequence[tuple[Any, bool]]) -> list[tuple[str, int, int]]:
-    """Label, passed and total of each value, or of each part of a range of numbers."""
-    try:
-        numbers = [split_quantity(value) for value, _ in entries]
-    except ValueError:
-        numbers = []
-    if numbers and len({value for value, _ in numbers}) > BINS:
-        return _binned([number for number, _ in numbers], [g for _, g in entries], numbers[0][1])
-    found: dict[str, list[bool]] = {}
-    for index, (value, is_good) in enumerate(entries):
-        number, unit = numbers[index] if numbers else (0.0, "")
-        label = f"{number:.6g} {unit}".rstrip() if numbers else str(value)
-        found.setdefault(label, []).append(is_good)
-    return [(label, sum(goods), len(goods)) for label, goods in found.items()]
-
-
-def _binned(
-    numbers: Sequence[float], goods: Sequence[bool], unit: str
-) -> list[tuple[str, int, int]]:
-    order = sorted(range(len(numbers)), key=lambda index: numbers[index])
-    rows: list[tuple[str, int, int]] = []
-    for part in range(BINS):
-        chosen = order[part * len(order) // BINS : (part + 1) * len(order) // BINS]
-        label = f"{numbers[chosen[0]]:.4g} to {numbers[chosen[-1]]:.4g} {unit}".rstrip()
-        rows.append((label, sum(goods[index] for index in chosen), len(chosen)))
-    return rows

@@ -261,16 +261,16 @@ def _unit(unit: str) -> str:
     return "" if unit == "1" else unit
 
 
-def summary(results: Sequence[CaseResult], seconds: float, style: Style = PLAIN) -> str:
+def summary(outcomes: Iterable[str], seconds: float, style: Style = PLAIN) -> str:
     """The last line: how many of each outcome, and the wall time."""
-    counts = Counter(result.outcome for result in results)
+    counts = Counter(outcomes)
     parts = [
         style.outcome(outcome, f"{counts[outcome]} {outcome}")
         for outcome in OUTCOMES
         if counts[outcome]
     ]
-    counts = ", ".join(parts) or "nothing was run"
-    return f"{counts} of {_plural(len(results), 'case')} in {seconds:.1f} s"
+    said = ", ".join(parts) or "nothing was run"
+    return f"{said} of {_plural(counts.total(), 'case')} in {seconds:.1f} s"
 
 
 def repeats(results: Iterable[CaseResult], style: Style = PLAIN) -> str:

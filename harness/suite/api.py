@@ -169,10 +169,11 @@ def _job(
 
 
 def _case(variation: Variation, seed: int | None, name: str, scenario: str) -> Case:
-    cases = {each.name: each for each in variation.cases(seed)}
-    if name in cases:
-        return cases[name]
-    known = ", ".join(list(cases)[:10])
+    cases = variation.cases(seed)
+    names = [cases.name(index) for index in range(len(cases))]
+    if name in names:
+        return cases[names.index(name)]
+    known = ", ".join(names[:10])
     if not name:
         raise UsageError(f"'{scenario}' has {len(cases)} cases; name one of them: {known}")
     raise UsageError(f"'{scenario}' has no case '{name}'; cases: {known or 'one, without a name'}")

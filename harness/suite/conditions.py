@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+import os
+import shutil
+import weakref
+from array import array
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import IO, Any, BinaryIO
 
-from harness.core.errors import HarnessError
-from harness.recording.plain import from_plain, to_plain
-from harness.reporting.result import CaseResult
+from harness.reporting.json_text import compact_json
+from harness.reporting.suite.record import SuiteCase
+from harness.reporting.suite.write import replaced, writing
 from harness.suite.discovery import UsageError
 from harness.suite.folders import place_of
 from harness.suite.plan import PlannedCase
-from harness.suite.variation import Case
+from harness.suite.stream import lines_of, validator
+from harness.suite.variation import Case, as_yaml
 
 FORMAT = "armharness-conditions/1"
 FILE = "conditions.jsonl"
@@ -46,20 +52,72 @@ class Condition:
         return Case(self.name, self.overrides, self.values, self.group, self.sample)
 
 
+class FileConditions:
+    """The conditions of one scenario file, each read from the file of conditions when needed."""
+
+    def __init__(self, conditions: BinaryIO) -> None:
+        """Have none yet; `conditions` is the open file."""
+        self._file = conditions
+        self._offsets, self._lengths = array("Q"), array("I")
+        self._names: list[str] = []
+        self._groups: list[str] = []
+
+    def add(self, condition: Condition, offset: int, length: int) -> None:
+        """Take the condition at a place of the file."""
+        self._offsets.append(offset)
+        self._lengths.append(length)
+        self._names.append(condition.name)
+        is_like_last = self._groups[-1:] == [condition.group]
+        self._groups.append(self._groups[-1] if is_like_last else condition.group)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    def __getitem__(self, index: int) -> Case:
+        line = os.pread(self._file.fileno(), self._lengths[index], self._offsets[index])
+        return validator(Condition).validate_json(line).case
+
+    def name(self, index: int) -> str:
+        """The name of a case."""
+        return self._names[index]
+
+    def group(self, index: int) -> str:
+        """The name of the parametrised case that a case is a sample of."""
+        return self._groups[index]
+
+
 class Conditions:
-    """Conditions by the scenario file that they belong to."""
+    """Conditions by the scenario file that they belong to.
 
-    def __init__(self, path: Path, conditions: Iterable[Condition]) -> None:
-        """Sort conditions by their file.
+    Attributes:
+        path: The file that they are from.
+        digest: Hash of the file.
+    """
 
-        Args:
-            path: The file that they are from, for messages.
-            conditions: The conditions, in the order of the samples.
+    def __init__(self, path: Path) -> None:
+        """Read a file of conditions.
+
+        Raises:
+            OSError: It cannot be read.
+            ValueError: A line has another shape.
+            UsageError: The file has another format.
         """
         self.path = path
-        self._by_file: dict[str, list[Condition]] = {}
-        for each in conditions:
-            self._by_file.setdefault(each.file, []).append(each)
+        self._by_file: dict[str, FileConditions] = {}
+        hasher = hashlib.sha256()
+        self._file = path.open("rb")
+        weakref.finalize(self, self._file.close)
+        first = json.loads(self._file.readline())
+        if not isinstance(first, dict) or first.get("format") != FORMAT:
+            raise UsageError(f"'{path}' is not of the format {FORMAT}")
+        for place, line in lines_of(self._file):
+            hasher.update(line)
+            condition = validator(Condition).validate_json(line)
+            of_file = self._by_file.setdefault(condition.file, FileConditions(self._file))
+            of_file.add(condition, place.offset, place.length)
+        if not self._by_file:
+            raise UsageError(f"'{path}' has no conditions")
+        self.digest = hasher.hexdigest()
 
     def check(self, files: Sequence[Path]) -> None:
         """See that every scenario file has conditions.
@@ -68,62 +126,56 @@ class Conditions:
             UsageError: One has none.
         """
         for file in files:
-            if not self._of(file, is_alone=len(files) == 1):
+            if not len(self.cases(file, is_alone=len(files) == 1)):
                 known = ", ".join(list(self._by_file)[:5])
                 raise UsageError(
                     f"--conditions '{self.path}' has none for '{file}'; it has some for: {known}"
                 )
 
-    def cases(self, file: Path, *, is_alone: bool) -> Iterator[Case]:
+    def cases(self, file: Path, *, is_alone: bool) -> FileConditions:
         """The cases of a scenario file.
 
         Args:
             file: The scenario file that is run.
             is_alone: Whether it is the only one; then conditions of one other file are its own.
         """
-        return (each.case for each in self._of(file, is_alone=is_alone))
-
-    def _of(self, file: Path, *, is_alone: bool) -> Sequence[Condition]:
-        found = self._by_file.get(place_of(file).as_posix(), [])
-        if not found and is_alone and len(self._by_file) == 1:
+        found = self._by_file.get(place_of(file).as_posix())
+        if found is None and is_alone and len(self._by_file) == 1:
             [found] = self._by_file.values()
-        return found
+        return found or FileConditions(self._file)
+
+    def copy(self, folder: Path) -> None:
+        """Write the same file into a folder, for a merge of parts.
+
+        Raises:
+            HarnessError: It cannot be written.
+        """
+        if not (folder / FILE).exists() or not (folder / FILE).samefile(self.path):
+            with writing(folder), replaced(folder / FILE) as file:
+                self._file.seek(0)
+                shutil.copyfileobj(self._file, file)
 
 
-def conditions_of(
-    plan: Sequence[PlannedCase], results: Mapping[int, CaseResult]
-) -> Iterator[Condition]:
-    """The conditions of the samples that were run, as they were drawn at last."""
-    for index, planned in enumerate(plan):
-        case = planned.case
-        if case.sample is None or index not in results:
-            continue
-        draw = results[index].redraws
-        if draw and case.redraw is not None:
-            redrawn = replace(case.redraw, fixed={}).redrawn(draw)
-            case = replace(case, overrides=redrawn.overrides, values=redrawn.values)
-        file = place_of(planned.job.file).as_posix()
-        yield Condition(file, case.name, case.group, case.sample or 0, case.overrides, case.values)
+class ConditionWriter:
+    """Writes the conditions of samples as the results of a suite are read."""
 
+    def __init__(self, file: IO[bytes]) -> None:
+        """Write the first line."""
+        self._file = file
+        file.write(json.dumps({"format": FORMAT}).encode() + b"\n")
 
-def write_conditions(path: Path, conditions: Iterable[Condition]) -> None:
-    """Write conditions, one on each line.
-
-    Raises:
-        HarnessError: The file cannot be written.
-    """
-    part = path.with_name(f".{path.name}.writing")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with part.open("w", encoding="utf-8") as file:
-            file.write(json.dumps({"format": FORMAT}) + "\n")
-            for each in conditions:
-                file.write(json.dumps(to_plain(each)) + "\n")
-        part.replace(path)
-    except OSError as error:
-        raise HarnessError(f"'{path}' cannot be written: {error.strerror}") from error
-    finally:
-        part.unlink(missing_ok=True)
+    def add(self, planned: PlannedCase, case: SuiteCase) -> None:
+        """Write the condition of a sample, as it was drawn at last; nothing of another case."""
+        if planned.rate_key is None:
+            return
+        _, group = planned.rate_key
+        overrides = {**as_yaml(case.values), "seed": str(case.result.seed)}
+        if case.result.outcome not in ("passed", "failed"):  # its seed is not known from the run
+            overrides = planned.case.overrides
+        number = int(planned.name.rpartition("sample")[2])
+        place = place_of(planned.file).as_posix()
+        condition = Condition(place, planned.name, group, number, overrides, case.values)
+        self._file.write(f"{compact_json(condition)}\n".encode())
 
 
 def read_conditions(path: Path) -> Conditions:
@@ -134,17 +186,10 @@ def read_conditions(path: Path) -> Conditions:
     """
     path = path / FILE if path.is_dir() else path
     try:
-        with path.open(encoding="utf-8") as file:
-            first = json.loads(file.readline())
-            if not isinstance(first, dict) or first.get("format") != FORMAT:
-                raise UsageError(f"'{path}' is not of the format {FORMAT}")
-            found = [from_plain(json.loads(line), Condition) for line in file]
+        return Conditions(path)
     except FileNotFoundError:
         raise UsageError(
             f"there is no '{path}'; a suite with samples writes {FILE} into its report folder"
         ) from None
-    except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise UsageError(f"'{path}' cannot be read: {error}") from None
-    if not found:
-        raise UsageError(f"'{path}' has no conditions")
-    return Conditions(path, found)

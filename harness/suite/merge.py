@@ -3,99 +3,103 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from harness.core.errors import HarnessError
 from harness.reporting.result import CaseResult
+from harness.suite.conditions import read_conditions
 from harness.suite.plan import SuiteRequest, cases_of
 from harness.suite.shards import ShardRecord, read_shard_records
-from harness.suite.stream import FILE, entry_of, read_results
+from harness.suite.stream import FILE, Stream, entry_of, head_of, lines_of
 from harness.suite.suite_run import SuiteOptions, SuiteRun
 
-NO_REPORT = b'"report_dir": ""'
-"""What a line of a journal has in it whose case has no report."""
 
-
-def merge_parts(
-    folders: Sequence[Path], target: Path | None = None
-) -> tuple[SuiteRun, ShardRecord]:
+def merge_parts(folders: Sequence[Path], target: Path) -> tuple[SuiteRun, ShardRecord]:
     """Merge report folders of `harness run --shard`.
 
     Args:
         folders: The report folders of the parts.
-        target: The folder that gets the results of all parts as one journal; None writes none.
+        target: The folder that gets the results of all parts as one `results.jsonl`.
 
     Returns:
         The whole suite, counted as one run would count it, and the description of the first part.
 
     Raises:
         UsageError: A folder holds no part, or the parts are not of one suite.
+        HarnessError: The results cannot be written.
     """
     records = read_shard_records(folders)
     first = records[0]
     request = SuiteRequest(
-        first.expression, first.cases, dict(first.overrides), first.seed, first.samples
+        first.expression,
+        first.cases,
+        dict(first.overrides),
+        first.seed,
+        first.samples,
+        conditions=read_conditions(folders[0]) if first.conditions else None,
     )
     plan = cases_of([(Path(each.file), each.header) for each in first.files], request)
     suite = SuiteRun(plan, SuiteOptions())
-    places = {(str(each.job.file), each.case.name): index for index, each in enumerate(plan)}
-    results: dict[int, CaseResult] = {}
-    missing: list[str] = []
-    for folder, record in zip(folders, records, strict=True):
-        found = {
-            places[result.file, result.case]: _moved(result, Path(record.root), folder)
-            for _, result in read_results(folder / FILE)
-            if (result.file, result.case) in places
-        }
-        results |= found
-        planned = [i for i, each in enumerate(plan) if record.shard.holds(each.identity)]
-        lacking = sum(index not in found for index in planned)
-        if lacking:
-            missing.append(
-                f"part {record.shard} in '{folder}' lacks {lacking} of {len(planned)} results;"
-                " run it again with --resume"
-            )
-    absent = sorted(set(range(1, first.shard.count + 1)) - {each.shard.number for each in records})
-    missing += [f"part {number}/{first.shard.count} is missing" for number in absent]
-    suite.take_all(results)
-    suite.missing_parts = tuple(missing)
-    if target is not None:
-        _write_journal(folders, records, target)
+    stream = Stream(target, name=f".{FILE}.{os.getpid()}")
+    suite.read_from(stream)
+    places = {(str(each.file), each.name): index for index, each in enumerate(plan)}
+    try:
+        for folder, record in zip(folders, records, strict=True):
+            _take_part(suite, stream, places, folder, Path(record.root))
+        stream.rename()
+    finally:
+        target.joinpath(f".{FILE}.{os.getpid()}").unlink(missing_ok=True)
+    suite.missing_parts = (
+        *_lacking(suite, folders, records),
+        *(
+            f"part {number}/{first.shard.count} is missing"
+            for number in range(1, first.shard.count + 1)
+            if all(each.shard.number != number for each in records)
+        ),
+    )
+    suite.count()
     return suite, first
 
 
-def _write_journal(folders: Sequence[Path], records: Sequence[ShardRecord], target: Path) -> None:
-    """Write the results of all parts into one `results.jsonl`, for `harness results`.
-
-    Raises:
-        HarnessError: The file cannot be written.
-    """
-    part = target / f".{FILE}.{os.getpid()}"
-    try:
-        target.mkdir(parents=True, exist_ok=True)
-        with part.open("wb") as merged:
-            for folder, record in zip(folders, records, strict=True):
-                root = Path(record.root)
-                merged.writelines(_moved_lines(folder / FILE, root, folder))
-        part.replace(target / FILE)
-    except OSError as error:
-        raise HarnessError(f"'{target / FILE}' cannot be written: {error.strerror}") from error
-    finally:
-        part.unlink(missing_ok=True)
-
-
-def _moved_lines(journal: Path, root: Path, folder: Path) -> Iterator[bytes]:
-    """The lines of a journal; those that name a report name where it is now."""
-    if not journal.is_file():
+def _take_part(
+    suite: SuiteRun,
+    stream: Stream,
+    places: Mapping[tuple[str, str], int],
+    folder: Path,
+    root: Path,
+) -> None:
+    """Copy the results of a part; those with a report name where it is now."""
+    if not (folder / FILE).is_file():
         return
-    with journal.open("rb") as file:
-        for line in file:
-            if NO_REPORT in line or root == folder:
-                yield line
-            elif (entry := entry_of(line)) is not None:
-                yield replace(entry, result=_moved(entry.result, root, folder)).line.encode()
+    with (folder / FILE).open("rb") as file:
+        for _, line in lines_of(file):
+            head = head_of(line)
+            if head is None or (head.result.file, head.result.case) not in places:
+                continue
+            if head.result.report_dir and root != folder and (entry := entry_of(line)):
+                line = replace(entry, result=_moved(entry.result, root, folder)).line
+            index = places[head.result.file, head.result.case]
+            suite.take(index, head.result, stream.append(line))
+
+
+def _lacking(
+    suite: SuiteRun, folders: Sequence[Path], records: Sequence[ShardRecord]
+) -> Iterator[str]:
+    """A sentence for each part that was interrupted."""
+    planned, lacking = Counter[int](), Counter[int]()
+    for index, each in enumerate(suite.plan):
+        number = records[0].shard.number_of(each.identity)
+        planned[number] += 1
+        lacking[number] += index not in suite.results
+    for folder, record in zip(folders, records, strict=True):
+        number = record.shard.number
+        if lacking[number]:
+            yield (
+                f"part {record.shard} in '{folder}' lacks {lacking[number]} of {planned[number]}"
+                " results; run it again with --resume"
+            )
 
 
 def _moved(result: CaseResult, root: Path, folder: Path) -> CaseResult:

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import bisect
+import itertools
+from array import array
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
+from functools import cached_property
 from pathlib import Path
 from typing import Any, NoReturn, Protocol
 
+from harness.core.lazy import LazySequence
 from harness.session.run_request import RunRequest
 from harness.suite.discovery import UsageError
 from harness.suite.folders import place_of, report_folders
@@ -15,17 +20,38 @@ from harness.suite.header import ScenarioHeader, read_header
 from harness.suite.selection import selects
 from harness.suite.shards import PlannedFile, Shard, ShardRecord
 from harness.suite.stream import file_hash
-from harness.suite.variation import Case, Variation
+from harness.suite.variation import Case
+
+
+class CaseSource(Protocol):
+    """The cases of a file, each made when it is read."""
+
+    def __len__(self) -> int: ...
+
+    def __getitem__(self, index: int, /) -> Case: ...
+
+    def name(self, index: int) -> str:
+        """The name of a case, without making it."""
+        ...
+
+    def group(self, index: int) -> str | None:
+        """The name of the parametrised case that a case is a sample of; None where it is none."""
+        ...
 
 
 class SampledConditions(Protocol):
     """Samples that are known before a suite is planned."""
 
+    @property
+    def digest(self) -> str:
+        """Hash of the samples."""
+        ...
+
     def check(self, files: Sequence[Path]) -> None:
         """Refuse a file without samples with a UsageError."""
         ...
 
-    def cases(self, file: Path, *, is_alone: bool) -> Iterable[Case]:
+    def cases(self, file: Path, *, is_alone: bool) -> CaseSource:
         """The samples of a file."""
         ...
 
@@ -71,33 +97,71 @@ class SuiteRequest:
 
 
 @dataclass(frozen=True)
-class PlannedCase:
-    """A case that will be run.
+class FileCases:
+    """The cases of one file.
 
     Attributes:
-        job: How to run it.
-        header: The header of its file.
-        case: The name of the case.
+        file: The scenario file as the user names it.
+        header: The header of the file.
+        folder: The folder of its reports; None writes no reports.
+        cases: The cases, selected or not.
+        request: How they are run.
     """
 
-    job: RunRequest
+    file: Path
     header: ScenarioHeader
-    case: Case
+    folder: Path | None
+    cases: CaseSource
+    request: SuiteRequest
+
+
+@dataclass(frozen=True)
+class PlannedCase:
+    """A case that will be run; its values are drawn when they are read.
+
+    Attributes:
+        of: The file of the case, with all its cases.
+        position: The number of the case in its file, from 0.
+    """
+
+    of: FileCases
+    position: int
 
     @property
-    def variation(self) -> Variation:
-        """What its file says of its cases."""
-        return self.header.variation
+    def file(self) -> Path:
+        """The scenario file."""
+        return self.of.file
+
+    @property
+    def header(self) -> ScenarioHeader:
+        """The header of its file."""
+        return self.of.header
+
+    @property
+    def name(self) -> str:
+        """The name of the case."""
+        return self.of.cases.name(self.position)
+
+    @cached_property
+    def case(self) -> Case:
+        """The case with its values."""
+        return self.of.cases[self.position]
+
+    @property
+    def job(self) -> RunRequest:
+        """How to run it."""
+        return _job(self.of.file, self.case, self.of.folder, self.of.request)
 
     @property
     def rate_key(self) -> tuple[str, str] | None:
         """What samples that share a success rate have in common; None of other cases."""
-        return None if self.case.sample is None else (str(self.job.file), self.case.group)
+        group = self.of.cases.group(self.position)
+        return None if group is None else (str(self.of.file), group)
 
     @property
     def identity(self) -> str:
         """Names the case on every machine: the file's path in the project and the case's name."""
-        return f"{place_of(self.job.file).as_posix()}\0{self.case.name}"
+        return f"{place_of(self.of.file).as_posix()}\0{self.name}"
 
     @property
     def values(self) -> Mapping[str, Any]:
@@ -105,7 +169,34 @@ class PlannedCase:
         return self.case.values
 
 
-def planned_cases(files: Sequence[Path], request: SuiteRequest) -> list[PlannedCase]:
+class Plan(LazySequence[PlannedCase]):
+    """The cases of a suite in file order; a few bytes of memory for each."""
+
+    def __init__(self, files: Sequence[FileCases], selected: array[int] | None = None) -> None:
+        """Remember which cases are selected.
+
+        Args:
+            files: The files with all their cases.
+            selected: Numbers of the selected cases among all cases of all files; None: all.
+        """
+        self.files = files
+        self._ends = list(itertools.accumulate(len(each.cases) for each in files))
+        self._numbers = range(self._ends[-1] if self._ends else 0) if selected is None else selected
+        super().__init__(len(self._numbers), self._planned)
+
+    def _planned(self, index: int) -> PlannedCase:
+        number = self._numbers[index]
+        place = bisect.bisect_right(self._ends, number)
+        of = self.files[place]
+        return PlannedCase(of, number - self._ends[place] + len(of.cases))
+
+    def where(self, is_selected: Callable[[PlannedCase], bool]) -> Plan:
+        """The cases of the plan that fulfil a condition."""
+        chosen = (n for n, each in zip(self._numbers, self, strict=True) if is_selected(each))
+        return Plan(self.files, array("Q", chosen))
+
+
+def planned_cases(files: Sequence[Path], request: SuiteRequest) -> Plan:
     """Every case of the files that the request selects, in file order.
 
     Raises:
@@ -120,16 +211,13 @@ def planned_cases(files: Sequence[Path], request: SuiteRequest) -> list[PlannedC
         if request.cases:
             option = f"--case '{request.cases[0]}'"
         raise UsageError(f"{option} selects none of {len(files)} scenarios{_names(files, request)}")
-    if request.samples is not None and all(each.case.sample is None for each in found):
+    if request.samples is not None and all(each.rate_key is None for each in found):
         _refuse_samples(files, request)
-    if request.shard is None:
-        return found
-    return [each for each in found if request.shard.holds(each.identity)]
+    shard = request.shard
+    return found if shard is None else found.where(lambda each: shard.holds(each.identity))
 
 
-def cases_of(
-    headers: Sequence[tuple[Path, ScenarioHeader]], request: SuiteRequest
-) -> list[PlannedCase]:
+def cases_of(headers: Sequence[tuple[Path, ScenarioHeader]], request: SuiteRequest) -> Plan:
     """Every case that the request selects, of files whose headers are known, in file order.
 
     Raises:
@@ -138,13 +226,15 @@ def cases_of(
     root = request.report_root
     files = [file for file, _ in headers]
     folders = [None] * len(files) if root is None else report_folders(files, root)
-    headers = [(file, _header(header, request)) for file, header in headers]
-    return [
-        PlannedCase(_job(file, case, folder, request), header, case)
-        for (file, header), folder in zip(headers, folders, strict=True)
-        for case in _cases(file, header, request, is_alone=len(files) == 1)
-        if _is_selected(file, header, case, request)
-    ]
+    found: list[FileCases] = []
+    for (file, written), folder in zip(headers, folders, strict=True):
+        header = _header(written, request)
+        cases = _cases(file, header, request, is_alone=len(files) == 1)
+        found.append(FileCases(file, header, folder, cases, request))
+    plan = Plan(found)
+    if not request.cases and not request.expression:
+        return plan
+    return plan.where(lambda each: _is_selected(each, request))
 
 
 def _header(header: ScenarioHeader, request: SuiteRequest) -> ScenarioHeader:
@@ -156,7 +246,7 @@ def _header(header: ScenarioHeader, request: SuiteRequest) -> ScenarioHeader:
 
 def _cases(
     file: Path, header: ScenarioHeader, request: SuiteRequest, *, is_alone: bool
-) -> Iterable[Case]:
+) -> CaseSource:
     if request.conditions is not None:
         return request.conditions.cases(file, is_alone=is_alone)
     return header.variation.cases(request.seed, request.samples)
@@ -174,22 +264,22 @@ def _refuse_samples(files: Sequence[Path], request: SuiteRequest) -> NoReturn:
     )
 
 
-def _is_selected(file: Path, header: ScenarioHeader, case: Case, request: SuiteRequest) -> bool:
-    if request.cases and not any(fnmatchcase(case.name, pattern) for pattern in request.cases):
+def _is_selected(planned: PlannedCase, request: SuiteRequest) -> bool:
+    name, patterns = planned.name, request.cases
+    if patterns and not any(fnmatchcase(name, pattern) for pattern in patterns):
         return False
-    return not request.expression or selects(request.expression, file, header, case.name)
+    expression = request.expression
+    return not expression or selects(expression, planned.file, planned.header, name)
 
 
 def _names(files: Sequence[Path], request: SuiteRequest) -> str:
     """The existing case names, if `--case` selected none of them."""
     if not request.cases:
         return ""
-    names = [
-        case.name
-        for file in files
-        for case in read_header(file).variation.cases(request.seed, request.samples)
-        if case.name
-    ]
+    found = cases_of(
+        [(file, read_header(file)) for file in files], replace(request, cases=(), expression="")
+    )
+    names = list(itertools.islice((each.name for each in found if each.name), 11))
     shown = ", ".join(names[:10]) + (", ..." if len(names) > 10 else "")
     return f"; cases: {shown}" if names else "; the file has one case, without a name"
 
@@ -250,4 +340,5 @@ def record_of(
         request.strict,
         tuple(request.reporters),
         dict(request.nodes),
+        request.conditions.digest if request.conditions is not None else "",
     )

@@ -74,12 +74,13 @@ class Tally:
         self.passed, self.total = 0, 0
         self.is_decided = False
         self._at_least, self._confidence, self._stop_early = at_least, confidence, stop_early
-        self._digests: set[str] = set()
+        self._first_digest = ""
+        self._are_alike = True
 
     @property
     def is_one_run(self) -> bool:
         """Whether several samples were one and the same run: nothing that matters varied."""
-        return self.total > 1 and len(self._digests) == 1 and "" not in self._digests
+        return self.total > 1 and self._are_alike
 
     def add(self, is_good: bool, digest: str) -> None:
         """Count the next sample; equal digests decide nothing, however many there are."""
@@ -87,7 +88,8 @@ class Tally:
             return
         self.passed += is_good
         self.total += 1
-        self._digests.add(digest)
+        self._first_digest = self._first_digest or digest
+        self._are_alike &= bool(digest) and digest == self._first_digest
         if self._at_least is not None and self._stop_early and not self.is_one_run:
             verdict = decided(self.passed, self.total, self._at_least, self._confidence)
             self.is_decided = verdict != "open"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -33,6 +33,8 @@ BATCHES_FOR_EACH_PROCESS = 2
 
 RETRIES = 3
 """How often Ray starts a batch again whose process or node ended."""
+
+BatchFunction = Callable[[Batch, Files], BatchResult]
 
 PATIENCE = 1.0  # [s], then Ctrl-C is looked at again
 
@@ -76,11 +78,20 @@ class RayCluster:
     def run(
         self,
         jobs: Sequence[RunRequest],
+        files: Sequence[Path],
         *,
         hard_cap: float | None = None,
         is_needless: Chooser = never_needless,
+        function: BatchFunction = run_batch,
     ) -> Iterator[tuple[int, CaseResult]]:
         """Run every case on some node; a process or node that ends costs time and no case.
+
+        Args:
+            jobs: The cases, of which only those under way are in memory.
+            files: The scenario files of the cases.
+            hard_cap: Wall seconds a case may take; None: the program's own.
+            is_needless: Called with each index before its case is sent; a needless one is skipped.
+            function: What a process of a node calls; importable there by its name.
 
         Yields:
             (index into `jobs`, result) in the order in which batches end. The reports are in their
@@ -92,7 +103,7 @@ class RayCluster:
         if all(is_needless(index) for index in range(len(jobs))):
             return
         with _connected(self._name, self._workers) as ray:
-            yield from _Batches(ray, self, jobs, hard_cap, is_needless).run()
+            yield from _Batches(ray, self, jobs, files, hard_cap, is_needless, function).run()
 
 
 class _Batches:
@@ -103,16 +114,18 @@ class _Batches:
         ray: Any,
         cluster: RayCluster,
         jobs: Sequence[RunRequest],
+        files: Sequence[Path],
         hard_cap: float | None,
         is_needless: Chooser,
+        function: BatchFunction,
     ) -> None:
         self._ray = ray
         self._cluster = cluster
         self._jobs = jobs
         self._hard_cap = hard_cap
         self._is_needless = is_needless
-        self._task = ray.remote(num_cpus=1, max_retries=RETRIES)(run_batch)
-        self._files = ray.put(_files_of(jobs))
+        self._task = ray.remote(num_cpus=1, max_retries=RETRIES)(function)
+        self._files = ray.put(_files_of(files))
         self._next = 0
         self._alone: list[int] = []  # cases of batches that failed, which run alone
         self._running: dict[Any, Batch] = {}
@@ -187,10 +200,10 @@ class _Batches:
         return result
 
 
-def _files_of(jobs: Sequence[RunRequest]) -> Files:
+def _files_of(files: Sequence[Path]) -> Files:
     """Every file that the cases and the plug-ins name."""
     contents: dict[str, bytes] = {}
-    for file in dict.fromkeys(job.file for job in jobs if job.text is None):
+    for file in files:
         for path, content in input_files(file):
             contents[os.path.abspath(path)] = content  # noqa: PTH100 - links stay as they are
     environment = {

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from bisect import bisect_right
+from collections.abc import Iterable
 
 from harness.recording.run import Outcome
-from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate
 from harness.suite.plan import PlannedCase
 from harness.suite.rates import Tally
+from harness.suite.variation import Variation
 
 
 class Sampling:
@@ -18,7 +19,7 @@ class Sampling:
     the end is the same however many work.
     """
 
-    def __init__(self, plan: Sequence[PlannedCase], *, is_part: bool = False) -> None:
+    def __init__(self, plan: Iterable[PlannedCase], *, is_part: bool = False) -> None:
         """Count nothing yet.
 
         Args:
@@ -28,25 +29,37 @@ class Sampling:
         """
         self._is_part = is_part
         self._groups: dict[tuple[str, str], _Group] = {}
-        self._places: dict[int, tuple[_Group, int]] = {}
+        self._runs: list[tuple[int, int, _Group | None]] = []  # first index, first place, group
         for index, each in enumerate(plan):
-            if each.rate_key is not None:
-                group = self._groups.setdefault(each.rate_key, _Group(each, is_part=is_part))
-                self._places[index] = group, group.planned
+            group = self._group_of(each)
+            if not self._runs or self._runs[-1][2] is not group:
+                self._runs.append((index, 0 if group is None else group.planned, group))
+            if group is not None:
                 group.planned += 1
+
+    def _group_of(self, planned: PlannedCase) -> _Group | None:
+        key = planned.rate_key
+        if key is None:
+            return None
+        if key not in self._groups:
+            self._groups[key] = _Group(planned.header.variation, is_part=self._is_part)
+        return self._groups[key]
+
+    def _place(self, index: int) -> tuple[_Group, int] | None:
+        """The group of a sample and its place there; None of a case that is no sample."""
+        first, place, group = self._runs[bisect_right(self._runs, index, key=_first) - 1]
+        return None if group is None else (group, place + index - first)
 
     def note(self, index: int, outcome: Outcome, digest: str) -> None:
         """Take in an outcome, and the digest of the run; empty where nothing ran."""
-        if index in self._places:
-            group, place = self._places[index]
+        if found := self._place(index):
+            group, place = found
             group.note(place, outcome, digest)
 
     def is_needless(self, index: int) -> bool:
         """Whether a sample no longer counts, or would only repeat another sample's mistake."""
-        if index not in self._places:
-            return False
-        group, place = self._places[index]
-        return group.is_needless(place)
+        found = self._place(index)
+        return found is not None and found[0].is_needless(found[1])
 
     def groups(self) -> list[SampledRate]:
         """Every group with its rate, from the first samples without a missing number.
@@ -62,19 +75,20 @@ class Sampling:
             found.append(SampledRate(*key, rate, outcome))
         return found
 
-    def counted(self, results: Mapping[int, CaseResult]) -> dict[int, CaseResult]:
-        """Results without those of samples after an early stop."""
-        return {index: each for index, each in results.items() if not self.is_needless(index)}
-
-    def outcomes(self, results: Mapping[int, CaseResult]) -> list[Outcome]:
-        """Outcomes of the cases, with groups of samples in place of failed samples."""
-        outcomes: list[Outcome] = [group.outcome for group in self.groups()]
-        for index, result in self.counted(results).items():
-            is_sample = index in self._places
-            is_alone = self._is_part and is_sample and not self._places[index][0].has_required_rate
-            if not is_sample or is_alone or result.outcome in ("invalid", "error"):
-                outcomes.append(result.outcome)
+    def outcomes(self, results: Iterable[tuple[int, Outcome]]) -> set[Outcome]:
+        """Outcomes of cases that count, with groups of samples in place of failed samples."""
+        outcomes: set[Outcome] = {group.outcome for group in self.groups()}
+        for index, outcome in results:
+            if outcome == "failed" and (found := self._place(index)):
+                is_alone = self._is_part and not found[0].has_required_rate
+                outcomes |= {outcome} if is_alone else set()
+            elif outcome != "passed" or self._place(index) is None:
+                outcomes.add(outcome)
         return outcomes
+
+
+def _first(run: tuple[int, int, _Group | None]) -> int:
+    return run[0]
 
 
 class _Group:
@@ -87,26 +101,25 @@ class _Group:
         has_required_rate: Whether the file has an `expect_rate`; else every sample must pass.
     """
 
-    def __init__(self, sample: PlannedCase, *, is_part: bool) -> None:
-        variation = sample.variation
+    def __init__(self, variation: Variation, *, is_part: bool) -> None:
         self.planned = 0
         self.has_required_rate = variation.at_least is not None
         stop_early = variation.stop_early and not is_part
         self.tally = Tally(variation.at_least, variation.confidence, stop_early=stop_early)
-        self._outcomes: dict[int, tuple[Outcome, str]] = {}
+        self._waiting: dict[int, tuple[Outcome, str]] = {}  # samples before them are missing
         self._next = 0
         self.invalid = 0
 
     def note(self, place: int, outcome: Outcome, digest: str) -> None:
-        self._outcomes[place] = outcome, digest
+        self._waiting[place] = outcome, digest
         self.invalid += outcome == "invalid"
-        while self._next in self._outcomes:
-            counted, of_run = self._outcomes[self._next]
+        while self._next in self._waiting:
+            counted, of_run = self._waiting.pop(self._next)
             if counted != "invalid":
                 self.tally.add(counted == "passed", of_run)
             self._next += 1
 
     def is_needless(self, place: int) -> bool:
         if self.invalid:
-            return place not in self._outcomes
+            return place >= self._next and place not in self._waiting
         return self.tally.is_decided and place >= self.tally.total

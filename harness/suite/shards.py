@@ -44,10 +44,14 @@ class Shard:
     def __str__(self) -> str:
         return f"{self.number}/{self.count}"
 
-    def holds(self, identity: str) -> bool:
-        """Whether a case belongs to this part; other cases have no influence on it."""
+    def number_of(self, identity: str) -> int:
+        """The number of the part that a case belongs to; other cases have no influence on it."""
         digest = hashlib.sha256(identity.encode()).digest()
-        return int.from_bytes(digest[:8], "big") % self.count == self.number - 1
+        return int.from_bytes(digest[:8], "big") % self.count + 1
+
+    def holds(self, identity: str) -> bool:
+        """Whether a case belongs to this part."""
+        return self.number_of(identity) == self.number
 
 
 def shard_of(text: str, environment: Mapping[str, str] = os.environ) -> Shard:
@@ -138,6 +142,7 @@ class ShardRecord:
         strict: Whether a warning of a verdict fails a case.
         reporters: Names of other reporters that write into the reports.
         nodes: Commands by name that steps may start as ROS 2 nodes.
+        conditions: Hash of the samples of `--conditions`; empty where the files draw them.
         version: The version of the program that ran the part.
     """
 
@@ -152,6 +157,7 @@ class ShardRecord:
     strict: bool = False
     reporters: tuple[str, ...] = ()
     nodes: Mapping[str, str] = field(default_factory=dict[str, str])
+    conditions: str = ""
     version: str = __version__
 
     @property
@@ -216,6 +222,7 @@ def _check_same_suite(record: ShardRecord, folder: Path, other: ShardRecord, pla
         names = {
             "files": "the scenario files or the files that they name",
             "count": "the number of parts",
+            "conditions": "the samples of --conditions",
             "version": f"the version of armharness ({record.version} and {other.version})",
         }
         raise UsageError(

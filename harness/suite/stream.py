@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import hashlib
-import json
+import os
 import re
+import weakref
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from tempfile import TemporaryFile
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+from pydantic_core import from_json
 
 from harness import __version__
 from harness.core.errors import HarnessError
-from harness.core.printable import json_printable
 from harness.recording.older_runs import in_present_words
-from harness.recording.plain import to_plain
+from harness.recording.run import Outcome
+from harness.reporting.json_text import compact_json
 from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
 
@@ -42,63 +46,49 @@ INPUTS = (
 _NAME = re.compile(r"""\"([^\"\n]+)\"|'([^'\n]+)'|([^\s\"',\[\]{}<>=]+)""")
 
 
-class Stream:
-    """Appends results to a file, and gives back those of an earlier run of the same inputs."""
+@dataclass(frozen=True)
+class Place:
+    """Where a line stands in a file.
 
-    def __init__(self, folder: Path, *, resume: bool) -> None:
-        """Open `folder/results.jsonl`.
+    Attributes:
+        offset: The number of bytes before the line.
+        length: The number of its bytes, the line end included.
+    """
 
-        Args:
-            folder: Made where it is missing.
-            resume: Whether results that are there already are kept; else they are overwritten.
+    offset: int
+    length: int
 
-        Raises:
-            HarnessError: The file cannot be written.
-        """
-        self.path = folder / FILE
-        self._known: dict[str, CaseResult] = dict(read_results(self.path)) if resume else {}
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            self._file = self.path.open("a" if resume else "w", encoding="utf-8")
-        except OSError as error:
-            raise HarnessError(f"'{self.path}' cannot be written: {error.strerror}") from error
 
-    def known(self, job: RunRequest) -> CaseResult | None:
-        """The result of an earlier run of the same file, values and version; None if there is none.
+@dataclass(frozen=True)
+class ResultHead:
+    """The part of a result that is kept in memory, or read from a line without the rest.
 
-        An error is no result: it is tried again.
-        """
-        result = self._known.get(fingerprint(job)) if self._known else None
-        return None if result is None or result.outcome == "error" else result
+    Attributes:
+        file: The path as the user named it.
+        case: Empty when the file has one case.
+        outcome: The outcome of the case.
+        digest: The digest of the run; empty where nothing ran.
+        overlap: Depth of the deepest pair of bodies that overlap at the start [m].
+        redraws: How often the sample was drawn again.
+        report_dir: Folder of its report; empty when none was written.
+    """
 
-    def write(
-        self,
-        job: RunRequest,
-        result: CaseResult,
-        values: Mapping[str, Any] | None = None,
-        tags: Sequence[str] = (),
-    ) -> None:
-        """Keep a result.
+    file: str
+    case: str
+    outcome: Outcome
+    digest: str = ""
+    overlap: float = 0.0
+    redraws: int = 0
+    report_dir: str = ""
 
-        Args:
-            job: The case that was run.
-            result: The result of the case.
-            values: What varies in the case, path -> value.
-            tags: The tags of its file.
 
-        Raises:
-            HarnessError: The disk is full.
-        """
-        entry = StreamEntry(fingerprint(job), result, values or {}, tuple(tags))
-        try:
-            self._file.write(entry.line)
-            self._file.flush()
-        except OSError as error:
-            raise HarnessError(f"'{self.path}' cannot be written: {error.strerror}") from error
+@dataclass(frozen=True)
+class LineHead:
+    """The part of a line of a stream that says which result it is."""
 
-    def close(self) -> None:
-        """Let go of the file."""
-        self._file.close()
+    format: str
+    key: str
+    result: ResultHead
 
 
 @dataclass(frozen=True)
@@ -110,54 +100,170 @@ class StreamEntry:
         result: The result of the case.
         values: What varies in the case, path -> value.
         tags: The tags of its file.
+        format: The format of the line.
     """
 
     key: str
     result: CaseResult
     values: Mapping[str, Any] = field(default_factory=dict[str, Any])
     tags: tuple[str, ...] = ()
+    format: str = FORMAT
 
     @property
-    def line(self) -> str:
+    def line(self) -> bytes:
         """The entry as a line of the file."""
-        entry = {
-            "format": FORMAT,
+        said = {
+            "format": self.format,
             "key": self.key,
-            "values": to_plain(dict(self.values)),
-            "tags": list(self.tags),
-            "result": to_plain(self.result),
+            "values": self.values,
+            "tags": self.tags,
+            "result": self.result,
         }
-        return f"{json_printable(json.dumps(entry, ensure_ascii=False, allow_nan=False))}\n"
+        return f"{compact_json(said, not_finite='strings')}\n".encode()
 
 
-def read_results(path: Path) -> Iterator[tuple[str, CaseResult]]:
-    """Keys and results of a stream; a line that was cut off or has another format is left out."""
-    return ((entry.key, entry.result) for entry in read_entries(path))
+class Stream:
+    """Appends results to a file, and reads them again, also those of an earlier run."""
+
+    def __init__(self, folder: Path | None, *, resume: bool = False, name: str = FILE) -> None:
+        """Open `folder/results.jsonl`.
+
+        Args:
+            folder: Made where it is missing; None: the file has no name, and ends with the process.
+            name: The name of the file, until it is renamed.
+            resume: Whether results that are there already are kept; else they are overwritten.
+
+        Raises:
+            HarnessError: The file cannot be written.
+        """
+        self.path = Path(name) if folder is None else folder / name
+        self._known: dict[str, tuple[Place, ResultHead]] = {}
+        try:
+            if folder is None:
+                file = TemporaryFile(buffering=0)  # noqa: SIM115 - closed with this object
+            else:
+                folder.mkdir(parents=True, exist_ok=True)
+                file = self.path.open("a+b" if resume else "w+b", buffering=0)
+            self.close = weakref.finalize(self, file.close)
+            self._file = file
+            self._end = file.seek(0, os.SEEK_END)
+            if resume and self._end:
+                self._read_known()
+        except OSError as error:
+            raise self._error(error) from error
+
+    def _read_known(self) -> None:
+        """Read which results there are; a line that was cut off gets its end."""
+        with self.path.open("rb") as file:
+            for place, line in lines_of(file):
+                if (head := head_of(line)) is not None:
+                    self._known[head.key] = place, head.result
+        if os.pread(self._file.fileno(), 1, self._end - 1) != b"\n":
+            self.append(b"\n")
+
+    def known(self, job: RunRequest) -> tuple[Place, ResultHead] | None:
+        """An earlier run's result of the same file, values and version; None if there is none.
+
+        An error is no result: it is tried again.
+        """
+        found = self._known.get(fingerprint(job)) if self._known else None
+        return None if found is None or found[1].outcome == "error" else found
+
+    def write(
+        self,
+        job: RunRequest,
+        result: CaseResult,
+        values: Mapping[str, Any] | None = None,
+        tags: Sequence[str] = (),
+    ) -> Place:
+        """Keep a result.
+
+        Args:
+            job: The case that was run.
+            result: The result of the case.
+            values: What varies in the case, path -> value.
+            tags: The tags of its file.
+
+        Raises:
+            HarnessError: The disk is full.
+        """
+        return self.append(StreamEntry(fingerprint(job), result, values or {}, tuple(tags)).line)
+
+    def append(self, line: bytes) -> Place:
+        """Add a line, and return its place.
+
+        Raises:
+            HarnessError: The disk is full.
+        """
+        rest = line
+        try:
+            while rest:
+                rest = rest[self._file.write(rest) :]
+        except OSError as error:
+            raise self._error(error) from error
+        place = Place(self._end, len(line))
+        self._end += len(line)
+        return place
+
+    def rename(self) -> None:
+        """Give a file that was written under another name its own.
+
+        Raises:
+            HarnessError: It cannot be renamed.
+        """
+        try:
+            self.path = self.path.replace(self.path.with_name(FILE))
+        except OSError as error:
+            raise self._error(error) from error
+
+    def _error(self, error: OSError) -> HarnessError:
+        return HarnessError(f"'{self.path}' cannot be written: {error.strerror}")
+
+    def entry(self, place: Place) -> StreamEntry:
+        """The entry that was written to a place."""
+        entry = entry_of(os.pread(self._file.fileno(), place.length, place.offset))
+        if entry is None:
+            raise HarnessError(f"'{self.path}' was changed while it was in use")
+        return entry
 
 
-def read_entries(path: Path) -> Iterator[StreamEntry]:
-    """The entries of a stream; a line that was cut off or has another format is left out."""
-    try:
-        with path.open("rb") as file:
-            for line in file:
-                entry = entry_of(line)
-                if entry is not None:
-                    yield entry
-    except OSError:
-        return
+def lines_of(file: BinaryIO) -> Iterator[tuple[Place, bytes]]:
+    """The lines of a file from where it stands, without one that has no end."""
+    offset = file.tell()
+    for line in file:
+        if line.endswith(b"\n"):
+            yield Place(offset, len(line)), line
+        offset += len(line)
 
 
 def entry_of(line: bytes) -> StreamEntry | None:
     """A line of a stream; None where it was cut off or has another format."""
     try:
-        entry = cast("dict[str, Any]", json.loads(line))
-        if entry["format"] not in KNOWN_FORMATS:
+        entry: StreamEntry = validator(StreamEntry).validate_json(line)
+    except ValueError:
+        return _older_entry(line)
+    return entry if entry.format in KNOWN_FORMATS else None
+
+
+def _older_entry(line: bytes) -> StreamEntry | None:
+    """A line of the first format; None where it has none of the formats."""
+    try:
+        plain = from_json(line)
+        if plain["format"] not in KNOWN_FORMATS:
             return None
-        result = result_of(in_present_words(entry["result"]))
-        tags = tuple(map(str, entry.get("tags", ())))
-        return StreamEntry(str(entry["key"]), result, dict(entry.get("values", {})), tags)
-    except (ValueError, KeyError, TypeError, RecursionError):
+        present = {**plain, "format": FORMAT, "result": in_present_words(plain["result"])}
+        return validator(StreamEntry).validate_python(present)
+    except (ValueError, KeyError, TypeError):
         return None
+
+
+def head_of(line: bytes) -> LineHead | None:
+    """The beginning of a line of a stream; None where it was cut off or has another format."""
+    try:
+        head: LineHead = validator(LineHead).validate_json(line)
+    except ValueError:
+        return None
+    return head if head.format in KNOWN_FORMATS else None
 
 
 def result_of(plain: Mapping[str, Any]) -> CaseResult:
@@ -166,14 +272,15 @@ def result_of(plain: Mapping[str, Any]) -> CaseResult:
     Raises:
         ValueError: It has another shape.
     """
-    return _validator().validate_python(plain)
+    return validator(CaseResult).validate_python(plain)
 
 
 @cache
-def _validator() -> TypeAdapter[CaseResult]:
+def validator(kind: type) -> TypeAdapter[Any]:
+    """Reads records of a type from JSON or plain data."""
     from pydantic import TypeAdapter
 
-    return TypeAdapter(CaseResult)
+    return TypeAdapter(kind)
 
 
 def fingerprint(job: RunRequest) -> str:

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, closing
+from array import array
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
+from harness.core.lazy import LazySequence
 from harness.recording.run import Outcome
 from harness.reporting.result import CaseResult, ProgressEvent
 from harness.reporting.sampled import SampledRate, with_starts
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.suite.cases import Watcher, ignore_progress, run_here, run_isolated
 from harness.suite.outcome import EXIT_CODES, INTERRUPTED_EXIT_CODE, exit_code
-from harness.suite.plan import PlannedCase
+from harness.suite.plan import Plan
 from harness.suite.repetitions import Repetitions
+from harness.suite.results import Results
 from harness.suite.sampling import Sampling
-from harness.suite.stream import Stream
+from harness.suite.stream import Place, ResultHead, Stream
 from harness.suite.warm import WarmServer
 
 OnResult = Callable[[int, CaseResult], None]
@@ -52,7 +54,7 @@ class SuiteRun:
     """Runs planned cases and keeps their results.
 
     Attributes:
-        plan: Cases, in file order.
+        plan: The cases, in file order.
         files: The scenario files that were found.
         jobs: Their runs: with repetitions, `repeat` of each case side by side.
         results: The results by index into `jobs`; of samples, those that count.
@@ -63,22 +65,25 @@ class SuiteRun:
         unfinished: The last event of each run that has begun and not ended, by index into `jobs`.
     """
 
-    def __init__(
-        self, plan: Sequence[PlannedCase], how: SuiteOptions, files: Sequence[Path] = ()
-    ) -> None:
+    def __init__(self, plan: Plan, how: SuiteOptions, files: Sequence[Path] = ()) -> None:
         self.plan = plan
         self.files = files
         self._repetitions = (
             Repetitions([each.job for each in plan], how.repeat) if how.repeat > 1 else None
         )
-        self.jobs = self._repetitions.jobs if self._repetitions else [each.job for each in plan]
-        self.results: dict[int, CaseResult] = {}
+        self.jobs = (
+            self._repetitions.jobs
+            if self._repetitions is not None
+            else LazySequence(len(plan), lambda index: plan[index].job)
+        )
+        self.results = Results(len(self.jobs))
         self.resumed = 0
         self.is_interrupted = False
         self.missing_parts: tuple[str, ...] = ()
         self.processors: set[str] = set()
         self.unfinished: dict[int, ProgressEvent] = {}
         self._how = how
+        self._stream: Stream | None = None
         self._sampling = Sampling(plan, is_part=how.is_part)
 
     def collect(
@@ -106,28 +111,29 @@ class SuiteRun:
             with ExitStack() as stack:
                 if self._repetitions is not None:
                     stack.enter_context(self._repetitions)
-                stream = self._stream(stack)
+                self._open_stream()
                 for index, result in self._arriving(server, watched):
                     self.unfinished.pop(index, None)
-                    kept = self._take(index, result)
-                    if stream is not None:
-                        tags = self.plan[index // self._how.repeat].header.tags
-                        stream.write(self.jobs[index], kept, self.values(index), tags)
-                    on_result(index, kept)
+                    on_result(index, self._keep(index, result))
         except KeyboardInterrupt:
             self.is_interrupted = True
-        self._count()
+        self.count()
 
-    def take_all(self, results: Mapping[int, CaseResult]) -> None:
-        """Take results that were computed elsewhere, by index into `jobs`, instead of running."""
-        for index in sorted(results):
-            self._take(index, results[index])
-        self._count()
+    def take(self, index: int, result: CaseResult | ResultHead, place: Place | None) -> None:
+        """Take a result, which is whole or stands in the stream."""
+        if self._repetitions is None:
+            self._sampling.note(index, result.outcome, result.digest)
+        self.results.keep(index, result, place)
 
-    def _count(self) -> None:
+    def read_from(self, stream: Stream) -> None:
+        """Take results from a stream."""
+        self._stream = stream
+        self.results = Results(len(self.jobs), stream)
+
+    def count(self) -> None:
         """Leave out the results of samples after an early stop."""
-        counted = self._sampling.counted(self.results) if self._is_sampled else self.results
-        self.results = dict(sorted(counted.items()))
+        if self._is_sampled:
+            self.results.drop(self._sampling.is_needless)
 
     @property
     def is_part(self) -> bool:
@@ -148,7 +154,10 @@ class SuiteRun:
 
             cluster = RayCluster(how.cluster, how.workers)
             self.processors = cluster.processors
-            return cluster.run(self.jobs, hard_cap=how.hard_cap, is_needless=self.is_needless)
+            files = [each.file for each in self.plan.files]
+            return cluster.run(
+                self.jobs, files, hard_cap=how.hard_cap, is_needless=self.is_needless
+            )
         return run_isolated(
             self.jobs,
             server,
@@ -158,24 +167,28 @@ class SuiteRun:
             is_needless=self.is_needless,
         )
 
-    def _stream(self, stack: ExitStack) -> Stream | None:
-        """Where results go as they come; those of an earlier run are taken from there."""
-        if self._how.stream is None:
-            return None
-        stream = stack.enter_context(closing(Stream(self._how.stream, resume=self._how.resume)))
-        for index, job in enumerate(self.jobs):
-            known = stream.known(job)
-            if known is not None:
-                self._take(index, known)
+    def _open_stream(self) -> None:
+        """Open where results go as they come; those of an earlier run are taken from there."""
+        if self._how.stream is None and (self._repetitions is not None or len(self.jobs) == 1):
+            return
+        stream = Stream(self._how.stream, resume=self._how.resume)
+        self.read_from(stream)
+        for index, job in enumerate(self.jobs if self._how.resume else ()):
+            if known := stream.known(job):
+                place, result = known
+                self.take(index, result, place)
                 self.resumed += 1
-        return stream
 
-    def _take(self, index: int, result: CaseResult) -> CaseResult:
+    def _keep(self, index: int, result: CaseResult) -> CaseResult:
+        """Take a result that was computed, and write it into the stream."""
         if self._repetitions is not None:
             result = self._repetitions.take(index, result)
-        else:
-            self._sampling.note(index, result.outcome, result.digest)
-        self.results[index] = result
+        place = None
+        if self._stream is not None:
+            planned, job = self.plan[index // self._how.repeat], self.jobs[index]
+            values = {**planned.values, **result.values}
+            place = self._stream.write(job, result, values, planned.header.tags)
+        self.take(index, result, place)
         return result
 
     def is_needless(self, index: int) -> bool:
@@ -199,9 +212,9 @@ class SuiteRun:
         """Success rates of the parametrised cases that are sampled."""
         if not self._is_sampled:
             return []
-        starts: dict[tuple[str, str] | None, list[CaseResult]] = {}
-        for index, result in self.results.items():
-            starts.setdefault(self.plan[index].rate_key, []).append(result)
+        starts: dict[tuple[str, str] | None, list[tuple[bool, int]]] = {}
+        for index, start in self.results.starts.items():
+            starts.setdefault(self.plan[index].rate_key, []).append(start)
         return [
             replace(group, rate=with_starts(group.rate, starts.get((group.file, group.group), [])))
             for group in self._sampling.groups()
@@ -210,25 +223,30 @@ class SuiteRun:
     @property
     def files_text(self) -> str:
         """How many files were found, have a selected case, and were run."""
-        collected = {each.job.file for each in self.plan}
-        ran = {self.jobs[index].file for index in self.results}
+        collected = {each.file for each in self.plan}
+        ran = {self.plan[index // self._how.repeat].file for index in self.results}
         return f"{len(self.files)} files found, {len(collected)} collected, {len(ran)} run"
-
-    def values(self, index: int) -> Mapping[str, Any]:
-        """What varies in a run, as it was drawn at last."""
-        drawn = self.results[index].values if index in self.results else {}
-        return {**self.plan[index // self._how.repeat].values, **drawn}
 
     @property
     def record(self) -> SuiteRecord:
         """What the suite's files are written from."""
-        cases: list[SuiteCase] = []
-        for index, result in self.results.items():
-            case = self.plan[index // self._how.repeat]
-            cases.append(
-                SuiteCase(result, self.values(index), case.header.tags, case.header.verifies)
-            )
+        counted = array("Q", self.results)
+        cases = LazySequence(len(counted), lambda index: self.case(counted[index]))
         return SuiteRecord(self.outcome, cases, self.rates, self.is_interrupted, self.missing_parts)
+
+    def case(self, index: int) -> SuiteCase:
+        """A result as the files of a suite show it, by index into `jobs`."""
+        planned = self.plan[index // self._how.repeat]
+        header, stored = planned.header, self.results.stored(index)
+        if stored is not None:
+            return SuiteCase(stored.result, stored.values, header.tags, header.verifies)
+        result = self.results[index]
+        values = {**planned.values, **result.values}
+        return SuiteCase(result, values, header.tags, header.verifies)
+
+    def failures(self) -> Iterator[CaseResult]:
+        """The results that did not pass."""
+        return (self.results[i] for i, outcome in self.results.outcomes() if outcome != "passed")
 
     def repetitions(self) -> list[list[CaseResult]]:
         """Results of the same case together, in file order."""
@@ -240,18 +258,17 @@ class SuiteRun:
     @property
     def outcome(self) -> Outcome:
         """The gravest outcome; repetitions that differ have failed."""
-        outcomes: list[Outcome] = (
-            self._sampling.outcomes(self.results)
-            if self._is_sampled
-            else [result.outcome for result in self.results.values()]
-        )
-        gravest: Outcome = "passed"
-        for each in outcomes:
-            gravest = each if EXIT_CODES[each] > EXIT_CODES[gravest] else gravest
-        is_same = all(
-            len({(result.outcome, result.digest) for result in runs}) == 1
-            for runs in self.repetitions()
-        )
+        found = self.results.outcomes()
+        is_same = True
+        if self._is_sampled:
+            outcomes: set[Outcome] = self._sampling.outcomes(found)
+        else:
+            outcomes = {outcome for _, outcome in found}
+            is_same = all(
+                len({(result.outcome, result.digest) for result in runs}) == 1
+                for runs in self.repetitions()
+            )
+        gravest: Outcome = max(outcomes or {"passed"}, key=EXIT_CODES.__getitem__)
         return "failed" if gravest == "passed" and not is_same else gravest
 
     @property

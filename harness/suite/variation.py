@@ -16,8 +16,9 @@ from dataclasses import dataclass, field, replace
 from statistics import NormalDist
 from typing import Any, cast
 
+from harness.core.lazy import LazySequence
 from harness.core.quantity import share_of, split_quantity
-from harness.core.variation import MOST_CASES, MOST_SAMPLES, Cases, count_of
+from harness.core.variation import MOST_CASES, MOST_SAMPLES, Parametrize, count_of
 
 DEFAULT_SAMPLES = 20
 LONGEST_NAME = 60
@@ -66,7 +67,7 @@ class Variation:
         redraw_overlaps: Whether a sample is drawn again while objects overlap at the start.
     """
 
-    parametrize: Cases | None = None
+    parametrize: Parametrize | None = None
     randomize: Mapping[str, Mapping[str, Any]] = field(default_factory=dict[str, Any])
     samples: int = 0
     at_least: float | None = None
@@ -104,9 +105,9 @@ class Variation:
         )
         if not count_of(variation.parametrize):
             raise ValueError("no case")
-        list(itertools.islice(variation.cases(), 3))
         if count_of(variation.parametrize) > MOST_CASES or variation.count > MOST_SAMPLES:
             raise ValueError("more cases than a file may have")
+        list(itertools.islice(variation.cases(), 3))
         return variation
 
     @property
@@ -114,7 +115,7 @@ class Variation:
         """How many cases there are, samples included."""
         return max(1, self.samples) * count_of(self.parametrize)
 
-    def cases(self, seed: int | None = None, samples: int | None = None) -> Iterator[Case]:
+    def cases(self, seed: int | None = None, samples: int | None = None) -> Cases:
         """Every case, in file order; samples of one parametrised case together.
 
         Args:
@@ -122,12 +123,7 @@ class Variation:
             samples: Instead of the file's, where it has some.
         """
         base = self.seed if seed is None else seed
-        count = samples if samples and self.samples else self.samples
-        for case in self.parametrized():
-            if not count:
-                yield case
-            else:
-                yield from (self._sample(case, index, base) for index in range(count))
+        return Cases(self, base, samples if samples and self.samples else self.samples)
 
     def parametrized(self) -> Iterator[Case]:
         """The cases without their samples."""
@@ -155,10 +151,9 @@ class Variation:
         seed = _seed(f"{base}:{case.name}:{index}{f':{draw}' if draw else ''}")
         rng = random.Random(seed)
         drawn = {path: _drawn(each, rng) for path, each in self.randomize.items()}
-        prefix = f"{case.name}-" if case.name else ""
         return Case(
-            name=f"{prefix}sample{index}",
-            overrides={**case.overrides, **_as_yaml(drawn), "seed": str(seed)},
+            name=_sample_name(case, index),
+            overrides={**case.overrides, **as_yaml(drawn), "seed": str(seed)},
             values={**case.values, **drawn},
             group=case.name,
             sample=index,
@@ -190,14 +185,59 @@ class Redraw:
         return drawn.with_overrides(self.fixed)
 
 
+class Cases(LazySequence[Case]):
+    """The cases of a file, each drawn when it is read, so that their number takes no memory."""
+
+    def __init__(self, variation: Variation, base: int, samples: int) -> None:
+        """Remember what the cases follow from.
+
+        Args:
+            variation: The variation of the file.
+            base: The seed of all samples.
+            samples: The number of samples of each parametrised case; 0: none are drawn.
+        """
+        self._variation = variation
+        self._base = base
+        self._samples = samples
+        self._parametrized = tuple(variation.parametrized())
+        super().__init__(len(self._parametrized) * max(1, samples), self._case)
+
+    def _case(self, index: int) -> Case:
+        case, sample = self._place(index)
+        if sample is None:
+            return case
+        return self._variation._sample(case, sample, self._base)  # noqa: SLF001
+
+    def name(self, index: int) -> str:
+        """The name of a case, without drawing its values."""
+        case, sample = self._place(index)
+        return case.name if sample is None else _sample_name(case, sample)
+
+    def group(self, index: int) -> str | None:
+        """The name of the parametrised case that a case is a sample of; None where it is none."""
+        case, sample = self._place(index)
+        return None if sample is None else case.name
+
+    def _place(self, index: int) -> tuple[Case, int | None]:
+        """The parametrised case of an index, and the number of the sample."""
+        if not self._samples:
+            return self._parametrized[index], None
+        place, sample = divmod(index, self._samples)
+        return self._parametrized[place], sample
+
+
 ONE_CASE = Variation()
 
 
+def _sample_name(case: Case, index: int) -> str:
+    return f"{case.name}-sample{index}" if case.name else f"sample{index}"
+
+
 def _case(name: str, values: Mapping[str, Any]) -> Case:
-    return Case(name, _as_yaml(values), dict(values), name)
+    return Case(name, as_yaml(values), dict(values), name)
 
 
-def _as_yaml(values: Mapping[str, Any]) -> dict[str, str]:
+def as_yaml(values: Mapping[str, Any]) -> dict[str, str]:
     """Values as YAML, in which JSON is."""
     return {path: json.dumps(value, ensure_ascii=False) for path, value in values.items()}
 

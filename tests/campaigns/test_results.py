@@ -45,7 +45,7 @@ def entry(number, margin, *, line=7, seed=None, tag="pick", **values):
 
 def journal(folder, entries):
     folder.mkdir(exist_ok=True)
-    (folder / "results.jsonl").write_text("".join(each.line for each in entries))
+    (folder / "results.jsonl").write_bytes(b"".join(each.line for each in entries))
     return str(folder)
 
 
@@ -124,12 +124,12 @@ def test_the_database_follows_its_journal(tmp_path, capsys):
     folder = journal(tmp_path / "a", [entry(1, 0.01), entry(2, 0.02)])
     assert query(capsys, folder)[1]["selected"] == 2
     lines = tmp_path / "a/results.jsonl"
-    with lines.open("a") as file:
+    with lines.open("ab") as file:
         file.write(entry(3, 0.03).line + entry(2, -0.5).line + entry(4, 1).line[:-20])
     _, grown = query(capsys, folder)
     assert grown["selected"] == 3  # a repeated key replaces, half a line waits
     assert names(grown)[0] == "sample2"
-    lines.write_text(entry(9, 0.01).line)
+    lines.write_bytes(entry(9, 0.01).line)
     assert names(query(capsys, folder)[1]) == ["sample9"]
     (tmp_path / "a/results.sqlite").write_bytes(b"no database" * 100)
     assert names(query(capsys, folder)[1]) == ["sample9"]

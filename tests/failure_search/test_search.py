@@ -102,9 +102,39 @@ def test_without_a_failure_the_bound_is_stated_and_the_workers_do_not_matter(tmp
     assert {**again, "file": ""} == {**found, "file": ""}
 
 
+def test_the_file_says_how_it_is_searched_and_options_take_precedence(tmp_path):
+    text = TWO_KINDS.replace('- formula: "always (y', '- name: south\n    formula: "always (y')
+    text = text.replace("0.3)", "0.49)")  # rarely found by chance
+    text += "search: {runs: 30, start: 4, seed: 1, batch: 5, minimise: south}\n"
+    _, found = search(tmp_path, text)
+    assert found["runs"] <= 30
+    assert found["rate"]["total"] == 4
+    assert [each["changed"] for each in found["failures"]] == [["y"]]
+    _, fewer = search(tmp_path, text, "--runs", "3", "--start", "2")
+    assert (fewer["runs"], fewer["rate"]["total"]) == (3, 2)
+
+
+@pytest.mark.parametrize(
+    ("section", "message"),
+    [
+        ("{runz: 3}", "15:10: unknown key `runz`"),
+        ("{runs: 0}", "15:16"),
+        ("{batch: 1}", "15:17"),
+        ("{minimise: south}", "15:20: no expectation has the name 'south'"),
+    ],
+)
+def test_mistakes_in_the_section_have_their_place(tmp_path, capsys, section, message):
+    file = tmp_path / "safe.scenario.yaml"
+    file.write_text(f"{SAFE}search: {section}\n")
+    assert main(["search", str(file), "--report-dir", str(tmp_path / "reports")]) == 2
+    assert f"{file}:{message}" in capsys.readouterr().err
+    assert not (tmp_path / "reports").exists()
+
+
 @pytest.mark.parametrize(
     ("text", "options", "message"),
     [
+        (SAFE, ("--minimise", "south"), "no expectation of"),
         (SAFE.split("randomize")[0], (), "nothing varies; give ranges with `randomize:`"),
         (SAFE, ("--case", "small"), "has no case 'small'"),
         (SAFE + "parametrize: {params.x: [0, 1]}\n", (), "has 2 cases; name one of them"),

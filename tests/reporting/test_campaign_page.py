@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.reporting.suite.campaign import campaign_html, parameters_of, sensitivities
+from harness.reporting.suite.campaign import campaign_html, sensitivities
+from harness.reporting.suite.columns import Columns
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.reporting.suite.write import write_page
 from tests.reporting.suites import failed, passed
@@ -37,7 +38,7 @@ def page_file(tmp_path_factory):
         )
         for each in campaign(60)
     ]  # fmt: skip
-    return write_page(folder, SuiteRecord("failed", cases), {})
+    return write_page(folder, SuiteRecord("failed", cases))
 
 
 def place_of(page, words):
@@ -90,8 +91,8 @@ def test_a_row_has_the_values_of_its_run(page_file, visit):
 
 
 def test_the_parameter_that_decides_is_the_most_sensitive():
-    runs = campaign(400)
-    found = sensitivities(runs, parameters_of(runs))
+    columns = Columns(campaign(400))
+    found = sensitivities(columns, columns.parameters)
     assert found["friction"] > 0.9
     assert found["x"] < 0.05
     assert found["color"] < 0.05
@@ -101,16 +102,16 @@ def test_sensitivities_of_noise_are_near_zero_on_average():
     """The share is corrected for what chance puts between groups."""
     rng, shares = np.random.default_rng(0), []
     for _ in range(20):
-        runs = [
+        columns = Columns(
             SuiteCase(passed(i, value), {"x": float(rng.random())})
             for i, value in enumerate(0.06 + 0.02 * rng.random(100))
-        ]
-        shares.append(sensitivities(runs, parameters_of(runs))["x"])
+        )
+        shares.append(sensitivities(columns, columns.parameters)["x"])
     assert np.mean(shares) < 0.03
 
 
 def test_a_page_of_many_samples_stays_small(tmp_path):
-    page = write_page(tmp_path, SuiteRecord("failed", campaign(20_000)), {})
+    page = write_page(tmp_path, SuiteRecord("failed", campaign(20_000)))
     text = page.read_text()
     assert len(text) < 5_000_000
     assert "10000 of 20000 runs are drawn" in text
@@ -120,7 +121,7 @@ def test_a_page_of_many_samples_stays_small(tmp_path):
 
 def test_hostile_words_stay_text(tmp_path, visit):
     words = ("</script><script>document.title = 'taken over'</script>", "<b>bold</b>")
-    page = write_page(tmp_path, SuiteRecord("failed", campaign(20, words)), {})
+    page = write_page(tmp_path, SuiteRecord("failed", campaign(20, words)))
     seen = visit(page)
     assert "taken over" not in seen.page.title()
     seen.page.select_option("#map select[name=y]", "2")
@@ -128,5 +129,5 @@ def test_hostile_words_stay_text(tmp_path, visit):
 
 
 def test_few_runs_and_runs_without_variation_have_no_map(tmp_path):
-    assert campaign_html(campaign(4), tmp_path) == ""
-    assert campaign_html([SuiteCase(passed(i)) for i in range(50)], tmp_path) == ""
+    for cases in (campaign(4), [SuiteCase(passed(i)) for i in range(50)]):
+        assert campaign_html(Columns(cases), cases, tmp_path) == ""

@@ -23,7 +23,7 @@ def page_file(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp(request.param)
     if request.param == "run":
         return page_of("plain", folder)
-    return write_suite(folder, small_suite(), 3)
+    return write_suite(folder, small_suite(), 3)[0]
 
 
 @pytest.mark.parametrize("intruder", INTRUDERS.values(), ids=INTRUDERS)

@@ -10,12 +10,12 @@ from tests.reporting.suites import large_suite, small_suite
 @pytest.fixture(scope="module")
 def small(tmp_path_factory):
     history = {("a/pick.scenario.yaml", "c0"): [0.5, 0.4, None, 0.3]}
-    return write_suite(tmp_path_factory.mktemp("small"), small_suite(), 3, history)
+    return write_suite(tmp_path_factory.mktemp("small"), small_suite(), 3, history)[0]
 
 
 @pytest.fixture(scope="module")
 def large(tmp_path_factory):
-    return write_suite(tmp_path_factory.mktemp("large"), large_suite(2000), 1)
+    return write_suite(tmp_path_factory.mktemp("large"), large_suite(2000), 1)[0]
 
 
 def names(page):
@@ -51,7 +51,7 @@ def columns(page, row):
 
 @pytest.mark.parametrize("history", [None, {}, {("a/pick.scenario.yaml", "c0"): [0.5, 0.4]}])
 def test_every_cell_stands_under_its_heading(history, tmp_path, visit):
-    page = visit(write_suite(tmp_path, small_suite(), 3, history), width=1400).page
+    page = visit(write_suite(tmp_path, small_suite(), 3, history)[0], width=1400).page
     for row, seed in enumerate(("0", "1", "3")):
         found = columns(page, row)
         assert (found["Seed"], found["Simulated"]) == (seed, "4.0 s" if row == 2 else "9.0 s")

@@ -81,6 +81,28 @@ def test_every_condition_is_run_although_a_sequential_test_could_stop():
     assert len(cases("again")) == 6
 
 
+@pytest.mark.usefixtures("campaign")
+def test_conditions_are_divided_into_parts_and_merged(capsys):
+    text = SCENARIO.replace("[-20 cm, 60 cm]", "[-1 m, 1 m]")  # what the file draws does not matter
+    Path("ball.scenario.yaml").write_text(text)
+    for number in (1, 2):
+        words = ("--shard", f"{number}/2", "--report-dir", f"part{number}")
+        assert run("ball.scenario.yaml", "--conditions", "first", *words) == 0
+    Path("ball.scenario.yaml").unlink()
+    assert cases("part1").keys().isdisjoint(cases("part2"))
+    assert main(["merge", "part1", "part2", "--report-dir", "all"]) == 0
+    assert cases("all") == cases("first")
+    assert Path("all/conditions.jsonl").read_bytes() == Path("first/conditions.jsonl").read_bytes()
+    lines = Path("first/conditions.jsonl").read_text().splitlines()[:-1]
+    Path("fewer.jsonl").write_text("\n".join(lines) + "\n")
+    Path("ball.scenario.yaml").write_text(text)
+    run("ball.scenario.yaml", "--conditions", "fewer.jsonl", "--shard", "2/2",
+        "--report-dir", "other")  # fmt: skip
+    capsys.readouterr()
+    assert main(["merge", "part1", "other", "--report-dir", "mixed"]) == 2
+    assert "they differ in the samples of --conditions" in capsys.readouterr().err
+
+
 @pytest.mark.usefixtures("project")
 @pytest.mark.parametrize(
     ("content", "options", "message"),

@@ -2,8 +2,27 @@
 
 import pytest
 
+from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
-from harness.suite.stream import fingerprint
+from harness.suite.stream import Stream, fingerprint
+
+
+def test_a_line_that_was_cut_off_leaves_the_others_whole(cell, tmp_path):
+    """A process that was killed while it wrote leaves half a line."""
+    one, two = cell("one"), cell("two", b"other")
+    stream = Stream(tmp_path)
+    for job in (one, two):
+        stream.write(job, CaseResult(str(job.file), "", "t", "passed"))
+    stream.close()
+    stream.path.write_bytes(stream.path.read_bytes()[:-40])
+    again = Stream(tmp_path, resume=True)
+    assert again.known(one) is not None
+    assert again.known(two) is None
+    again.write(two, CaseResult(str(two.file), "", "t", "failed"))
+    again.close()
+    place, head = Stream(tmp_path, resume=True).known(two)
+    assert head.outcome == "failed"
+    assert stream.path.read_bytes()[place.offset :].startswith(b'{"format"')
 
 
 @pytest.fixture

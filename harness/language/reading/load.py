@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Generic, Literal, TypeVar, cast
@@ -134,7 +134,20 @@ def read_scenario(
         loaded = LoadedScenario(error.remains, path, text, error.lines, written, tuple(notes))
         missing = frozenset(error.repaired.missing)
         return Reading(loaded, tuple(error.problems), frozenset(error.repaired.words), missing)
-    return Reading(LoadedScenario(model, path, text, lines, written, tuple(notes)))
+    loaded = LoadedScenario(model, path, text, lines, written, tuple(notes))
+    return Reading(loaded, tuple(_unknown_expectation(model, lines)))
+
+
+def _unknown_expectation(scenario: Scenario, lines: SourceMap) -> Iterator[Problem]:
+    """The mistake that `search` minimises an expectation that does not exist."""
+    names = scenario.expectation_names()
+    if scenario.search and scenario.search.minimise not in (None, *names):
+        name = scenario.search.minimise
+        yield lines.problem(
+            ("search", "minimise"),
+            f"no expectation has the name '{name}'",
+            did_you_mean(name, names, "names"),
+        )
 
 
 def _problems_of(root: Located, path: Path) -> list[Problem]:

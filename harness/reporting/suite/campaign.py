@@ -7,18 +7,14 @@ import math
 import os
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from html import escape
 from pathlib import Path
-from typing import Any
 from urllib.parse import quote
 
 import numpy as np
 
-from harness.core.quantity import split_quantity
 from harness.core.types import FloatArray
-from harness.reporting.margins import margin_share, worst
-from harness.reporting.suite.cause import cause_of
+from harness.reporting.suite.columns import PASSED, Columns, Parameter
 from harness.reporting.suite.record import SuiteCase
 
 FEWEST_RUNS = 8
@@ -34,81 +30,58 @@ SENSITIVITY_BINS = 8
 WIDTH, HEIGHT = 260, 64  # [pixels]
 
 
-@dataclass(frozen=True)
-class Parameter:
-    """A quantity that varies, as numbers.
-
-    Attributes:
-        path: Where it stands in the file.
-        unit: The unit of the numbers.
-        words: The values of a parameter whose values are no numbers; the numbers count them.
-        numbers: A number for each run; NaN where the run does not have the parameter.
-    """
-
-    path: str
-    unit: str
-    words: tuple[str, ...]
-    numbers: FloatArray
-
-
-def campaign_html(cases: Sequence[SuiteCase], folder: Path) -> str:
+def campaign_html(columns: Columns, cases: Sequence[SuiteCase], folder: Path) -> str:
     """Map, distribution of margins and sensitivities; empty where too little varies.
 
     Args:
+        columns: What varies in the cases.
         cases: The cases of the suite.
         folder: Where the page will stand; links are relative to it.
     """
-    runs = [each for each in cases if each.values and each.result.outcome != "invalid"]
-    parameters = [each for each in parameters_of(runs) if len(set(each.numbers.tolist())) > 1]
-    if len(runs) < FEWEST_RUNS or not parameters:
+    parameters = [each for each in columns.parameters if each.is_varying]
+    if len(columns.numbers) < FEWEST_RUNS or not parameters:
         return ""
-    return _map(runs, parameters, folder) + _margins(runs) + _sensitivities(runs, parameters)
+    drawn = _map(columns, parameters, cases, folder)
+    return drawn + _margins(columns) + _sensitivities(columns, parameters)
 
 
-def parameters_of(runs: Sequence[SuiteCase]) -> list[Parameter]:
-    """Everything that varies in some run, in the order in which the runs name it."""
-    paths = dict.fromkeys(path for each in runs for path in each.values)
-    return [_parameter(path, [each.values.get(path) for each in runs]) for path in paths]
-
-
-def _parameter(path: str, values: Sequence[Any]) -> Parameter:
-    try:
-        pairs = [None if value is None else split_quantity(value) for value in values]
-    except ValueError:
-        pairs = []
-    units = {pair[1] for pair in pairs if pair is not None}
-    if len(units) == 1:
-        numbers = [math.nan if pair is None else pair[0] for pair in pairs]
-        return Parameter(path, units.pop(), (), np.array(numbers))
-    words = tuple(dict.fromkeys(str(value) for value in values if value is not None))
-    places = {word: float(index) for index, word in enumerate(words)}
-    numbers = [math.nan if value is None else places[str(value)] for value in values]
-    return Parameter(path, "", words, np.array(numbers))
-
-
-def _map(runs: Sequence[SuiteCase], parameters: Sequence[Parameter], folder: Path) -> str:
-    failed = [index for index, each in enumerate(runs) if each.result.outcome != "passed"]
-    passed = [index for index, each in enumerate(runs) if each.result.outcome == "passed"]
+def _map(
+    columns: Columns, parameters: Sequence[Parameter], cases: Sequence[SuiteCase], folder: Path
+) -> str:
+    runs = len(columns.numbers)
+    failed, passed = (
+        np.flatnonzero(which).tolist() for which in (~columns.is_good, columns.is_good)
+    )
     shown_failed = _evenly(failed, MOST_POINTS // 2)
     shown_passed = _evenly(passed, MOST_POINTS - len(shown_failed))
     shown = sorted([*shown_failed, *shown_passed])
-    causes = Counter(cause.group for i in failed if (cause := cause_of(runs[i].result)))
-    names = [group for group, _ in causes.most_common(MOST_CAUSES)]
+    names = list(columns.causes)
+    causes = Counter(columns.groups[i] for i in failed)
+    common = [group for group, _ in causes.most_common(MOST_CAUSES)]
+    places = {group: place for place, group in enumerate(common)} | {PASSED: PASSED}
     data = {
         "parameters": [
             {"name": each.path, "unit": each.unit, "words": each.words} for each in parameters
         ],
-        "causes": names,
+        "causes": [names[group] for group in common],
         "weights": [
             len(passed) / max(1, len(shown_passed)),
             len(failed) / max(1, len(shown_failed)),
         ],
-        "points": [_point(i, runs[i], parameters, names, folder) for i in shown],
+        "points": [
+            [
+                *(_short(each.numbers[i]) for each in parameters),
+                _short(columns.shares[i]),
+                places.get(columns.groups[i], len(common)),
+                *_name_and_link(cases[columns.numbers[i]], folder),
+            ]
+            for i in shown
+        ],
     }
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")
-    number = f"{len(runs)} runs"
-    if len(shown) < len(runs):
-        number = f"{len(shown)} of {len(runs)} runs are drawn, chosen evenly"
+    number = f"{runs} runs"
+    if len(shown) < runs:
+        number = f"{len(shown)} of {runs} runs are drawn, chosen evenly"
     return (
         '<section class="panel" id="map" hidden><h2>Map of the runs'
         f' <span class="key">{number} · click a run to open it</span></h2>'
@@ -130,51 +103,26 @@ def _evenly(indices: Sequence[int], most: int) -> list[int]:
     return [indices[index * len(indices) // most] for index in range(most)]
 
 
-def _point(
-    index: int,
-    run: SuiteCase,
-    parameters: Sequence[Parameter],
-    causes: Sequence[str],
-    folder: Path,
-) -> list[object]:
-    """Numbers of the parameters, share of the margin, cause (-1: passed), name and link."""
-    cause = cause_of(run.result)
-    group = -1 if cause is None else len(causes)
-    if cause is not None and cause.group in causes:
-        group = causes.index(cause.group)
-    target = run.result.page or run.result.report_dir
-    link = ""
-    if target:
-        path = Path(os.path.relpath(Path(target).resolve(), folder.resolve())).as_posix()
-        link = quote(path)
-    numbers = [_short(each.numbers[index]) for each in parameters]
-    return [*numbers, _short(_share(run)), group, run.result.case, link]
-
-
-def _share(run: SuiteCase) -> float:
-    nearest = worst(run.result.verdicts)
-    return math.nan if nearest is None else margin_share(nearest)
+def _name_and_link(case: SuiteCase, folder: Path) -> tuple[str, str]:
+    target = case.result.page or case.result.report_dir
+    if not target:
+        return case.result.case, ""
+    path = Path(os.path.relpath(Path(target).resolve(), folder.resolve())).as_posix()
+    return case.result.case, quote(path)
 
 
 def _short(number: float) -> float | None:
     return float(f"{number:.5g}") if math.isfinite(number) else None
 
 
-def _margins(runs: Sequence[SuiteCase]) -> str:
+def _margins(columns: Columns) -> str:
     """A histogram of the margins of each expectation; those with failures first."""
-    found: dict[tuple[str, str], list[float]] = {}
-    for run in runs:
-        for verdict in run.result.verdicts:
-            if math.isfinite(verdict.margin):
-                key = verdict.expectation, verdict.unit
-                found.setdefault(key, []).append(verdict.margin)
-    varying = [(key, values) for key, values in found.items() if max(values) > min(values)]
-    varying.sort(key=lambda each: min(each[1]) >= 0)
+    found = ((key, np.array(values)) for key, values in columns.margins.items())
+    varying = [(key, values) for key, values in found if np.ptp(values) > 0]
+    varying.sort(key=lambda each: each[1].min() >= 0)
     if not varying:
         return ""
-    blocks = "".join(
-        _histogram(*key, np.array(values)) for key, values in varying[:MOST_HISTOGRAMS]
-    )
+    blocks = "".join(_histogram(*key, values) for key, values in varying[:MOST_HISTOGRAMS])
     more = len(varying) - MOST_HISTOGRAMS
     rest = f'<p class="quiet">{more} more expectations</p>' if more > 0 else ""
     return (
@@ -210,8 +158,8 @@ def _histogram(expectation: str, unit: str, values: FloatArray) -> str:
     )
 
 
-def _sensitivities(runs: Sequence[SuiteCase], parameters: Sequence[Parameter]) -> str:
-    shares = sensitivities(runs, parameters)
+def _sensitivities(columns: Columns, parameters: Sequence[Parameter]) -> str:
+    shares = sensitivities(columns, parameters)
     rows = "".join(
         f'<li><span>{escape(path)}</span><span class="bar" role="img" aria-label="{share:.0%}">'
         f'<i class="effect" style="width:{100 * share:.1f}%"></i></span>'
@@ -225,9 +173,7 @@ def _sensitivities(runs: Sequence[SuiteCase], parameters: Sequence[Parameter]) -
     )
 
 
-def sensitivities(
-    runs: Sequence[SuiteCase], parameters: Sequence[Parameter]
-) -> Mapping[str, float]:
+def sensitivities(columns: Columns, parameters: Sequence[Parameter]) -> Mapping[str, float]:
     """How much of the variance of the worst margin each parameter explains alone, from 0 to 1.
 
     The runs are divided into groups of equal size by the parameter; the share is epsilon squared
@@ -238,9 +184,9 @@ def sensitivities(
         [1] T. L. Kelley, "An Unbiased Correlation Ratio Measure", Proceedings of the National
             Academy of Sciences 21(9), 1935.
     """
-    measured = np.array([_share(each) for each in runs])
-    if len(set(measured[np.isfinite(measured)].tolist())) < 2:
-        measured = np.array([float(each.result.outcome == "passed") for each in runs])
+    measured = np.array(columns.shares)
+    if len(np.unique(measured[np.isfinite(measured)])) < 2:
+        measured = columns.is_good.astype(float)
     return {each.path: _explained(each, measured) for each in parameters}
 
 

@@ -6,24 +6,23 @@ References:
 
 from __future__ import annotations
 
-import math
+import heapq
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from harness.core.errors import HarnessError, Problem
 from harness.core.printable import printable, printable_lines
-from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import missed, rate_text
 from harness.reporting.suite.cause import cause_of
-from harness.reporting.suite.record import SuiteRecord
+from harness.reporting.suite.record import SuiteCase, SuiteRecord
 
 MOST_ROWS = 100
 SIGNS = {"passed": "✅", "failed": "❌", "invalid": "⛔", "error": "💥"}
 
 
-def error_annotations(results: Sequence[CaseResult]) -> Iterator[str]:
+def error_annotations(results: Iterable[CaseResult]) -> Iterator[str]:
     """A line for each thing that went wrong, which GitHub shows at its place in the file."""
     for result in results:
         cause = cause_of(result)
@@ -49,11 +48,10 @@ def append_summary(record: SuiteRecord) -> None:
             raise HarnessError(f"'{file}' cannot be written: {error.strerror}") from error
 
 
-def annotations_for_action(record: SuiteRecord) -> list[str]:
+def annotations_for_action(results: Iterable[CaseResult]) -> Iterator[str]:
     """Lines to print where an action runs: GitHub sets GITHUB_ACTIONS; else none."""
-    if os.environ.get("GITHUB_ACTIONS") != "true":
-        return []
-    return list(error_annotations([case.result for case in record.cases]))
+    if os.environ.get("GITHUB_ACTIONS") == "true":
+        yield from error_annotations(results)
 
 
 def problem_annotation(problem: Problem) -> str:
@@ -78,26 +76,21 @@ def _property(text: str) -> str:
 
 def job_summary(record: SuiteRecord) -> str:
     """Markdown: the count, a table with the worst first, and the rates of samples."""
-    results = [case.result for case in record.cases]
-    passed = sum(result.outcome == "passed" for result in results)
-    summary = "; ".join(filter(None, (f"{passed} of {len(results)} passed", missed(record.rates))))
+    order = heapq.nsmallest(MOST_ROWS, record.cases, key=lambda case: case.urgency)
+    more = len(record.cases) - len(order)
+    passed = sum(case.result.outcome == "passed" for case in record.cases)
+    of = f"{passed} of {len(record.cases)} passed"
+    summary = "; ".join(filter(None, (of, missed(record.rates))))
     lines = [f"## {SIGNS[record.outcome]} armharness: {summary}", ""]
     lines += [f"- {rate_text(_cell(f'{r.file} {r.group}'.strip()), r.rate)}" for r in record.rates]
     lines += ["", "| | case | nearest to failing | why |", "|---|---|---|---|"]
-    order = sorted(results, key=_urgency)
-    lines += [_row(result) for result in order[:MOST_ROWS]]
-    if len(order) > MOST_ROWS:
-        lines += ["", f"and {len(order) - MOST_ROWS} more"]
+    lines += map(_row, order)
+    lines += ["", f"and {more} more"] if more else []
     return "\n".join(lines) + "\n"
 
 
-def _urgency(result: CaseResult) -> tuple[bool, float]:
-    nearest = worst(result.verdicts)
-    return result.outcome == "passed", math.inf if nearest is None else margin_share(nearest)
-
-
-def _row(result: CaseResult) -> str:
-    nearest, cause = worst(result.verdicts), cause_of(result)
+def _row(case: SuiteCase) -> str:
+    result, nearest, cause = case.result, case.nearest, case.cause
     name = f"{result.title} [{result.case}]" if result.case else result.title
     margin = ""
     if nearest is not None:

@@ -6,18 +6,23 @@ There is no one schema; what is written here is in all that are in use: `testsui
 
 from __future__ import annotations
 
+import io
 import math
 import re
-from collections.abc import Sequence
+import shutil
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
-from xml.etree import ElementTree as ET
+from tempfile import SpooledTemporaryFile
+from typing import IO
+from xml.sax.saxutils import escape
 
 from harness.core.printable import printable, printable_lines
-from harness.recording.run import Verdict
+from harness.recording.run import Outcome, Verdict
 from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate, rate_text
-from harness.reporting.suite.cause import cause_of
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.reporting.terminal import causes, report_link
 
@@ -25,6 +30,10 @@ NAME = "armharness"
 ATTACHMENT = "[[ATTACHMENT|"
 """How a file's name begins in `system-out`, for Jenkins and GitLab."""
 
+MOST_IN_MEMORY = 1_000_000
+"""Bytes of a `testsuite` that are kept in memory until the document is written."""
+
+MARKUP = re.compile('[&<>"]')
 SAMPLE = re.compile(r"(?:^|-)sample\d+$")
 """What the name of a sample adds to its group's."""
 
@@ -35,83 +44,153 @@ def junit_xml(record: SuiteRecord) -> str:
     Samples may fail where a success rate is required: the rate is a `testcase` of its own, with
     the `failure` when it is not confirmed.
     """
-    suites = ET.Element("testsuites", name=NAME)
-    files: dict[str, list[SuiteCase]] = {}
+    writer = JunitWriter(record)
     for case in record.cases:
-        files.setdefault(case.result.file, []).append(case)
-    for file, cases in files.items():
-        rates = [each for each in record.rates if each.file == file]
-        counts = _counts(cases, rates)
-        suite = ET.SubElement(suites, "testsuite", {"name": printable(file), **counts})
-        for case in cases:
-            _add_case(suite, case, rates)
-        for rate in rates:
-            _add_rate(suite, rate)
-    for name, count in _counts(record.cases, record.rates).items():
-        suites.set(name, count)
-    ET.indent(suites)
-    return f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(suites, encoding="unicode")}\n'
+        writer.add(case)
+    text = io.BytesIO()
+    writer.write(text)
+    return text.getvalue().decode()
 
 
-def _counts(cases: Sequence[SuiteCase], rates: Sequence[SampledRate]) -> dict[str, str]:
-    outcomes = [case.result.outcome for case in cases if not _may_fail(case.result, rates)]
-    outcomes += [rate.outcome for rate in rates]
-    time = sum(_seconds(case.result) for case in cases)
-    return {
-        "tests": str(len(cases) + len(rates)),
-        "failures": str(outcomes.count("failed")),
-        "errors": str(outcomes.count("error") + outcomes.count("invalid")),
-        "skipped": "0",
-        "time": f"{time:.3f}",
-    }
+@dataclass
+class _Counts:
+    """What a `testsuite` counts."""
+
+    tests: int = 0
+    failures: int = 0
+    errors: int = 0
+    seconds: float = 0.0
+
+    def add(self, outcome: Outcome, seconds: float = 0.0) -> None:
+        self.tests += 1
+        self.failures += outcome == "failed"
+        self.errors += outcome in ("error", "invalid")
+        self.seconds += seconds
+
+    @property
+    def attributes(self) -> str:
+        return (
+            f'tests="{self.tests}" failures="{self.failures}" errors="{self.errors}" skipped="0"'
+            f' time="{self.seconds:.3f}"'
+        )
+
+
+class JunitWriter:
+    """Writes JUnit XML case by case; what is written so far is in a file without a name."""
+
+    def __init__(self, record: SuiteRecord) -> None:
+        """Begin a document.
+
+        Args:
+            record: The suite; its cases are added one after the other.
+        """
+        self._rates: dict[str, list[SampledRate]] = {}
+        for rate in record.rates:
+            self._rates.setdefault(rate.file, []).append(rate)
+        self._suites: dict[str, tuple[_Counts, IO[bytes]]] = {}
+        self._counts = _Counts()
+
+    def add(self, case: SuiteCase) -> None:
+        """Write the next case."""
+        result = case.result
+        if result.file not in self._suites:
+            self._suites[result.file] = _Counts(), _spooled()
+        counts, text = self._suites[result.file]
+        may_fail = _may_fail(result, self._rates.get(result.file, ()))
+        for each in (counts, self._counts):
+            each.add("passed" if may_fail else result.outcome, _seconds(result))
+        text.write(_case(case, may_fail=may_fail))
+
+    def write(self, file: IO[bytes]) -> None:
+        """Write the document, and let go of what was kept of it."""
+        for name, (counts, text) in self._suites.items():
+            for rate in self._rates.get(name, ()):
+                text.write(_rate(rate))
+                for each in (counts, self._counts):
+                    each.add(rate.outcome)
+        head = f'<testsuites name="{NAME}" {self._counts.attributes}>'
+        file.write(f'<?xml version="1.0" encoding="UTF-8"?>\n{head}\n'.encode())
+        for name, (counts, text) in self._suites.items():
+            opening = f'<testsuite name="{_escaped(name)}" {counts.attributes}>\n'
+            file.write(opening.encode())
+            text.seek(0)
+            shutil.copyfileobj(text, file)
+            text.close()
+            file.write(b"</testsuite>\n")
+        file.write(b"</testsuites>\n")
+
+
+def _spooled() -> IO[bytes]:
+    return SpooledTemporaryFile(MOST_IN_MEMORY)
+
+
+def _tag(name: str, attributes: Mapping[str, str], inner: str | None = None) -> str:
+    """An element; `inner` is XML."""
+    said = "".join([f' {key}="{_escaped(value)}"' for key, value in attributes.items()])
+    return f"<{name}{said} />" if inner is None else f"<{name}{said}>{inner}</{name}>"
+
+
+def _escaped(text: str) -> str:
+    """Text in one line as XML, in an attribute too."""
+    return _xml(printable(text))
+
+
+def _xml(text: str) -> str:
+    """Printable text as XML."""
+    return escape(text, {'"': "&quot;"}) if MARKUP.search(text) else text
 
 
 def _may_fail(result: CaseResult, rates: Sequence[SampledRate]) -> bool:
     """Whether a case failed as one of samples, which are judged by their success rate."""
-    return result.outcome == "failed" and any(
-        result.file == rate.file
-        and SAMPLE.sub("", result.case) == rate.group
-        and SAMPLE.search(result.case)
-        for rate in rates
-    )
+    if result.outcome != "failed" or not rates or not SAMPLE.search(result.case):
+        return False
+    return SAMPLE.sub("", result.case) in {rate.group for rate in rates}
 
 
-def _element(suite: ET.Element, file: str, name: str, seconds: float) -> ET.Element:
-    place = ".".join(Path(file).with_suffix("").with_suffix("").parts).strip("./")
-    said = {"name": name, "classname": place, "file": file, "time": f"{seconds:.3f}"}
-    return ET.SubElement(suite, "testcase", {key: printable(each) for key, each in said.items()})
+def _testcase(file: str, name: str, seconds: float, parts: Iterable[str]) -> bytes:
+    said = {"name": name, "classname": _class(file), "file": file, "time": f"{seconds:.3f}"}
+    inner = "".join([f"{part}\n" for part in parts])
+    text = _tag("testcase", said, f"\n{inner}")
+    return f"{text}\n".encode()
 
 
-def _add_rate(suite: ET.Element, sampled: SampledRate) -> None:
+@cache
+def _class(file: str) -> str:
+    """A file's path without its suffix, with dots."""
+    return ".".join(Path(file).with_suffix("").with_suffix("").parts).strip("./")
+
+
+def _properties(found: Iterable[tuple[str, str]]) -> str:
+    lines = [f'<property name="{_escaped(k)}" value="{_escaped(v)}" />' for k, v in found]
+    return _tag("properties", {}, "\n".join(lines))
+
+
+def _rate(sampled: SampledRate) -> bytes:
     rate, name = sampled.rate, f"success rate {sampled.group}".strip()
-    element = _element(suite, sampled.file, name, 0.0)
-    properties = ET.SubElement(element, "properties")
-    for key, value in (("passed", rate.passed), ("samples", rate.total)):
-        ET.SubElement(properties, "property", name=key, value=str(value))
+    parts = [_properties([("passed", str(rate.passed)), ("samples", str(rate.total))])]
     if sampled.outcome != "passed":
-        said = printable(rate_text(f"{sampled.file} {sampled.group}".strip(), rate))
-        ET.SubElement(element, "failure", message=said, type="success rate").text = said
+        said = _escaped(rate_text(f"{sampled.file} {sampled.group}".strip(), rate))
+        parts.append(f'<failure message="{said}" type="success rate">{said}</failure>')
+    return _testcase(sampled.file, name, 0.0, parts)
 
 
-def _add_case(suite: ET.Element, case: SuiteCase, rates: Sequence[SampledRate]) -> None:
+def _case(case: SuiteCase, *, may_fail: bool) -> bytes:
     result = case.result
     name = f"{result.title}[{result.case}]" if result.case else result.title
-    element = _element(suite, result.file, name, _seconds(result))
-    properties = ET.SubElement(element, "properties")
-    for key, value in case_properties(case):
-        ET.SubElement(properties, "property", name=printable(key), value=printable(value))
-    cause, lines = cause_of(result), list[str]()
-    if cause is not None and _may_fail(result, rates):
+    parts, lines = [_properties(case_properties(case))], list[str]()
+    if case.cause is not None and may_fail:
         lines += ["failed, as samples may; their rate is judged", *causes(result)]
-    elif cause is not None:
+    elif case.cause is not None:
         kind = "failure" if result.outcome == "failed" else "error"
-        group, said = printable(cause.group), printable(cause.said)
-        ET.SubElement(element, kind, message=said, type=group).text = "\n".join(causes(result))
+        why = {"message": case.cause.said, "type": case.cause.group}
+        parts.append(_tag(kind, why, _xml("\n".join(causes(result)))))
     if result.report_dir:
         lines.append(f"report: {report_link(result)}")
     if lines:
         said = printable_lines("\n".join(lines)).replace(ATTACHMENT, f"[ {ATTACHMENT[1:]}")
-        ET.SubElement(element, "system-out").text = "\n".join([said, *_attachments(result)])
+        text = "\n".join([said, *_attachments(result)])
+        parts.append(_tag("system-out", {}, _xml(text)))
+    return _testcase(result.file, name, _seconds(result), parts)
 
 
 def _seconds(result: CaseResult) -> float:
@@ -130,9 +209,8 @@ def case_properties(case: SuiteCase) -> list[tuple[str, str]]:
         for verdict in result.verdicts
         if not math.isnan(verdict.margin)
     ]
-    nearest = worst(result.verdicts)
-    if nearest is not None:
-        found.append(("worst_margin", nearest.expectation))
+    if case.nearest is not None:
+        found.append(("worst_margin", case.nearest.expectation))
     return found
 
 

@@ -4,33 +4,38 @@ from __future__ import annotations
 
 import math
 import os
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 from string import Template
 from urllib.parse import quote
 
+from harness.recording.run import Verdict
 from harness.reporting.html import bundle
 from harness.reporting.html.content_policy import content_policy
-from harness.reporting.margins import allowance_used, margin_share, worst
+from harness.reporting.margins import allowance_used
 from harness.reporting.result import CaseResult
-from harness.reporting.sampled import SampledRate, missed, rate_text, short_value, table_lines
+from harness.reporting.sampled import SampledRate, missed, rate_text, short_value
 from harness.reporting.suite.campaign import campaign_html
-from harness.reporting.suite.cause import cause_of
+from harness.reporting.suite.columns import Columns
 from harness.reporting.suite.history import Key
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
+from harness.reporting.suite.tables import table_lines
 from harness.reporting.terminal import OUTCOMES, Style, failure_place
 
 FOLDER = Path(__file__).with_name("page")
 SIGNS = Style(has_signs=True)
 MOST_ROWS = 2000
+REFRESH = '<meta http-equiv="refresh" content="5">'
+"""Loads the page of a running suite again."""
+
 HISTORY_HEAD = '<th scope="col" class="history">Worst margin over runs</th>'
 SPARK_WIDTH, SPARK_HEIGHT = 90, 20  # [pixels]
 
 
 def suite_html(
     record: SuiteRecord,
+    columns: Columns,
     folder: Path,
     history: Mapping[Key, Sequence[float | None]] | None = None,
 ) -> str:
@@ -38,52 +43,35 @@ def suite_html(
 
     Args:
         record: The record of the suite.
+        columns: What varies in its cases, with at most `MOST_ROWS` listed.
         folder: Where the page will stand.
         history: Worst margins of earlier runs.
     """
-    results = [case.result for case in record.cases]
-    passed = sum(result.outcome == "passed" for result in results)
-    listed = listed_cases(record.cases)
-    rows = [_row(i, record.cases[i], folder, history) for i in listed]
+    total, passed = len(record.cases), columns.outcomes["passed"]
+    rows = [_row(i, record.cases[i], folder, history) for i in columns.listed]
     skeleton, script = _read("suite.html"), _read("suite.js") + _read("campaign.js")
     style = bundle.theme() + _read("suite.css")
     return Template(skeleton).substitute(
         policy=content_policy(skeleton, script=script, style=style),
-        title="; ".join(filter(None, (f"{passed} of {len(results)} passed", missed(record.rates)))),
+        title="; ".join(filter(None, (f"{passed} of {total} passed", missed(record.rates)))),
         style=style,
         script=script,
+        refresh=REFRESH if record.progress else "",
         pill="good" if record.outcome == "passed" else "bad",
-        outcome=escape(record.outcome),
+        outcome=escape(f"running: {record.progress}" if record.progress else record.outcome),
         interrupted="".join(
             f" · {escape(each)}"
             for each in (*["interrupted"][: record.is_interrupted], *record.missing_parts)
         ),
-        outcomes=_outcomes(results),
-        causes=_causes(results),
+        outcomes=_outcomes(columns),
+        causes=_causes(columns),
         rates=_rates(record.rates),
-        campaign=campaign_html(record.cases, folder),
-        table=_varied(record.cases),
-        unlisted=_unlisted(len(record.cases) - len(listed)),
+        campaign=campaign_html(columns, record.cases, folder),
+        table=_varied(columns),
+        unlisted=_unlisted(total - len(rows)),
         rows="\n".join(rows),
         history=HISTORY_HEAD if history else "",
     )
-
-
-def listed_cases(cases: Sequence[SuiteCase]) -> list[int]:
-    """Indices of the cases that the page lists, in their order: failures first, then the nearest.
-
-    A page with a hundred thousand rows opens in no browser.
-    """
-
-    def urgency(index: int) -> tuple[bool, float]:
-        result = cases[index].result
-        nearest = worst(result.verdicts)
-        share = math.inf if nearest is None else margin_share(nearest)
-        return result.outcome == "passed", share
-
-    if len(cases) <= MOST_ROWS:
-        return list(range(len(cases)))
-    return sorted(sorted(range(len(cases)), key=urgency)[:MOST_ROWS])
 
 
 def _unlisted(count: int) -> str:
@@ -95,8 +83,8 @@ def _unlisted(count: int) -> str:
     )
 
 
-def _outcomes(results: Sequence[CaseResult]) -> str:
-    counts = Counter(result.outcome for result in results)
+def _outcomes(columns: Columns) -> str:
+    counts = columns.outcomes
     return "".join(
         f'<button type="button" data-outcome="{name}" aria-pressed="false">'
         f'<i class="sign {name}"></i>{counts[name]} {name}</button>'
@@ -105,8 +93,8 @@ def _outcomes(results: Sequence[CaseResult]) -> str:
     )
 
 
-def _causes(results: Sequence[CaseResult]) -> str:
-    found = Counter(cause.group for result in results if (cause := cause_of(result)))
+def _causes(columns: Columns) -> str:
+    found = columns.causes
     if not found:
         return ""
     lines = "".join(
@@ -149,15 +137,10 @@ def _rate(sampled: SampledRate) -> str:
     )
 
 
-def _varied(cases: Sequence[SuiteCase]) -> str:
+def _varied(columns: Columns) -> str:
     """A block for each quantity that varies; they flow side by side."""
-    rates = [
-        (each.values, each.result.outcome == "passed")
-        for each in cases
-        if each.values and each.result.outcome != "invalid"
-    ]
     blocks: list[str] = []
-    for line in table_lines(rates, SIGNS):
+    for line in table_lines(columns, SIGNS):
         if line.startswith(" "):
             blocks[-1] += f"\n{escape(line)}"
         else:
@@ -173,8 +156,7 @@ def _row(
     index: int, case: SuiteCase, folder: Path, history: Mapping[Key, Sequence[float | None]] | None
 ) -> str:
     result = case.result
-    nearest, cause = worst(result.verdicts), cause_of(result)
-    share = math.inf if nearest is None else margin_share(nearest)
+    nearest, cause, share = case.nearest, case.cause, case.share
     name = escape(f"{result.title} [{result.case}]" if result.case else result.title)
     link = _link(result, folder)
     title = f'<a href="{escape(link)}">{name}</a>' if link else name
@@ -195,7 +177,7 @@ def _row(
         f'<td><i class="sign {result.outcome}"></i><span class="quiet">{result.outcome}</span></td>'
         f'<td>{title}{tags}<div class="quiet">{escape(result.file)}{_drawn(case)}</div>'
         f'<div class="why">{escape(said)}</div></td>'
-        f"<td>{_margin(result)}</td>"
+        f"<td>{_margin(nearest)}</td>"
         f'{line}<td class="number">{result.sim_time:.1f} s</td>'
         f'<td class="number">{result.seed}</td>'
         f'<td class="number">{escape(result.digest[:12])}</td></tr>'
@@ -208,9 +190,8 @@ def _drawn(case: SuiteCase) -> str:
     return f' <span class="drawn">{escape(values)}</span>' if values else ""
 
 
-def _margin(result: CaseResult) -> str:
+def _margin(nearest: Verdict | None) -> str:
     """The worst margin, and as on the page of a run how much of the allowance was used."""
-    nearest = worst(result.verdicts)
     if nearest is None:
         return ""
     kind = "good" if nearest.status == "passed" else "bad"

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
-from harness.recording.run import Outcome
+from harness.recording.run import Outcome, Verdict
+from harness.reporting.json_text import compact_json, json_text
 from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate
+from harness.reporting.suite.cause import Cause, cause_of
 
 FORMAT = "armharness-results/1"
 
@@ -30,6 +34,26 @@ class SuiteCase:
     tags: tuple[str, ...] = ()
     verifies: tuple[str, ...] = ()
 
+    @cached_property
+    def nearest(self) -> Verdict | None:
+        """The verdict nearest to failing, or farthest beyond; None where none has a margin."""
+        return worst(self.result.verdicts)
+
+    @cached_property
+    def share(self) -> float:
+        """The worst margin as a share of its limit; NaN where there is none."""
+        return math.nan if self.nearest is None else margin_share(self.nearest)
+
+    @cached_property
+    def cause(self) -> Cause | None:
+        """Why it did not pass; None when it passed."""
+        return cause_of(self.result)
+
+    @property
+    def urgency(self) -> tuple[bool, float]:
+        """Failures first, then what is nearest to failing."""
+        return self.result.outcome == "passed", math.inf if math.isnan(self.share) else self.share
+
 
 @dataclass(frozen=True)
 class SuiteRecord:
@@ -41,6 +65,7 @@ class SuiteRecord:
         rates: The rates of samples.
         is_interrupted: Whether Ctrl-C ended it early.
         missing_parts: Why a suite that was merged from parts is incomplete, one sentence each.
+        progress: The number of runs that are done while the suite runs; empty when it has ended.
     """
 
     outcome: Outcome
@@ -48,29 +73,43 @@ class SuiteRecord:
     rates: Sequence[SampledRate] = ()
     is_interrupted: bool = False
     missing_parts: Sequence[str] = ()
+    progress: str = ""
 
 
-def results_document(record: SuiteRecord, exit_code: int) -> dict[str, object]:
-    """What `results.json` and `--json` say."""
-    return {
+def results_json(
+    record: SuiteRecord, exit_code: int, cases: Iterable[SuiteCase] | None = None
+) -> Iterator[str]:
+    """What `results.json` and `--json` say, in parts; a case is a line.
+
+    Args:
+        record: The record of the suite.
+        exit_code: The exit code of the command.
+        cases: The cases of the record, where somebody else reads them too.
+    """
+    head = {
         "format": FORMAT,
         "exit_code": exit_code,
         "outcome": record.outcome,
         "interrupted": record.is_interrupted,
-        "missing_parts": list(record.missing_parts),
-        "cases": [_case(each) for each in record.cases],
-        "rates": list(record.rates),
+        "missing_parts": record.missing_parts,
+        "rates": record.rates,
     }
+    yield json_text(head).removesuffix("\n}\n")
+    yield ',\n  "cases": ['
+    for index, case in enumerate(record.cases if cases is None else cases):
+        yield f"{',' if index else ''}\n{case_json(case)}"
+    yield "\n  ]\n}\n"
 
 
-def _case(case: SuiteCase) -> dict[str, object]:
-    said = {name: getattr(case.result, name) for name in CaseResult.__dataclass_fields__}
-    nearest = worst(case.result.verdicts)
+def case_json(case: SuiteCase) -> str:
+    """A case as one line."""
+    nearest = case.nearest
     margin = None if nearest is None else {
         "expectation": nearest.expectation,
         "margin": nearest.margin,
         "unit": nearest.unit,
-        "share": margin_share(nearest),
+        "share": case.share,
     }  # fmt: skip
+    said = {name: getattr(case.result, name) for name in CaseResult.__dataclass_fields__}
     said |= {"values": case.values, "tags": case.tags, "verifies": case.verifies}
-    return {**said, "worst_margin": margin}
+    return compact_json({**said, "worst_margin": margin})

@@ -3,54 +3,81 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from typing import IO
 
 from harness.core.errors import HarnessError
-from harness.reporting.json_text import json_text
+from harness.reporting.suite.columns import Columns
 from harness.reporting.suite.history import Key
-from harness.reporting.suite.junit import junit_xml
-from harness.reporting.suite.page import suite_html
-from harness.reporting.suite.record import SuiteRecord, results_document
+from harness.reporting.suite.junit import JunitWriter
+from harness.reporting.suite.page import MOST_ROWS, suite_html
+from harness.reporting.suite.record import SuiteCase, SuiteRecord, results_json
 
 PAGE = "index.html"
 JUNIT = "junit.xml"
 RESULTS = "results.json"
+
+History = Mapping[Key, Sequence[float | None]]
 
 
 def write_suite(
     folder: Path,
     record: SuiteRecord,
     exit_code: int,
-    history: Mapping[Key, Sequence[float | None]] | None = None,
-) -> Path:
+    history: History | None = None,
+    *,
+    on_case: Callable[[int, SuiteCase], None] | None = None,
+) -> tuple[Path, Columns]:
     """Write page, JUnit XML and results; each is whole or as it was.
 
+    The cases are read once, and not kept.
+
+    Args:
+        folder: Made where it is missing.
+        record: The record of the suite.
+        exit_code: The exit code of the command.
+        history: Worst margins of earlier runs.
+        on_case: Called with the number of each case, and the case; None: nothing is.
+
     Returns:
-        The page's path in the folder.
+        The page's path in the folder, and what varies in the cases.
 
     Raises:
         HarnessError: A file cannot be written.
     """
-    texts = {
-        RESULTS: json_text(results_document(record, exit_code)),
-        JUNIT: junit_xml(record),
-    }
-    return write_page(folder, record, texts, history)
+    junit, columns = JunitWriter(record), Columns(most_listed=MOST_ROWS)
+
+    def read() -> Iterator[SuiteCase]:
+        for number, case in enumerate(record.cases):
+            junit.add(case)
+            columns.add(case)
+            if on_case is not None:
+                on_case(number, case)
+            yield case
+
+    with writing(folder):
+        with replaced(folder / RESULTS) as file:
+            for part in results_json(record, exit_code, read()):
+                file.write(part.encode())
+        with replaced(folder / JUNIT) as file:
+            junit.write(file)
+    return write_page(folder, record, columns, history), columns
 
 
 def write_page(
     folder: Path,
     record: SuiteRecord,
-    others: Mapping[str, str],
-    history: Mapping[Key, Sequence[float | None]] | None = None,
+    columns: Columns | None = None,
+    history: History | None = None,
 ) -> Path:
-    """Write the page of many runs, and other files first; each is whole or as it was.
+    """Write the page of many runs; it is whole or as it was.
 
     Args:
         folder: Made where it is missing.
         record: The record of the suite.
-        others: Name -> text of the other files.
+        columns: What varies in its cases, with at most `MOST_ROWS` listed; None reads the cases.
         history: Worst margins of earlier runs.
 
     Returns:
@@ -59,20 +86,33 @@ def write_page(
     Raises:
         HarnessError: A file cannot be written.
     """
-    texts = {**others, PAGE: suite_html(record, folder, history)}
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, text in texts.items():
-            _replace(folder / name, text)
-    except OSError as error:
-        raise HarnessError(f"'{folder}' cannot be written: {error.strerror}") from error
+    columns = columns or Columns(record.cases, most_listed=MOST_ROWS)
+    with writing(folder), replaced(folder / PAGE) as file:
+        file.write(suite_html(record, columns, folder, history).encode())
     return folder / PAGE
 
 
-def _replace(file: Path, text: str) -> None:
+@contextmanager
+def writing(folder: Path) -> Generator[None]:
+    """Make a folder, and report that files in it cannot be written.
+
+    Raises:
+        HarnessError: A file cannot be written.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        yield
+    except OSError as error:
+        raise HarnessError(f"'{folder}' cannot be written: {error.strerror}") from error
+
+
+@contextmanager
+def replaced(file: Path) -> Generator[IO[bytes]]:
+    """A new file, which gets its name when everything is written."""
     part = file.with_name(f".{file.name}.{os.getpid()}")
     try:
-        part.write_text(text, encoding="utf-8", newline="")
+        with part.open("wb") as stream:
+            yield stream
         part.replace(file)
     finally:
         part.unlink(missing_ok=True)
