@@ -121,6 +121,7 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
         strict=arguments.strict,
         reporters=arguments.reporters,
         nodes=named_commands(arguments.nodes) if arguments.nodes else {},
+        share=not arguments.no_sharing and arguments.repeat == 1,  # repetitions compare each other
         conditions=_conditions(arguments),
     )
     plan = planned_cases(files, request)

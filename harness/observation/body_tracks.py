@@ -161,7 +161,7 @@ def relative_track(first: BodyTrack, second: BodyTrack) -> BodyTrack:
 
 
 def travel(seen: BodyTrack, shape: TrackedShape) -> FloatArray:
-    """Bound the path length of every point of a shape since the first sample [m], shape (N,).
+    """Bound how far every point of a shape moves to the next sample [m], shape (N - 1,).
 
     Between two samples a point of the shape moves at most as far as the centre of its sphere plus
     the sphere's radius times the angle turned.
@@ -169,7 +169,7 @@ def travel(seen: BodyTrack, shape: TrackedShape) -> FloatArray:
     centers = seen.translations + seen.rotations @ shape.center
     steps = np.diff(centers, axis=0)
     shifts = np.sqrt(np.einsum("ij,ij->i", steps, steps))
-    return np.concatenate([[0.0], np.cumsum(shifts + shape.radius * seen.turns)])
+    return shifts + shape.radius * seen.turns
 
 
 def links_with_shapes(

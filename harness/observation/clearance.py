@@ -2,28 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from harness.core.sharing import is_sharing
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.observation.body_tracks import (
     BodyTrack,
     TrackedShape,
     carried_track,
-    link_track,
     links_with_shapes,
-    object_track,
     relative_track,
     tracked_shapes,
 )
-from harness.observation.nearest import (
-    ShapePair,
-    largest_travel,
-    pairs_between,
-    smallest_distances,
-)
+from harness.observation.measured_parts import Group, MeasuredRun, Span, measured_spans
+from harness.observation.nearest import ShapePair, pairs_between
 from harness.observation.sampled_clearance import (
     LARGEST_ERROR,
     around_smallest,
@@ -39,7 +34,6 @@ from harness.observation.sampled_clearance import (
 from harness.planning.model.robot_model import RobotModel
 from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
 from harness.robot.description import RobotDescription
-from harness.robot.forward_kinematics import LinkPoses
 
 ROBOT = "robot"
 
@@ -53,25 +47,19 @@ class _Clearances:
     links: dict[tuple[str, str], IntArray] = field(default_factory=dict)
     travels: dict[tuple[str, str], FloatArray] = field(default_factory=dict)
 
-    def put(
-        self,
-        key: tuple[str, str],
-        samples: BoolArray,
-        distances: FloatArray,
-        links: IntArray | None,
-        travel: FloatArray,
-    ) -> None:
+    def put(self, span: Span) -> None:
         """Set a pair's distances and travel at some samples; NaN or 0 elsewhere until set."""
+        key, samples = span.key, span.samples
         if key not in self.travels:
             self.travels[key] = np.zeros(self.count)
-        self.travels[key][samples] = travel
+        self.travels[key][samples] = span.moved
         if key not in self.distances:
             self.distances[key] = np.full(self.count, np.nan)
-        self.distances[key][samples] = distances
-        if links is not None:
+        self.distances[key][samples] = span.distances
+        if span.links is not None:
             if key not in self.links:
                 self.links[key] = np.full(self.count, -1, dtype=np.int64)
-            self.links[key][samples] = links
+            self.links[key][samples] = span.links
 
     def refined(self, finer: _Clearances, samples: IntArray, near: IntArray) -> IntArray:
         """Merge measurements at further samples; returns all samples in order."""
@@ -116,7 +104,6 @@ class CoalClearance:
         self.description = description
         self._robot = RobotModel(description)
         self._shapes = links_with_shapes({link.name: link.collisions for link in description.links})
-        self._index = {name: index for index, name in enumerate(description.link_names)}
 
     def observe(
         self,
@@ -192,101 +179,53 @@ class CoalClearance:
     ) -> _Clearances:
         """Distances at every given sample."""
         found = _Clearances(len(signals.times))
-        links = LinkPoses(self.description, signals.joint_positions)
-        tracks = {
-            record.name: object_track(record, attachments, signals, links) for record in objects
-        }
-        shapes = {record.name: tracked_shapes(record.name, record.shapes) for record in objects}
-        self._robot_to_itself(found, links, cutoff)
-        for record in objects:
-            there = tracks[record.name].present & ~_held(record.name, attachments, signals)
-            self._robot_to_object(
-                found, links, record, tracks[record.name], shapes[record.name], there, cutoff
-            )
-        for attachment in attachments:
-            self._held_to_objects(
-                found, links, attachment, objects, tracks, shapes, signals, cutoff
-            )
+        run = MeasuredRun(self.description, signals, objects, attachments)
+        for span in measured_spans(run, self._groups(run), cutoff):
+            found.put(span)
         return found
 
-    def _robot_to_itself(self, found: _Clearances, links: LinkPoses, cutoff: float) -> None:
+    def _groups(self, run: MeasuredRun) -> list[Group]:
+        """What is measured in a run: the robot, it and each object, what it holds and each."""
+        own = (ROBOT, ROBOT)
+        robot = self.description.key if is_sharing() else ""
+        groups = [Group(own, own, (robot,), lambda _: (), _everywhere, self._self_pairs)]
+        bodies = {record.name: _Body.of(record) for record in run.objects}
+        for body in bodies.values():
+            groups.append(self._object_group(body, robot))
+        for number, attachment in enumerate(run.attachments):
+            groups += _held_groups(number, attachment, bodies, run, robot)
+        return groups
+
+    def _self_pairs(self, run: MeasuredRun, there: BoolArray) -> list[ShapePair]:
         names = list(self._shapes)
         pairs: list[ShapePair] = []
         for later, second in enumerate(names):
             for first in names[:later]:
                 if self._is_self_pair(first, second):
-                    seen = relative_track(link_track(links, first), link_track(links, second))
+                    seen = relative_track(run.link(first).part(there), run.link(second).part(there))
                     pairs += pairs_between(self._shapes[first], self._shapes[second], seen)
-        if pairs:
-            everywhere = np.ones(found.count, dtype=bool)
-            self._measure(found, (ROBOT, ROBOT), everywhere, pairs, cutoff)
+        return pairs
 
-    def _robot_to_object(
-        self,
-        found: _Clearances,
-        links: LinkPoses,
-        record: ObjectRecord,
-        track: BodyTrack,
-        shapes: Sequence[TrackedShape],
-        there: BoolArray,
-        cutoff: float,
-    ) -> None:
-        if not there.any() or not shapes:
-            return
-        standing = self.description.static_links if record.is_static else frozenset()
-        pairs: list[ShapePair] = []
-        for link, link_shapes in self._shapes.items():
-            if link not in standing:
-                seen = relative_track(link_track(links, link).part(there), track.part(there))
-                pairs += pairs_between(link_shapes, shapes, seen)
-        if pairs:
-            self._measure(found, (ROBOT, record.name), there, pairs, cutoff)
+    def _object_group(self, body: _Body, robot: str) -> Group:
+        record = body.record
+        standing = self.description.static_links if record.is_static else frozenset[str]()
 
-    def _held_to_objects(
-        self,
-        found: _Clearances,
-        links: LinkPoses,
-        attachment: AttachmentRecord,
-        objects: Sequence[ObjectRecord],
-        tracks: Mapping[str, BodyTrack],
-        shapes: Mapping[str, Sequence[TrackedShape]],
-        signals: Signals,
-        cutoff: float,
-    ) -> None:
-        """Distances of an attached object: in the physics, and as assumed by the planning scene."""
-        times = signals.times
-        during = (times >= attachment.start_time) & (times <= attachment.end_time)
-        believed = carried_track(link_track(links, attachment.link), attachment.pose_in_link)
-        held: dict[str, BodyTrack] = {attachment.object: believed}
-        for name in (attachment.object, attachment.represents):
-            if name in signals.object_poses and name in tracks:
-                held[name] = tracks[name]
-        same = {attachment.object, attachment.represents}
-        for name, track in held.items():
-            for record in objects:
-                other = tracks[record.name]
-                there = during & track.present & other.present
-                there &= ~_held(record.name, (attachment,), signals)
-                if record.name in same or not there.any():
-                    continue
-                seen = relative_track(track.part(there), other.part(there))
-                pairs = pairs_between(shapes.get(name, ()), shapes[record.name], seen)
-                if pairs:
-                    distances, _ = smallest_distances(pairs, cutoff)
-                    moved = largest_travel(pairs)
-                    found.put((name, record.name), there, distances, None, moved)
+        def places(run: MeasuredRun) -> tuple[object, ...]:
+            return (run.place(record), run.held(record.name, run.attachments))
 
-    def _measure(
-        self,
-        found: _Clearances,
-        key: tuple[str, str],
-        there: BoolArray,
-        pairs: Sequence[ShapePair],
-        cutoff: float,
-    ) -> None:
-        distances, which = smallest_distances(pairs, cutoff)
-        of_pair = np.array([self._index[pair.first.body] for pair in pairs] + [-1])
-        found.put(key, there, distances, of_pair[which], largest_travel(pairs))
+        def there(run: MeasuredRun) -> BoolArray:
+            return run.tracks[record.name].present & ~run.held(record.name, run.attachments)
+
+        def pairs(run: MeasuredRun, there: BoolArray) -> list[ShapePair]:
+            track, found = run.tracks[record.name].part(there), list[ShapePair]()
+            for link, shapes in self._shapes.items():
+                if link not in standing and body.shapes:
+                    seen = relative_track(run.link(link).part(there), track)
+                    found += pairs_between(shapes, body.shapes, seen)
+            return found
+
+        key = (ROBOT, record.name)
+        return Group(key, key, (robot, record.is_static, body.inputs), places, there, pairs)
 
     def _is_self_pair(self, first: str, second: str) -> bool:
         robot = self._robot
@@ -300,11 +239,75 @@ class CoalClearance:
         )
 
 
-def _held(name: str, attachments: Sequence[AttachmentRecord], signals: Signals) -> BoolArray:
-    """Samples in which an object, or the object that represents it, is attached."""
-    times = signals.times
-    held = np.zeros(len(times), dtype=bool)
-    for attachment in attachments:
-        if name in (attachment.object, attachment.represents):
-            held |= (times >= attachment.start_time) & (times <= attachment.end_time)
-    return held
+@dataclass(frozen=True, eq=False)
+class _Body:
+    """An object and its collision shapes."""
+
+    record: ObjectRecord
+    shapes: tuple[TrackedShape, ...]
+
+    @classmethod
+    def of(cls, record: ObjectRecord) -> _Body:
+        return cls(record, tracked_shapes(record.name, record.shapes))
+
+    @property
+    def inputs(self) -> tuple[object, ...]:
+        """What of the object decides distances to it."""
+        return tuple((shape.geometry, shape.pose) for shape in self.record.shapes)
+
+
+def _everywhere(run: MeasuredRun) -> BoolArray:
+    return np.ones(len(run.signals.times), dtype=bool)
+
+
+def _held_groups(
+    number: int,
+    attachment: AttachmentRecord,
+    bodies: Mapping[str, _Body],
+    run: MeasuredRun,
+    robot: str,
+) -> Iterator[Group]:
+    """Distances of an attached object: as assumed by the planning scene, and in the physics."""
+    own = (attachment.object, attachment.represents)
+    in_physics = [name for name in own if name in run.signals.object_poses and name in bodies]
+    for name in dict.fromkeys((attachment.object, *in_physics)):
+        for other in bodies.values():
+            if other.record.name not in own:
+                yield _held_group(
+                    number, attachment, bodies.get(name), name in in_physics, other, robot
+                )
+
+
+def _held_group(
+    number: int,
+    attachment: AttachmentRecord,
+    held: _Body | None,
+    is_in_physics: bool,
+    other: _Body,
+    robot: str,
+) -> Group:
+    name = held.record.name if held else attachment.object
+
+    def track(run: MeasuredRun) -> BodyTrack:
+        if is_in_physics:
+            return run.tracks[name]
+        return carried_track(run.link(attachment.link), attachment.pose_in_link)
+
+    def places(run: MeasuredRun) -> tuple[object, ...] | None:
+        during = run.during(attachment)
+        if not during.any():
+            return None
+        own = run.place(held.record) if held and is_in_physics else attachment
+        return during, own, run.place(other.record), run.held(other.record.name, (attachment,))
+
+    def there(run: MeasuredRun) -> BoolArray:
+        both = track(run).present & run.tracks[other.record.name].present
+        return run.during(attachment) & both & ~run.held(other.record.name, (attachment,))
+
+    def pairs(run: MeasuredRun, there: BoolArray) -> list[ShapePair]:
+        seen = relative_track(track(run).part(there), run.tracks[other.record.name].part(there))
+        return pairs_between(held.shapes if held else (), other.shapes, seen)
+
+    key = (name, other.record.name)
+    inputs = (robot, held.inputs if held else (), other.inputs)
+    return Group((str(number), *key), key, inputs, places, there, pairs, with_links=False)

@@ -27,7 +27,7 @@ class ShapePair:
         first: A shape of the moving body.
         second: A shape of the other.
         seen: Track of the first's body as seen from the second's, shape (N, ...).
-        travel: What `travel` says of `first`, shape (N,).
+        travel: What `travel` says of `first`, shape (N - 1,).
     """
 
     first: TrackedShape
@@ -46,6 +46,40 @@ class ShapePair:
 _REQUEST, _RESULT = coal.DistanceRequest(), coal.DistanceResult()
 
 
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """What is known of P pairs after a sample, from which the next samples are measured.
+
+    Attributes:
+        distances: The distances last measured [m], shape (P,).
+        travels: How far the pairs had travelled when they were measured [m], shape (P,).
+        travelled: How far the pairs have travelled at the sample [m], shape (P,).
+        nearest: The pair that was the nearest at the sample; -1 for none below the cutoff.
+    """
+
+    distances: FloatArray
+    travels: FloatArray
+    travelled: FloatArray
+    nearest: int
+
+
+@dataclass(frozen=True, eq=False)
+class SmallestDistances:
+    """The smallest distance among pairs at N samples.
+
+    Attributes:
+        distances: At most the cutoff [m], shape (N,).
+        pairs: Indices of the nearest pairs, -1 at the cutoff, shape (N,).
+        moved: The most that any of the pairs moves since the sample before [m], shape (N,).
+        measured: What is known after the last sample.
+    """
+
+    distances: FloatArray
+    pairs: IntArray
+    moved: FloatArray
+    measured: Measured
+
+
 def pairs_between(
     first: Sequence[TrackedShape], second: Sequence[TrackedShape], seen: BodyTrack
 ) -> list[ShapePair]:
@@ -58,68 +92,103 @@ def pairs_between(
     ]
 
 
-def largest_travel(pairs: Sequence[ShapePair]) -> FloatArray:
-    """The most that any of several pairs moves since the sample before [m], shape (N,)."""
-    moved = np.zeros(len(pairs[0].travel))
-    for pair in pairs:
-        moved[1:] = np.maximum(moved[1:], np.diff(pair.travel))
-    return moved
-
-
-def smallest_distances(pairs: Sequence[ShapePair], cutoff: float) -> tuple[FloatArray, IntArray]:
+def smallest_distances(
+    pairs: Sequence[ShapePair], cutoff: float, before: Measured | None = None
+) -> SmallestDistances:
     """The smallest distance over the pairs at every sample, and which pair it was.
 
     Conservative advancement: a pair measured at distance d is at least d minus what it has
     travelled since, so it is measured again only when that could be the smallest, or below the
     cutoff. The result is exact to `STILL` wherever it is below the cutoff.
 
+    A run may be measured in parts, which have one sample in common; the result is the same to the
+    last bit wherever it is divided.
+
     Args:
-        pairs: All over the same N samples, none absent.
+        pairs: All over the same samples, none absent.
         cutoff: Larger distances are reported as the cutoff [m].
-
-    Returns:
-        Distances (N,), at most `cutoff`, and indices of pairs (N,), -1 at the cutoff.
+        before: What is known at the first sample, which is the last one of the part before; None
+            at the begin. The result leaves that sample out.
     """
-    count = len(pairs[0].travel)
-    nearest = np.full(count, cutoff)
-    which = np.full(count, -1, dtype=np.int64)
-    first = np.array([pair.distance(0) for pair in pairs])
-    total = np.array([pair.travel[-1] for pair in pairs])
-    near = np.flatnonzero(first - total < cutoff)
-    if not len(near):
-        return nearest, which
-    kept = [pairs[index] for index in near.tolist()]
-    travelled = np.column_stack([pair.travel for pair in kept])  # (N, K)
-    known: list[float] = first[near].tolist()  # the distance last measured
-    at = [0] * len(kept)  # and the sample
-    key = first[near]  # known + travel then: the lower bound at j is key - travelled[j]
-    sample, best_pair = 0, -1
+    begin = 0 if before is None else 1
+    if before is None:
+        still = np.zeros(len(pairs))
+        before = Measured(np.array([pair.distance(0) for pair in pairs]), still, still, -1)
+    steps = np.column_stack([pair.travel for pair in pairs])
+    travelled = np.cumsum(np.vstack([before.travelled, steps]), axis=0)  # (N, P)
+    moved = np.zeros(len(travelled))
+    moved[1:] = np.diff(travelled, axis=0).max(axis=1)
+    lowest = before.distances + before.travels - travelled[-1]
+    near = np.flatnonzero((lowest < cutoff) | (np.arange(len(pairs)) == before.nearest))
+    search = _Search(
+        [pairs[index] for index in near.tolist()],
+        travelled[:, near],
+        before.distances[near].tolist(),
+        before.travels[near],
+        int(np.searchsorted(near, before.nearest)) if before.nearest >= 0 else -1,
+    )
+    distances, which = search.run(begin, cutoff)
+    known, at = before.distances.copy(), before.travels.copy()
+    known[near], at[near] = search.known, search.at
+    number = np.append(near, -1)  # of a pair among all; -1 stays -1
+    after = Measured(known, at, travelled[-1], int(number[search.nearest]))
+    return SmallestDistances(distances, number[which], moved[begin:], after)
 
-    def measured(index: int) -> float:
-        if travelled[sample, index] - travelled[at[index], index] > STILL:
-            known[index] = distance = kept[index].distance(sample)
-            at[index] = sample
-            key[index] = distance + travelled[sample, index]
-        return known[index]
 
-    while sample < count:
-        previous, best, best_pair = best_pair, cutoff, -1
-        if previous >= 0 and measured(previous) < best:  # most likely the smallest again
-            best, best_pair = known[previous], previous
-        bound = key - travelled[sample]
-        rivals = (bound < best).nonzero()[0]
-        bounds = bound[rivals]
-        order = bounds.argsort(kind="stable")
-        for index, lowest in zip(rivals[order].tolist(), bounds[order].tolist(), strict=True):
-            if lowest >= best:
-                break
-            if measured(index) < best:
-                best, best_pair = known[index], index
-        until = _unchanged_until(sample, best_pair, best, key, travelled, at, cutoff)
-        nearest[sample:until] = best
-        which[sample:until] = near[best_pair] if best_pair >= 0 else -1
-        sample = until
-    return nearest, which
+@dataclass(eq=False)
+class _Search:
+    """A search for the nearest of the K pairs that may come nearer than the cutoff.
+
+    Attributes:
+        pairs: The pairs.
+        travelled: How far each has travelled at every sample [m], shape (N, K).
+        known: The distance of each that was last measured [m].
+        at: How far each had travelled then [m], shape (K,).
+        nearest: The nearest pair at the last sample; -1 for none.
+    """
+
+    pairs: Sequence[ShapePair]
+    travelled: FloatArray
+    known: list[float]
+    at: FloatArray
+    nearest: int
+
+    def run(self, begin: int, cutoff: float) -> tuple[FloatArray, IntArray]:
+        """Smallest distances from a sample on and the pairs that have them."""
+        travelled, known, at, kept = self.travelled, self.known, self.at, self.pairs
+        count, sample, best_pair = len(travelled), begin, self.nearest
+        nearest = np.full(count, cutoff)
+        which = np.full(count, -1, dtype=np.int64)
+        if not kept:
+            return nearest[begin:], which[begin:]
+        key = np.array(known) + at  # the lower bound at j is key - travelled[j]
+
+        def measured(index: int) -> float:
+            if travelled[sample, index] - at[index] > STILL:
+                known[index] = distance = kept[index].distance(sample)
+                at[index] = travelled[sample, index]
+                key[index] = distance + travelled[sample, index]
+            return known[index]
+
+        while sample < count:
+            previous, best, best_pair = best_pair, cutoff, -1
+            if previous >= 0 and measured(previous) < best:  # most likely the smallest again
+                best, best_pair = known[previous], previous
+            bound = key - travelled[sample]
+            rivals = (bound < best).nonzero()[0]
+            bounds = bound[rivals]
+            order = bounds.argsort(kind="stable")
+            for index, lowest in zip(rivals[order].tolist(), bounds[order].tolist(), strict=True):
+                if lowest >= best:
+                    break
+                if measured(index) < best:
+                    best, best_pair = known[index], index
+            until = _unchanged_until(sample, best_pair, best, key, travelled, at, cutoff)
+            nearest[sample:until] = best
+            which[sample:until] = best_pair
+            sample = until
+        self.nearest = best_pair
+        return nearest[begin:], which[begin:]
 
 
 def _unchanged_until(
@@ -128,12 +197,12 @@ def _unchanged_until(
     best: float,
     key: FloatArray,
     travelled: FloatArray,
-    at: Sequence[int],
+    at: FloatArray,
     cutoff: float,
 ) -> int:
     """The first sample after this one at which something has to be measured again."""
     count, after, chunk = len(travelled), sample + 1, _FIRST_CHUNK
-    base = np.inf if best_pair < 0 else travelled[at[best_pair], best_pair] + STILL
+    base = np.inf if best_pair < 0 else at[best_pair] + STILL
     if after < count and best_pair >= 0 and travelled[after, best_pair] > base:
         return after
     while after < count:

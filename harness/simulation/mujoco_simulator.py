@@ -27,6 +27,7 @@ from harness.simulation.recording import Recording, refresh
 from harness.simulation.robot_mjcf import coupling
 from harness.simulation.servo import FeedForward
 from harness.simulation.set_points import SetPoints, sample_trajectory
+from harness.simulation.shared_physics import SharedPhysics
 from harness.simulation.snapshot import (
     PhysicsState,
     SimulatorCommand,
@@ -101,6 +102,7 @@ class MujocoSimulator:
         self._refuse_unusable_start()
         self.overlaps_at_start = overlaps(self.physics, self._data)
         self._recording.start(self._command)
+        self._shared = SharedPhysics(self._model, self._data, self._recording)
         self._objects = Objects(self.physics, self._data, self._recording, frozenset(present))
         self._gripper = None if description.gripper is None else GripperDrive(self, self._recording)
 
@@ -344,7 +346,7 @@ class MujocoSimulator:
         self, controls: FloatArray, commands: FloatArray, command_velocities: FloatArray
     ) -> None:
         """Step with the controls that arrive at the motors; record the commands."""
-        self._recording.advance(self.faults.distorted(controls), commands, command_velocities)
+        self._shared.advance(self.faults.distorted(controls), commands, command_velocities)
 
     def _actuated_columns(self, joint_names: Sequence[str]) -> IntArray:
         places = [self.description.joint_index[name] for name in joint_names]

@@ -50,6 +50,7 @@ class SuiteRequest:
         reporters: Names of other reporters that write into the reports.
         nodes: Commands by name that steps may start as ROS 2 nodes.
         conditions: Samples to run instead of those that the files draw; all of them count.
+        share: Whether cases take results from each other.
     """
 
     expression: str = ""
@@ -66,6 +67,7 @@ class SuiteRequest:
     reporters: Sequence[str] = ()
     nodes: Mapping[str, str] = field(default_factory=dict[str, str])
     conditions: SampledConditions | None = None
+    share: bool = True
 
 
 @dataclass(frozen=True)
@@ -208,6 +210,7 @@ def _job(file: Path, case: Case, folder: Path | None, request: SuiteRequest) -> 
         redraw=fixed.redraw,
         strict=request.strict,
         nodes=request.nodes,
+        share=request.share,
     )
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from harness.core.geometry import Box, Cylinder, Shape, Sphere
 from harness.core.spatial import SE3
+from harness.observation import measured_parts
 from harness.observation.clearance import CoalClearance
 from harness.observation.sampled_clearance import LARGEST_ERROR
 from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
@@ -236,3 +237,30 @@ def test_a_robot_without_shapes_in_an_empty_world_has_no_clearances(tmp_path):
     )
     result = run_case(path)
     assert result.outcome == "passed", (result.problems, result.message, result.verdicts)
+
+
+@pytest.mark.parametrize("length", [13, 100])
+def test_a_run_measured_in_parts_has_the_same_distances_to_the_bit(scene, monkeypatch, length):
+    cell, items, positions, whole = scene
+    monkeypatch.setattr(measured_parts, "LONGEST_PART", length)
+    poses = {item.name: np.tile(item.pose.as_vector(), (len(positions), 1)) for item in items}
+    poses["post"][100:140] = np.nan  # it goes away, and comes back
+    gone = replace(record(items[-1]), present=((0.0, 99.5 * STEP), (139.5 * STEP, 1e9)))
+    held = AttachmentRecord(
+        "post", TCP, 150.5 * STEP, 333.5 * STEP, (0, 0, 0.1, 1, 0, 0, 0), "post"
+    )
+    objects = [*(record(item) for item in items[:-1]), gone]
+
+    def observed():
+        return CoalClearance(cell.description).observe(
+            signals(positions, poses), objects, [held], CUTOFF
+        )
+
+    parts = observed()
+    monkeypatch.undo()
+    whole = observed()
+    assert list(parts.clearances) == list(whole.clearances)
+    for pair, distances in whole.clearances.items():
+        assert distances.tobytes() == parts.clearances[pair].tobytes(), pair
+    for pair, links in whole.clearance_links.items():
+        assert links.tobytes() == parts.clearance_links[pair].tobytes(), pair
