@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
 
-from harness.core.details import Details
+from harness.core.details import Detail, Details
 from harness.core.registry import Plugin
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
@@ -343,8 +343,8 @@ class PlanningScene(Protocol):
         """Pairs closer than allowed at a state, nearest first."""
         ...
 
-    def link_corners(self, link: str) -> FloatArray:
-        """Corners of the boxes around a link's shapes, in its frame, shape (n, 3) [m]."""
+    def corners(self, body: str) -> FloatArray:
+        """Corners of the boxes around a body's shapes, in its frame, shape (n, 3) [m]."""
         ...
 
     def distance_to_link(self, link: str, point: FloatArray) -> float:
@@ -728,6 +728,82 @@ class GripperResult:
     between: tuple[str, ...]
 
 
+@dataclass(frozen=True, eq=False)
+class ControlRequest:
+    """What a joint controller must follow until its next call.
+
+    Joints are those of the robot that have a motor, without the gripper's, m in number. Set points
+    have a row for each physics step, the first of them for now.
+
+    Attributes:
+        joint_names: The joints, in the order of all columns.
+        time: The simulated time now [s].
+        timestep: The time from one row to the next [s].
+        positions: Measured joint positions [rad or m], shape (m,).
+        velocities: Measured joint velocities, shape (m,).
+        set_positions: Commanded positions, shape (N + 1, m).
+        set_velocities: Commanded velocities, shape (N + 1, m).
+        set_accelerations: Commanded accelerations, shape (N + 1, m).
+        stiffness: Stiffness of a critically damped servo of this arm [N m/rad or N/m], shape (m,).
+        damping: Its damping [N m s/rad or N s/m], shape (m,).
+        effort_limits: The largest efforts [N m or N], shape (m,); the physics enforces them.
+        feed_forward: Efforts that the set points take, of the robot without payload, (N + 1, m).
+        inverse_dynamics: The same for other positions, velocities and accelerations, (k, m) each.
+    """
+
+    joint_names: tuple[str, ...]
+    time: float
+    timestep: float
+    positions: FloatArray
+    velocities: FloatArray
+    set_positions: FloatArray
+    set_velocities: FloatArray
+    set_accelerations: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+    effort_limits: FloatArray
+    feed_forward: Callable[[], FloatArray]
+    inverse_dynamics: Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
+
+
+@dataclass(frozen=True, eq=False)
+class ControlResult:
+    """The efforts of the motors until the next call: a constant part, and a servo around it.
+
+    At every physics step a motor's effort is `efforts + stiffness * (set position - position) +
+    damping * (set velocity - velocity)`, within the limits of its joint.
+
+    Attributes:
+        efforts: The efforts at each row of the set points, shape (N + 1, m), or at all, (m,).
+        stiffness: The stiffness of the servos, shape (m,); None for none.
+        damping: Their damping, shape (m,); None for none.
+    """
+
+    efforts: FloatArray
+    stiffness: FloatArray | None = None
+    damping: FloatArray | None = None
+
+
+class JointController(Plugin, ABC):
+    """A joint controller, selected by `robot: {joint_controller: NAME}`.
+
+    It moves the joints of the arm; the gripper keeps a servo of its own. Effort limits, tolerances
+    and faults apply to every controller alike. One object of the class lasts for a whole run, so it
+    may have a state.
+
+    Attributes:
+        period: Simulated time between two calls [s]; None: one call for each stretch of set points,
+            of a controller that needs no measurement.
+    """
+
+    plugin_kind: ClassVar[str] = "controller"
+    period: ClassVar[float | None] = None
+
+    @abstractmethod
+    def control(self, request: ControlRequest) -> ControlResult:
+        """The efforts of the motors until the next call."""
+
+
 class Faults(Protocol):
     """What can be broken in the physics while a run goes on.
 
@@ -870,7 +946,7 @@ class ExternalRequest:
 
 
 @dataclass(frozen=True)
-class ExternalResult:
+class ExternalResult(Detail):
     """How external programs' time ended.
 
     Attributes:

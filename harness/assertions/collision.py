@@ -17,6 +17,7 @@ between objects nor a hold.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import permutations
 
 import numpy as np
@@ -42,10 +43,9 @@ from harness.assertions.support import is_below
 from harness.assertions.temporal import bridged, episodes
 from harness.assertions.text import amount, amounts
 from harness.core.types import BoolArray, FloatArray
+from harness.language.step import Step, step_class
 from harness.recording.run import Run
-
-GRIPPING_VERBS = ("gripper", "grasp", "release")
-RESTING_VERBS = (*GRIPPING_VERBS, "wait", "settle")
+from harness.recording.step_results import AllowedCollisions
 
 Pair = tuple[str, str]
 
@@ -111,7 +111,8 @@ def _allowed(run: Run, pair: Pair) -> BoolArray:
     mask = np.zeros(len(run.signals.times), dtype=bool)
     mask |= any(_names(run, allowed, pair) for allowed in run.allowed_contacts)
     for step in run.steps:
-        if any(_names(run, allowed, pair) for allowed in step.result.get("allowed_collisions", ())):
+        allowed = step.result.find(AllowedCollisions)
+        if allowed and any(_names(run, each, pair) for each in allowed.allowed_collisions):
             mask[step.start_index : step.end_index] = True
     return mask
 
@@ -123,11 +124,13 @@ def _names(run: Run, allowed: Pair, pair: Pair) -> bool:
     return (a in first and b in second) or (b in first and a in second)
 
 
-def _steps_of(run: Run, verbs: tuple[str, ...], during: BoolArray | None = None) -> BoolArray:
-    """Samples of the steps with these verbs; only of steps in which something is true."""
+def _samples_of(
+    run: Run, is_chosen: Callable[[type[Step]], bool], during: BoolArray | None = None
+) -> BoolArray:
+    """Samples of the steps whose class is chosen; only of steps in which something is true."""
     mask = np.zeros(len(run.signals.times), dtype=bool)
     for step in run.steps:
-        if step.verb not in verbs:
+        if not is_chosen(step_class(step.verb)):
             continue
         around = slice(max(step.start_index - 1, 0), step.end_index + 1)
         if during is None or during[around].any():
@@ -135,10 +138,14 @@ def _steps_of(run: Run, verbs: tuple[str, ...], during: BoolArray | None = None)
     return mask
 
 
+def _moves_gripper(step: type[Step]) -> bool:
+    return step.moves_gripper
+
+
 def _gripping(run: Run, link: str, name: str) -> BoolArray:
     """Samples at which a gripper link touches an object because it grips it, shape (N,).
 
-    A grip begins with a contact in a `gripper`, `grasp` or `release` in which the object is between
+    A grip begins with a contact in a step that moves the gripper, in which the object is between
     all finger sides at some time. It lasts while the contact does and the object is attached, or
     all finger sides touch it, or the arm rests. A finger that knocks against an object on its way
     is a collision, whatever the planning scene says of the object, and so is one that drags it
@@ -149,9 +156,9 @@ def _gripping(run: Run, link: str, name: str) -> BoolArray:
     if link not in hand:
         return np.zeros(len(run.signals.times), dtype=bool)
     held = held_by_fingers(run, name)
-    begins = _steps_of(run, GRIPPING_VERBS, held)
+    begins = _samples_of(run, _moves_gripper, held)
     touched = np.min(list(side_forces(run, name).values()), axis=0) >= TOUCH_FORCE
-    lasts = attached(run, name) | touched | _steps_of(run, RESTING_VERBS)
+    lasts = attached(run, name) | touched | _samples_of(run, lambda step: step.keeps_arm_still)
     contact = debounced(run, force_between(run, hand, {name})) > 0
     mask = np.zeros(len(contact), dtype=bool)
     for start, stop in episodes(contact & lasts):
@@ -170,7 +177,7 @@ def _holds(run: Run, name: str) -> BoolArray:
 
 
 def _held_limit(run: Run, name: str) -> FloatArray:
-    return held_limit(run, name, _steps_of(run, GRIPPING_VERBS))
+    return held_limit(run, name, _samples_of(run, _moves_gripper))
 
 
 def _hits_from_hand(run: Run, held: str, other: str) -> BoolArray:

@@ -10,11 +10,13 @@ from collections.abc import Collection
 
 import numpy as np
 
-from harness.assertions.poses import SCENE_VERBS, present
+from harness.assertions.facts import fact
+from harness.assertions.poses import present
 from harness.assertions.temporal import trailing_max
 from harness.assertions.window import NotObservable
 from harness.core.antipodal import least_thickness
 from harness.core.types import BoolArray, FloatArray
+from harness.language.step import step_class
 from harness.recording.run import GripperRecord, Run, VerdictWarning
 
 TOUCH_FORCE = 1e-3
@@ -76,6 +78,7 @@ def bodies_touching(
     return {other: debounced(run, force_between(run, {name}, {other})) for other in others}
 
 
+@fact
 def side_forces(run: Run, name: str) -> dict[str, FloatArray]:
     """Debounced force of each finger side on an object, by side name [N], shape (N,) each."""
     sides = gripper_of(run).sides
@@ -210,7 +213,7 @@ def _jumps(run: Run, count: int) -> BoolArray:
     """Intervals between samples in which a step may put objects somewhere, shape (N - 1,)."""
     mask = np.zeros(count, dtype=bool)
     for step in run.steps:
-        if step.verb in SCENE_VERBS:
+        if step_class(step.verb).moves_objects:
             mask[max(step.start_index - 1, 0) : step.end_index + 1] = True
     return mask
 

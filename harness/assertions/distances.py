@@ -13,6 +13,9 @@ from harness.recording.run import Run
 
 Key = tuple[str, str]
 
+MEASURED_WORDS = ("robot", "any")
+"""Besides objects: the distances of a single link are not recorded."""
+
 
 def recorded_distances(run: Run, first: str, second: str) -> dict[Key, FloatArray]:
     """Recorded distances that two words of `between` mean, sorted by key."""

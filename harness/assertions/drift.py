@@ -18,6 +18,7 @@ from harness.core.pose_arrays import (
 )
 from harness.core.symmetry import ANY, equal_turns
 from harness.core.types import BoolArray, FloatArray
+from harness.language.step import step_class
 from harness.recording.run import AttachmentRecord, Run, is_nested
 
 
@@ -35,16 +36,18 @@ def released_at(run: Run, record: AttachmentRecord) -> float:
     ends = [
         place
         for place, step in enumerate(leaves)
-        if step.verb in ("release", "detach_object")
+        if step_class(step.verb).detaches_object
         and step.start_time <= record.end_time <= step.end_time
     ]
     if not ends:
         return record.end_time
-    place = ends[0]
-    if leaves[place].verb == "detach_object":
-        while place > 0 and leaves[place - 1].verb == "gripper":
-            place -= 1
-    return leaves[place].start_time
+    begin = leaves[ends[0]]
+    if not step_class(begin.verb).moves_gripper:
+        for before in reversed(leaves[: ends[0]]):
+            if not step_class(before.verb).moves_gripper or before.start_time < record.start_time:
+                break
+            begin = before
+    return begin.start_time
 
 
 def drift_in_hand(run: Run, name: str) -> tuple[str, FloatArray, FloatArray, BoolArray]:

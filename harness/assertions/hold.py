@@ -12,6 +12,7 @@ from harness.assertions.contacts import (
     gripper_of,
     side_forces,
 )
+from harness.assertions.facts import fact
 from harness.assertions.poses import object_poses
 from harness.assertions.temporal import TIME_RESOLUTION, bridged, episodes
 from harness.assertions.text import amount
@@ -26,6 +27,7 @@ from harness.core.antipodal import (
 from harness.core.pose_arrays import compose, conjugate, quat_product, relative, rotation_angle
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import Run
+from harness.recording.step_results import GraspMode
 
 HOLD_TIME = 0.1
 """How long fingers must have touched an object without a break to hold it [s].
@@ -57,6 +59,7 @@ def held_by_fingers(run: Run, name: str, min_force: float = TOUCH_FORCE) -> Bool
     return held & ~cradled(run, name) if held.any() else held
 
 
+@fact
 def between_fingers(run: Run, name: str) -> BoolArray:
     """Samples at which an object that all sides touch is between them, shape (N,).
 
@@ -152,6 +155,7 @@ def carried_weight(run: Run, name: str) -> FloatArray | None:
     return np.where(welded(run, name), np.inf, carried)
 
 
+@fact
 def cradled(run: Run, name: str) -> BoolArray:
     """Samples at which an object lies on fingers that do not press it, shape (N,).
 
@@ -212,7 +216,7 @@ def welded(run: Run, name: str) -> BoolArray:
     """Samples at which a grasp with `mode: weld` has an object fixed to the hand, shape (N,)."""
     times = run.signals.times
     mask = np.zeros(len(times), dtype=bool)
-    welds = [step for step in run.steps if step.result.get("mode") == "weld"]
+    welds = [step for step in run.steps if step.result.find(GraspMode) == GraspMode("weld")]
     for record in run.attachments:
         if name in (record.object, record.represents) and any(
             step.start_time <= record.start_time <= step.end_time for step in welds

@@ -9,6 +9,7 @@ import numpy as np
 
 from harness.assertions.expectation import Expectation
 from harness.assertions.expectation_text import describe
+from harness.assertions.facts import remembered_facts
 from harness.assertions.placed import PlacedExpectation
 from harness.assertions.recorded import guard_unrecorded
 from harness.assertions.window import NotObservable, NotReached
@@ -18,7 +19,8 @@ from harness.recording.run import Run, Verdict
 def judge(run: Run, expectations: Sequence[PlacedExpectation]) -> tuple[Verdict, ...]:
     """A verdict for each expectation, in their order."""
     readable = guard_unrecorded(run)
-    return tuple(_judge(readable, expectation) for expectation in expectations)
+    with remembered_facts():
+        return tuple(_judge(readable, expectation) for expectation in expectations)
 
 
 def _judge(run: Run, placed: PlacedExpectation) -> Verdict:

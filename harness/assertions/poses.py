@@ -8,14 +8,15 @@ from harness.assertions.temporal import TIME_RESOLUTION, episodes, trailing_max
 from harness.assertions.window import NotObservable, object_record
 from harness.core.pose_arrays import IDENTITY
 from harness.core.types import BoolArray, FloatArray
+from harness.language.step import step_class
 from harness.recording.run import Run
+from harness.recording.step_results import SceneChange
 
 UP = np.array([0.0, 0.0, 1.0])
 STILL = 0.05
 """What moves at no time during so long is still; a turning point of a swing is not [s]."""
 JUMP = 0.005
 """An object that a scene step moves further than this between two samples was put there [m]."""
-SCENE_VERBS = ("add_object", "remove_object", "move_object", "clear_objects")
 
 
 def link_poses(run: Run, link: str) -> FloatArray:
@@ -106,9 +107,11 @@ def start_poses(run: Run, name: str) -> FloatArray:
     jumps = np.zeros(len(poses))
     jumps[1:] = np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1)
     for step in run.steps:
-        if step.verb in SCENE_VERBS and step.status != "not_reached":
+        if step_class(step.verb).moves_objects and step.status != "not reached":
             moved = slice(step.start_index, step.end_index + 1)
-            starts[moved] |= jumps[moved] > (0.0 if name in step.result.get("moved", ()) else JUMP)
+            change = step.result.find(SceneChange)
+            is_moved = change is not None and name in (change.moved or ())
+            starts[moved] |= jumps[moved] > (0.0 if is_moved else JUMP)
     latest = np.maximum.accumulate(np.where(starts, np.arange(len(poses)), -1))
     return np.where((latest >= 0)[:, None], poses[np.maximum(latest, 0)], np.nan)
 

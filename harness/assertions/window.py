@@ -85,7 +85,7 @@ def window_of(run: Run, step_id: str) -> Window:
             raise NotObservable(f"when step '{step_id}' ran was not recorded")
         if step is None:
             raise NotReached(f"there is no step '{step_id}' in this run")
-        if step.status == "not_reached":
+        if step.status == "not reached":
             raise NotReached(f"the run ended before step '{step_id}'")
         window = Window(run, step.start_index, step.end_index, step)
     if window.stop <= window.start:

@@ -207,9 +207,13 @@ def _already_true(terms: Terms, values: FloatArray, window: Window) -> tuple[Ver
 
 
 def _hardly_observed(terms: Terms, samples: int, window: Window) -> tuple[VerdictWarning, ...]:
-    """A warning where what must always or never hold was there for a moment of the window."""
+    """A warning where what must always or never hold was there for a moment, or the window is one.
+
+    A step that takes no time, such as one that puts an object somewhere or fails before it moves,
+    has one sample: nothing can begin or end in it.
+    """
     count = len(window.times)
-    if terms.word not in ("always", "never") or samples > LEAST_SHARE * count:
+    if terms.word not in ("always", "never") or 1 < count < samples / LEAST_SHARE:
         return ()
     message = f"what it is about was there at {samples} of {count} samples"
     return (VerdictWarning(HARDLY_OBSERVED, message),)

@@ -123,9 +123,7 @@ class _BenchPlanner(DryPlanner):
     def plan(self, request: MotionRequest) -> MotionPlan:
         # the goal comes first, so that an unreachable one counts against no planner
         jump, motion, step = super().plan(request), request.motion, self._step
-        if step is None or step.spec.verb != "move_to" or not isinstance(motion, FreeMotion):
-            return jump
-        if motion.constraints is not None:
+        if step is None or not isinstance(motion, FreeMotion) or motion.constraints is not None:
             return jump
         trials: list[Trial] = []
         for planner, seed in product(self._planners, self._seeds):

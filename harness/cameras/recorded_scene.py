@@ -10,6 +10,7 @@ from harness.core.geometry import Plane
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.recording.run import Run, StepRecord
+from harness.recording.step_results import SceneChange
 from harness.robot.description import RobotDescription
 from harness.robot.forward_kinematics import robot_poses
 
@@ -70,8 +71,9 @@ def _present_after(run: Run, step: StepRecord | None) -> set[str] | None:
     changes = [
         (place, kind, name)
         for place, each in enumerate(run.steps)
-        for kind in ("added", "removed")
-        for name in each.result.get(kind, ())
+        if (change := each.result.find(SceneChange)) is not None
+        for kind, names in (("added", change.added), ("removed", change.removed))
+        for name in names or ()
     ]
     first = {name: kind for _, kind, name in reversed(changes)}
     present = {name for name in run.signals.object_poses if first.get(name) != "added"}

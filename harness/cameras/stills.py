@@ -30,7 +30,7 @@ SHADOW_SIZE = 2048
 FARTHEST_IN_VIEW = 1.3
 """Objects farther from the base than this [m] may be outside the view."""
 
-INK = {"passed": (60, 130, 40), "expected_error": (60, 130, 40), "failed": RED}
+INK = {"passed": (60, 130, 40), "expected error": (60, 130, 40), "failed": RED}
 """Colour of a caption's status, BGR."""
 
 
@@ -68,7 +68,7 @@ def draw_stills(
         backend: `auto`, `egl`, `osmesa` or `rays`.
         activity: Called for each picture.
     """
-    steps = [step for step in run.steps if step.status != "not_reached"]
+    steps = [step for step in run.steps if step.status != "not reached"]
     if not steps or not len(run.signals.times):
         return Stills()
     picture = build_picture_model(

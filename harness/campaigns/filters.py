@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from harness.core.quantity import split_quantity
-from harness.language.files.mistakes import did_you_mean
+from harness.core.suggestion import did_you_mean
 from harness.language.units import conversion_factor
 from harness.suite.discovery import UsageError
 

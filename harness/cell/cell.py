@@ -11,7 +11,7 @@ import numpy as np
 
 from harness.cell.program import ProgramStep, step_seed
 from harness.core.camera import Camera
-from harness.core.details import Details
+from harness.core.details import Detail, Details
 from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
@@ -32,6 +32,7 @@ from harness.ports import (
 )
 from harness.recording.execution_failures import TimeoutFailure
 from harness.recording.run import AttachmentRecord
+from harness.recording.step_results import CELL_RESULTS, Attachment, SceneChange
 from harness.robot.description import Gripper, RobotDescription
 
 
@@ -72,7 +73,7 @@ class StepNotes:
     trajectory: Mapping[str, Any] | None = None
     planner: dict[str, Any] = field(default_factory=dict[str, Any])
     explanation: Details = field(default_factory=Details)
-    result: dict[str, Any] = field(default_factory=dict[str, Any])
+    result: Details = field(default_factory=Details)
 
 
 def _cannot_nest(_: Sequence[ProgramStep]) -> None:
@@ -132,6 +133,22 @@ class Cell:
             yield
         finally:
             self.scene.set_unpadded([])
+
+    def report(self, part: Detail) -> None:
+        """Leave a part of the step's result in its record, in place of an earlier one of its type.
+
+        Args:
+            part: The part; its type is one of `results` of the step's class.
+
+        Raises:
+            TypeError: The step's class does not list the type, so that a saved run would lose it.
+        """
+        kind, step = type(part), self.step
+        if step is not None and kind not in (*CELL_RESULTS, *step.spec.results):
+            raise TypeError(
+                f"`{step.spec.verb}` reports {kind.__name__}, which is not in `results`"
+            )
+        self.notes.result = self.notes.result.replaced(part)
 
     # -- where things are ---------------------------------------------------------------------
 
@@ -193,7 +210,7 @@ class Cell:
         known = self.presence.get(obj.name)
         if known is None:
             known = self.presence[obj.name] = Presence(obj, pose, added_by_step=True)
-        self.notes.result.setdefault("added", []).append(obj.name)
+        self._report_change(added=obj.name)
         known.pose = pose
         known.intervals.append([self.simulator.time, float("inf")])
         self.believe(obj.name, pose)
@@ -205,7 +222,7 @@ class Cell:
     def remove_from_scene(self, name: str) -> None:
         """Take an object out of the planning scene and the physics."""
         presence = self._free_object(name)
-        self.notes.result.setdefault("removed", []).append(name)
+        self._report_change(removed=name)
         presence.intervals[-1][1] = self.simulator.time
         self.believe(name, None)
         if name in self.scene.object_names():
@@ -216,6 +233,7 @@ class Cell:
     def move_in_scene(self, name: str, pose: SE3) -> None:
         """Put an object somewhere else, at rest, in planning scene and physics."""
         presence = self._free_object(name)
+        self._report_change(moved=name)
         presence.pose = pose
         presence.intervals[-1][1] = self.simulator.time
         presence.intervals.append([self.simulator.time, float("inf")])
@@ -224,6 +242,12 @@ class Cell:
             self.simulator.move_object(name, pose)
         if name in self.scene.object_names():
             self.scene.move_object(name, pose)
+
+    def _report_change(self, **change: str) -> None:
+        """Add an object to the changes of the scene that the step reports."""
+        known = self.notes.result.find(SceneChange) or SceneChange()
+        names = {kind: (*(getattr(known, kind) or ()), name) for kind, name in change.items()}
+        self.report(replace(known, **names))
 
     def _free_object(self, name: str) -> Presence:
         """An object that is in the scene, and not attached."""
@@ -264,9 +288,7 @@ class Cell:
             represents=represents or name,
         )
         self.attachments.append(record)
-        self.notes.result.update(attached=name, link=link, touch_links=list(touch_links))
-        if represents is not None:
-            self.notes.result["represents"] = represents
+        self.report(Attachment(name, link, tuple(touch_links), represents))
 
     def detach(self, name: str) -> None:
         """Let go of an attached object and its weld; what it stood for is in the scene again."""
@@ -331,7 +353,8 @@ class Cell:
         self.notes.trajectory = trajectory_record(plan.trajectory)
         self.notes.planner.update(plan.statistics)
         self.notes.explanation = plan.explanation
-        self.notes.result.update(plan.result.plain())
+        for part in plan.result:
+            self.report(part)
         timeout = self.current.spec.timeout
         if timeout is not None and plan.trajectory.duration > timeout:
             raise StepFailed(

@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
-from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Shape, Sphere
+from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Plane, Shape, Sphere
 from harness.core.quantity import distinct
 from harness.core.spatial import SE3, rotation_from_quat_wxyz
 from harness.core.types import FloatArray
@@ -20,7 +20,7 @@ from harness.recording.explanation import Explanation
 GRASP_DEPTH = 0.02  # [m] below the top of a tall object
 CLEARANCE = 0.005
 """Distance of the palm from a grasped object's top, and of the fingertips from its bottom [m]."""
-JAW_CLEARANCE = 0.002
+JAW_CLEARANCE = 0.004
 """Distance between an object and the palm on which a single jaw closes, before it does [m]."""
 GAP_SLACK = 0.001
 """How much a gap between the pads may differ from what the robot's table says [m]."""
@@ -51,7 +51,7 @@ def _jaw_travel(cell: Cell) -> FloatArray:
     """How a single jaw opens: the displacement of its middle, TCP axes, shape (3,) [m]."""
     pads = list(cell.gripper.pads.values())
     number = next(n for n, pad in enumerate(pads) if pad != cell.gripper.palm_link)
-    middle = cell.scene.link_corners(pads[number]).mean(axis=0)
+    middle = cell.scene.corners(pads[number]).mean(axis=0)
     opened, closed = (
         _in_tcp(cell, position)[1 + number].apply(middle)
         for position in (cell.gripper.open_position, cell.gripper.closed_position)
@@ -86,10 +86,7 @@ def grasp_depth(cell: Cell, height: float) -> float:
     palm, first, second = _in_tcp(cell, cell.gripper.open_position)
     approach = gripper_axes(cell)[0]
     room, tips = (
-        max(
-            float((pose.apply(cell.scene.link_corners(link)) @ approach).max())
-            for link, pose in placed
-        )
+        max(float((pose.apply(cell.scene.corners(link)) @ approach).max()) for link, pose in placed)
         for placed in (
             [(cell.gripper.palm_link, palm)],
             zip(cell.gripper.pads.values(), (first, second), strict=True),
@@ -104,13 +101,14 @@ def top_grasps(obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:
 
     Across the narrow one of its level sides comes first, then half a turn of that: two fingers are
     alike. A box is taken across its wider side too if the gripper opens so far; what is round about
-    the vertical, at every eighth of a turn.
+    the vertical, at every eighth of a turn. A mesh, or several shapes, are taken as the box around
+    them.
 
     Raises:
         StepFailed: INVALID_OBJECT_NAME, when the object leans, or its shape says too little;
             GOAL_STATE_INVALID, when no level side fits between the pads.
     """
-    shape, at, size, vertical, level = _standing(obj, object_pose)
+    shape, at, size, vertical, level = _standing(obj, object_pose, cell)
     check_opening(obj, object_pose, cell)
     side = at.rotation[:, level[0]].copy()
     side[2] = 0.0
@@ -145,15 +143,15 @@ def _room_for_width(cell: Cell, width: float) -> FloatArray:
 def top_grasps_at(point: FloatArray, obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:
     """The same with the TCP at a stated point, shape (3,).
 
-    Where the object leans or its shape says too little, at every eighth of a turn.
+    Where the object leans, or is not one simple shape, at every eighth of a turn.
     """
-    try:
-        grasps = top_grasps(obj, object_pose, cell)
-    except StepFailed as failure:
-        if failure.code != "INVALID_OBJECT_NAME":
-            raise
-        return _from_above(point, np.array([1.0, 0.0, 0.0]), EIGHTHS, cell)
-    return [SE3(grasp.rotation, point) for grasp in grasps]
+    if has_simple_shape(obj):
+        try:
+            return [SE3(each.rotation, point) for each in top_grasps(obj, object_pose, cell)]
+        except StepFailed as failure:
+            if failure.code != "INVALID_OBJECT_NAME":
+                raise
+    return _from_above(point, np.array([1.0, 0.0, 0.0]), EIGHTHS, cell)
 
 
 def _from_above(
@@ -169,10 +167,11 @@ def check_opening(obj: WorldObject, object_pose: SE3, cell: Cell) -> None:
     """Compare an object's level sides with the gaps that the gripper opens and closes to.
 
     Raises:
-        StepFailed: GOAL_STATE_INVALID, when neither side of the shape fits.
+        StepFailed: GOAL_STATE_INVALID, when neither side of the shape fits, or of the box around
+            a mesh or several shapes.
     """
     try:
-        _, _, size, vertical, level = _standing(obj, object_pose)
+        _, _, size, vertical, level = _standing(obj, object_pose, cell)
     except StepFailed:
         return
     width, opening, least = size[level[0]], _opening(cell), least_gap(cell)
@@ -184,16 +183,18 @@ def check_opening(obj: WorldObject, object_pose: SE3, cell: Cell) -> None:
     other = "a thicker object, or a gripper that closes further"
     if too == "wide":
         other = "a narrower object, or a gripper that opens wider"
+    advice = f"take {other}: no side of it fits"
+    if _fits(size[vertical], cell):
+        advice = f"its height of {height} fits: give a `grasp_pose` that takes it from the side"
+    elif not has_simple_shape(obj):
+        advice = "give a `grasp_pose` that takes it by a part that fits"
+    whose = "its" if has_simple_shape(obj) else "its box's"
     raise StepFailed(
         "GOAL_STATE_INVALID",
-        f"'{obj.name}' is too {too} for the gripper: {stated} across its narrowest level side, and"
-        f" the gripper {does} to {most}",
+        f"'{obj.name}' is too {too} for the gripper: {stated} across {whose} narrowest level side,"
+        f" and the gripper {does} to {most}",
         WidthFailure(width, opening, least, size[vertical]),
-        Explanation(
-            advice=f"its height of {height} fits: give a `grasp_pose` that takes it from the side"
-            if _fits(size[vertical], cell)
-            else f"take {other}: no side of it fits"
-        ),
+        Explanation(advice=advice),
     )
 
 
@@ -214,16 +215,16 @@ def _fits(width: float, cell: Cell) -> bool:
 
 
 def _standing(
-    obj: WorldObject, object_pose: SE3
+    obj: WorldObject, object_pose: SE3, cell: Cell
 ) -> tuple[Shape, SE3, tuple[float, float, float], int, list[int]]:
     """An upright object's shape, T_world_shape, size, vertical axis and level axes, narrow first.
 
     Raises:
-        StepFailed: INVALID_OBJECT_NAME, when it leans, or its shape says too little.
+        StepFailed: INVALID_OBJECT_NAME, when it leans, or has no shape that can be held.
     """
-    shape = _only_shape(obj)
+    shape = obj.shapes[0] if has_simple_shape(obj) else _box_around(obj, cell)
     at = object_pose @ shape.pose
-    size = _extents(obj.name, shape.geometry)
+    size = _extents(shape.geometry)
     vertical = int(np.argmax(np.abs(at.rotation[2])))
     lean = math.degrees(math.acos(min(1.0, abs(float(at.rotation[2, vertical])))))
     if lean > MAX_LEAN and not isinstance(shape.geometry, Sphere):
@@ -252,17 +253,19 @@ def _equal_turns(geometry: Geometry, vertical: int, fits: Sequence[bool]) -> lis
     return [quarter * math.pi / 2 for quarter in quarters]
 
 
-def grasp_points(obj: WorldObject, object_pose: SE3) -> list[FloatArray]:
+def grasp_points(obj: WorldObject, object_pose: SE3, cell: Cell) -> list[FloatArray]:
     """Points of an object that an inclined gripper closes on, shape (3,) each.
 
     Its shape's middle; of one that stands upright also the point that grasps from above use and the
     top, since the fingertips reach beyond the TCP and must stay above what the object stands on.
+
+    Raises:
+        StepFailed: INVALID_OBJECT_NAME, when it has no shape that can be held.
     """
-    if len(obj.shapes) != 1:
-        return [object_pose.translation]
-    middle = (object_pose @ obj.shapes[0].pose).translation
+    shape = obj.shapes[0] if has_simple_shape(obj) else _box_around(obj, cell)
+    middle = (object_pose @ shape.pose).translation
     try:
-        _, _, size, vertical, _ = _standing(obj, object_pose)
+        _, _, size, vertical, _ = _standing(obj, object_pose, cell)
     except StepFailed:
         return [middle]
     top = size[vertical] / 2
@@ -270,16 +273,31 @@ def grasp_points(obj: WorldObject, object_pose: SE3) -> list[FloatArray]:
     return [middle + rise * UP for rise in rises]
 
 
-def _only_shape(obj: WorldObject) -> Shape:
-    if len(obj.shapes) == 1:
-        return obj.shapes[0]
-    raise StepFailed(
-        "INVALID_OBJECT_NAME", f"'{obj.name}' has {len(obj.shapes)} shapes: give a `grasp_pose`"
-    )
+def has_simple_shape(obj: WorldObject) -> bool:
+    """Whether an object is one box, cylinder, capsule or sphere."""
+    simple = Box | Cylinder | Capsule | Sphere
+    return len(obj.shapes) == 1 and isinstance(obj.shapes[0].geometry, simple)
 
 
-def _extents(name: str, geometry: Geometry) -> tuple[float, float, float]:
-    """Size of a shape along its own axes [m]."""
+def _box_around(obj: WorldObject, cell: Cell) -> Shape:
+    """The box around all shapes of an object, along the axes of the first.
+
+    Raises:
+        StepFailed: INVALID_OBJECT_NAME, when it has no shapes, or a plane.
+    """
+    if not obj.shapes or any(isinstance(shape.geometry, Plane) for shape in obj.shapes):
+        raise StepFailed(
+            "INVALID_OBJECT_NAME", f"'{obj.name}' has no shape to hold: give a `grasp_pose`"
+        )
+    axes = SE3(obj.shapes[0].pose.rotation, np.zeros(3))
+    corners = axes.inverse().apply(cell.scene.corners(obj.name))
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    width, depth, height = (float(length) for length in high - low)
+    return Shape(Box((width, depth, height)), axes @ SE3(np.eye(3), (low + high) / 2))
+
+
+def _extents(geometry: Geometry) -> tuple[float, float, float]:
+    """Size of a simple shape along its own axes [m]."""
     match geometry:
         case Box(size=size):
             return size
@@ -290,9 +308,7 @@ def _extents(name: str, geometry: Geometry) -> tuple[float, float, float]:
         case Sphere(radius=radius):
             return 2 * radius, 2 * radius, 2 * radius
         case _:
-            raise StepFailed(
-                "INVALID_OBJECT_NAME", f"'{name}' has no simple shape: give a `grasp_pose`"
-            )
+            raise ValueError(f"{type(geometry).__name__} has no size")
 
 
 def _align(

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Iterable
 from typing import Literal
 
 from harness.core.camera import Camera
 from harness.core.errors import Problem, SpecError
 from harness.core.spatial import SE3
+from harness.core.suggestion import did_you_mean
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.language.files.mistakes import MistakeError
@@ -17,8 +17,7 @@ from harness.language.poses import Pose
 from harness.language.units import in_si
 from harness.ports import LONGEST_RUN
 from harness.robot.description import RobotDescription
-
-LISTED = 12  # names in a hint
+from harness.robot.tree import is_rigid
 
 Prerequisite = Literal["robot", "world"]
 EVERYTHING: tuple[Prerequisite, ...] = ("robot", "world")
@@ -31,17 +30,23 @@ class Problems:
     cannot be judged, but a planner's name can.
     """
 
-    def __init__(self, lines: SourceMap, missing: frozenset[Prerequisite] = frozenset()) -> None:
+    def __init__(
+        self,
+        lines: SourceMap,
+        missing: frozenset[Prerequisite] = frozenset(),
+        doubtful: frozenset[str] = frozenset(),
+    ) -> None:
         """Collect nothing yet.
 
         Args:
             lines: The lines of the file.
             missing: What could not be loaded; something stands in for it.
+            doubtful: Names in what could not be read; problems with them may follow from that.
         """
         self._lines = lines
         self._missing = missing
         self._found: dict[Loc, Problem] = {}
-        self._unusable: set[str] = set()
+        self._unusable = set(doubtful)
 
     def add(
         self,
@@ -52,8 +57,13 @@ class Problems:
         needs: tuple[Prerequisite, ...] = EVERYTHING,
     ) -> None:
         """Note a problem at a place of the file; others at the same place follow from the first."""
-        if not self._missing.intersection(needs):
+        if not self._missing.intersection(needs) and not self._is_unusable(loc):
             self._found.setdefault(loc, self._lines.problem(loc, message, hint))
+
+    def _is_unusable(self, loc: Loc) -> bool:
+        """Whether the file has a name at a place whose own problem is reported."""
+        value = self._lines.find(loc).item.value
+        return isinstance(value, str) and value in self._unusable
 
     def add_unusable(self, name: str) -> None:
         """Note that an object's own problem is reported: uses of its name follow from that."""
@@ -83,12 +93,7 @@ class Problems:
         """
         if self._missing.intersection(needs) or name in self._unusable:
             return
-        names = list(dict.fromkeys(known))
-        near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-        rest = ", ".join(names[:LISTED]) + (", ..." if len(names) > LISTED else "")
-        parts = [f"did you mean '{near[0]}'?"] if near else []
-        parts.append(f"known: {rest}" if names else "there is none here")
-        message, hint = f"there is no {what} '{name}'", " ".join(parts)
+        message, hint = f"there is no {what} '{name}'", did_you_mean(name, known, "known")
         if start is not None:
             problem = self._lines.problem_in_text(loc, start, len(name), message, hint)
             self._found.setdefault((*loc, start), problem)
@@ -97,10 +102,11 @@ class Problems:
         self._found.setdefault(loc, locate(loc, message, hint))
 
     def add_in_text(self, loc: Loc, start: int, message: str, hint: str = "") -> None:
-        """Note a problem at a character of a text, from 0."""
-        self._found.setdefault(
-            (*loc, start), self._lines.problem_in_text(loc, start, 1, message, hint)
-        )
+        """Note a problem at a character of a text, from 0, that follows from robot and world."""
+        if not self._missing:
+            self._found.setdefault(
+                (*loc, start), self._lines.problem_in_text(loc, start, 1, message, hint)
+            )
 
     def check_unit(
         self, loc: Loc, unit: str, *, needs: tuple[Prerequisite, ...] = EVERYTHING
@@ -167,11 +173,19 @@ class Scope:
 
     # -- names --------------------------------------------------------------------------------
 
-    def check_frame(self, name: str, loc: Loc) -> None:
-        """`world`, a link, or an object."""
-        frames = ("world", *self.description.link_names)
+    def check_frame(self, name: str, loc: Loc, *, of: str = "") -> None:
+        """`world`, a link, or an object; not one in which the body `of` can never move."""
+        links = self.description.link_names
+        frames = ("world", *links)
         if name not in frames and name not in self.objects:
             self.problems.unknown(loc, "frame", name, (*frames, *self.objects))
+        are_links = name in links and of in links and name != "world"
+        if name == of or (are_links and is_rigid(self.description, name, of)):
+            self.problems.add(
+                loc,
+                f"'{of}' never moves in the frame '{name}': its pose there says nothing",
+                "name the frame of another body, or `world`",
+            )
 
     def check_link(self, name: str | None, loc: Loc) -> None:
         """A robot link."""

@@ -5,19 +5,51 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from harness.core.printable import printable
+from harness.core.suggestion import nearest
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from _typeshed import SupportsWrite
 
 
+SYNONYMS = {
+    "--report-dir": ("-o", "--out", "--output", "--output-dir", "--reports"),
+    "-j": ("-n", "--jobs", "--workers", "--parallel", "--numprocesses"),
+    "-k": ("--filter", "--select", "--keyword"),
+    "--set": ("-D", "--param", "--override", "--define"),
+}
+"""Options, and what other programs call them."""
+
+
 class Parser(argparse.ArgumentParser):
-    """Reads arguments; what it says of wrong ones is printable."""
+    """Reads arguments; what it says of wrong ones is printable and names the nearest valid one."""
 
     def error(self, message: str) -> NoReturn:
         super().error(printable(message))
+
+    def parse_known_args(  # pyright: ignore[reportIncompatibleMethodOverride]
+        self, args: Sequence[str] | None = None, namespace: Any = None
+    ) -> tuple[argparse.Namespace, list[str]]:
+        """Parse arguments; argparse would report unknown ones without the command's name."""
+        parsed, unknown = super().parse_known_args(args, namespace)
+        if unknown:
+            self.error(self._unknown(unknown))
+        return parsed, unknown
+
+    def _unknown(self, arguments: list[str]) -> str:
+        options = [each for each in arguments if each.startswith("-")]
+        if not options:
+            return f"unexpected argument '{arguments[0]}'"
+        name = options[0].partition("=")[0]
+        known = {each for action in self._actions for each in action.option_strings}
+        synonym = next((each for each, others in SYNONYMS.items() if name in others), None)
+        near = synonym if synonym in known else nearest(name, sorted(known))
+        hint = f"did you mean {near}? " if near else ""
+        return f"there is no option {name}; {hint}`{self.prog} --help` lists the options"
 
     def print_help(self, file: SupportsWrite[str] | None = None) -> None:
         """Print the help; argparse would hide that it cannot be written."""

@@ -81,6 +81,8 @@ def _bridge(arguments: argparse.Namespace) -> int:
 
     domain = domain_of_user(arguments.domain)
     request = bridge_request(arguments, domain, arguments.duration)
+    if arguments.duration and "steps" not in request.run.overrides:
+        complain("note: --duration ends no step `external`; each ends with its own `timeout`")
     where = "this machine" if request.is_local else "the network"
     complain(f"serving {request.run.file} in ROS domain {domain} on {where}; Ctrl-C ends it")
     result = run_bridge(replace(request, is_interactive=True))
@@ -93,7 +95,12 @@ def show_wall(result: BridgeResult) -> None:
     """What is said of wall time and of the launched program; nothing of it is judged."""
     if result.pace:
         complain(f"{result.commands} commands; {result.pace}")
-    if result.output and result.case.outcome != "passed":
+    for sentence in result.names:
+        complain(f"note: {sentence}")
+    has_passed = result.case.outcome == "passed"
+    if result.exit_code and has_passed:
+        complain(f"note: the launched program ended with exit code {result.exit_code}")
+    if result.output and (result.exit_code or not has_passed):
         complain("the launched program printed:")
         for line in result.output.splitlines():
             complain(f"  {line}")

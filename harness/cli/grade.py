@@ -62,10 +62,10 @@ def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
     from harness.grading.grade import Grade, graded
     from harness.recording.store import read_run
     from harness.ros.bridge import run_bridge
-    from harness.ros.domain import free_domain
+    from harness.ros.domain import domain_of_user, free_domain
 
     given = arguments.domain
-    with free_domain() if given is None else nullcontext(given) as domain:
+    with free_domain() if given is None else nullcontext(domain_of_user(given)) as domain:
         request = bridge_request(arguments, domain, arguments.timeout)
         result = run_bridge(request)
     case = result.case

@@ -87,6 +87,7 @@ LISTINGS: dict[str, Callable[[], Rows]] = {
     "planners": _planners,
     "pipelines": _listing("planner"),
     "ik-solvers": _listing("ik_solver"),
+    "controllers": _listing("controller"),
     "world-formats": _listing("world_format"),
     "reporters": _listing("reporter"),
 }

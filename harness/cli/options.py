@@ -23,7 +23,7 @@ from harness.cli.robot_options import ROBOT, add_robot_options
 IMPORTS = ("sdf", "scene", "srdf", "moveit")
 FORMATS = ("full", "short", "json", "github")
 BAGS = ("mcap", "sqlite3")
-DOUBTS = ("publishers", "tf", "frames", "steps")
+DOUBTS = ("publishers", "tf", "frames", "steps", "velocities")
 LISTS = (
     "robots",
     "worlds",
@@ -33,6 +33,7 @@ LISTS = (
     "planners",
     "pipelines",
     "ik-solvers",
+    "controllers",
     "world-formats",
     "reporters",
 )
@@ -173,6 +174,9 @@ def for_run(run: argparse.ArgumentParser) -> None:
     run.add_argument("--velocity-scaling", metavar="SHARE", type=share, default=1.0,
                      help="with --robot ros2: share of the planned speed (default: 1)")  # fmt: skip
     _domain_options(run)
+    run.add_argument("--live", action="store_true",
+                     help="show the cases on a page of this machine while they run; needs the extra"
+                     " `studio`")  # fmt: skip
     run.add_argument("--in-process", action="store_true",
                      help="no process for each scenario: for debuggers")  # fmt: skip
 

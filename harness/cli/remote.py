@@ -48,7 +48,13 @@ def run_on_ros2(arguments: argparse.Namespace, files: Sequence[Path]) -> int:
     )
     confirmation = _Confirmation(arguments.yes, arguments.velocity_scaling)
     domain = domain_of_user(arguments.domain)
-    graph = open_graph(arguments.adapter, domain, node="armharness", is_local=not arguments.network)
+    graph = open_graph(
+        arguments.adapter,
+        domain,
+        node="armharness",
+        is_local=not arguments.network,
+        say=complain,
+    )
     try:
         options = RemoteOptions(arguments.velocity_scaling, confirmation)
         case = run_on_robot(request, graph, options, confirmation.note)

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 BRIEF_FROM = 20
 """With more runs than this a passed one is a line, without its steps."""
 
+LONGEST_WAIT_FOR_PAGE = 10.0
+"""Time after which a run with `--live` begins although its page is not open [s]."""
+
 MOST_FAILURES = 20
 """Failures that are shown in full; the rest is counted."""
 
@@ -37,15 +40,39 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run(arguments: argparse.Namespace) -> int:
     files = discover(arguments.paths)
+    if arguments.live:
+        return _run_live(arguments, files)
     if arguments.robot == "ros2":
         from harness.cli.remote import run_on_ros2
 
         return run_on_ros2(arguments, files)
+    return _run_files(arguments, files)
+
+
+def _run_live(arguments: argparse.Namespace, files: Sequence[Path]) -> int:
+    """Run scenarios while a page shows them."""
+    excluded = {"--on": arguments.cluster, "--robot ros2": arguments.robot == "ros2"}
+    for option, is_given in {**excluded, "--node": arguments.nodes}.items():
+        if is_given:
+            raise UsageError(f"--live and {option} exclude each other")
+    from harness.cli.studio import open_browser, refuse_missing_extra
+
+    refuse_missing_extra()
+    from harness.studio.watch import Watch
+
+    with Watch() as watch:
+        complain(f"live: {watch.page}")
+        if open_browser(watch.page):
+            watch.wait_for_page(LONGEST_WAIT_FOR_PAGE)
+        return _run_files(arguments, files, watch.address)
+
+
+def _run_files(arguments: argparse.Namespace, files: Sequence[Path], live: str = "") -> int:
     start = time.monotonic()
     with WarmServer() as server:
         if not arguments.in_process and not arguments.cluster:
             server.open()  # it imports for as long as this process takes to get ready
-        suite = _suite(arguments, files)
+        suite = _suite(arguments, files, live)
         if arguments.format == "json":
             from harness.reporting.suite.record import results_document
 
@@ -79,7 +106,7 @@ def _run(arguments: argparse.Namespace) -> int:
     return suite.exit_code
 
 
-def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
+def _suite(arguments: argparse.Namespace, files: Sequence[Path], live: str) -> SuiteRun:
     from harness.ros.launch import named_commands
     from harness.suite.plan import SuiteRequest, planned_cases, record_of
     from harness.suite.shards import shard_of, write_shard_record
@@ -123,6 +150,7 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path]) -> SuiteRun:
         nodes=named_commands(arguments.nodes) if arguments.nodes else {},
         share=not arguments.no_sharing and arguments.repeat == 1,  # repetitions compare each other
         conditions=_conditions(arguments),
+        live=live,
     )
     plan = planned_cases(files, request)
     if shard is not None and root is not None:

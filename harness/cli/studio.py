@@ -7,6 +7,7 @@ import threading
 from pathlib import Path
 
 from harness.cli.output import complain, guarded, say
+from harness.core.errors import SpecError
 from harness.suite.discovery import SUFFIX, UsageError
 
 EXTRA = "the studio needs packages that are not installed: pip install 'armharness[studio]'"
@@ -18,11 +19,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    try:
-        import django_static_ace_builds as _ace  # noqa: F401 - only whether it is there
-        import viser as _viser  # noqa: F401
-    except ImportError as error:
-        raise UsageError(f"{EXTRA} ({error})") from error
+    refuse_missing_extra()
     from harness.studio.files import StudioFiles
     from harness.studio.guard import LOOPBACK, Guard
     from harness.studio.server import PortInUseError, page_assets, start_server
@@ -39,6 +36,8 @@ def _run(arguments: argparse.Namespace) -> int:
             " Save keeps it; delete that file to begin again."
         )
     studio = Studio.opened(files, text, restored if is_restored else None, notice)
+    if studio.problems and not files.path.exists():  # the robot that was named is the mistake
+        raise SpecError(studio.problems)
     if time is not None:
         say(f"going on to t={time:g} s, as the run did")
         studio.cell.run_until(time)
@@ -55,8 +54,8 @@ def _run(arguments: argparse.Namespace) -> int:
     say(f"{address}?token={guard.token}" if guard.token else address)
     if is_open:
         complain("harness: whoever has this address can move the robot and write its file")
-    if not arguments.no_open:
-        _open_browser(address)
+    if not arguments.no_open and not open_browser(address):
+        complain(f"no browser could be opened here; open {address}")
     try:
         threading.Event().wait()  # until Ctrl-C or SIGTERM
     finally:
@@ -64,13 +63,26 @@ def _run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _open_browser(address: str) -> None:
+def refuse_missing_extra() -> None:
+    """Refuse to go on without the packages of the extra `studio`.
+
+    Raises:
+        UsageError: A package is not installed.
+    """
+    try:
+        import django_static_ace_builds as _ace  # noqa: F401 - only whether it is there
+        import viser as _viser  # noqa: F401
+    except ImportError as error:
+        raise UsageError(f"{EXTRA} ({error})") from error
+
+
+def open_browser(address: str) -> bool:
+    """Open a page in a browser, where there is one."""
     import webbrowser
 
     from harness.cli.view import has_browser
 
-    if not has_browser() or not webbrowser.open(address):
-        complain(f"no browser could be opened here; open {address}")
+    return has_browser() and webbrowser.open(address)
 
 
 def _start(arguments: argparse.Namespace) -> tuple[Path, str, float | None]:
@@ -110,7 +122,7 @@ def _has_robot(word: str) -> bool:
 
 
 def _scenario(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
-    from harness.language.files.mistakes import did_you_mean
+    from harness.core.suggestion import did_you_mean
     from harness.language.files.yaml_file import read_text
     from harness.robot.load import robot_names
     from harness.suite.discovery import discover

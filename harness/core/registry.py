@@ -12,7 +12,6 @@ when its name is first looked up, installed packages when a name is not a built-
 
 from __future__ import annotations
 
-import difflib
 import importlib
 import importlib.util
 import inspect
@@ -29,6 +28,7 @@ from types import ModuleType
 from typing import Any, ClassVar, Generic, TypeVar
 
 from harness.core.errors import Problem, SpecError
+from harness.core.suggestion import did_you_mean
 
 P = TypeVar("P")
 
@@ -42,7 +42,7 @@ BUILT_IN = {
     "expectation": "harness.expectations",
     "planner": "harness.planning.search.pipelines",
     "ik_solver": "harness.planning.ik.solvers",
-    "controller": "",
+    "controller": "harness.simulation.controllers",
     "robot": "",
     "world_format": "harness.world.formats",
     "reporter": "harness.reporting.reporters",
@@ -52,6 +52,7 @@ BUILT_IN = {
 NOUNS = {
     "planner": "planning pipeline",
     "ik_solver": "inverse kinematics solver",
+    "controller": "joint controller",
     "robot": "robot collection",
 }
 """What messages call the plug-ins of a kind whose key does not say it."""
@@ -136,10 +137,8 @@ class Registry(Mapping[str, P]):
         if name in self:
             return self[name]
         names = list(self)
-        near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-        guess = f"did you mean '{near[0]}'? " if near else ""
-        message = f"there is no {self._what} '{name}'; {guess}known: "
-        raise LookupError("; ".join([message + ", ".join(names), *broken_plugins()]))
+        message = f"there is no {self._what} '{name}'; {did_you_mean(name, names, 'known')}"
+        raise LookupError("; ".join([message, *broken_plugins()]))
 
     def __getitem__(self, name: str) -> P:
         if name not in self._built_in_modules:

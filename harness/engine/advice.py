@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from harness.cell.cell import Cell
 from harness.cell.grasping import least_gap
 from harness.core.errors import StepFailed
+from harness.core.registry import OWN_PACKAGE, registry
 from harness.recording.execution_failures import ControlFailure, GraspFailure, UnrestFailure
 
 
@@ -39,6 +40,9 @@ def _about_contacts(failure: ControlFailure, cell: Cell) -> str:
         )
     if touched:
         return f"look where {touched[0]} stood when this was planned: it moved, or was moved"
+    name = cell.description.joint_controller
+    if registry("controller").package_of(name) != OWN_PACKAGE:
+        return f"correct the plug-in `{name}`, or leave out `joint_controller`"
     return "lower the scaling factors in `planning`, or look at the joint's effort limit"
 
 

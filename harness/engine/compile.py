@@ -55,6 +55,7 @@ class Sources:
         check_mesh: Raises RobotError for a mesh file that cannot be used.
         missing: What could not be loaded; something stands in for it, and problems that it decides
             are not reported.
+        doubtful: Names in what could not be read; problems with them may follow from that.
     """
 
     scenario: Scenario
@@ -68,6 +69,7 @@ class Sources:
     checks_per_second: int
     check_mesh: Callable[[Mesh], None]
     missing: frozenset[Prerequisite] = frozenset()
+    doubtful: frozenset[str] = frozenset()
 
 
 def compile_scenario(sources: Sources) -> Program:
@@ -82,7 +84,7 @@ def compile_scenario(sources: Sources) -> Program:
 class _Compiler:
     def __init__(self, sources: Sources) -> None:
         self.sources = sources
-        self.problems = Problems(sources.lines, sources.missing)
+        self.problems = Problems(sources.lines, sources.missing, sources.doubtful)
         self.scope = Scope(sources.description, self.problems, sources.kinematics.link_pose)
         self.later: dict[str, WorldObject] = {}
         self.object_specs: dict[str, ObjectSpec] = {}  # of the start and of steps, without poses

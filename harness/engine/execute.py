@@ -246,7 +246,7 @@ def _not_reached(step: ProgramStep) -> StepRecord:
         verb=step.spec.verb,
         summary=step.summary,
         line=step.line,
-        status="not_reached",
+        status="not reached",
         expected_error=step.spec.expect_error or "",
     )
 
@@ -260,7 +260,7 @@ def _judge_step(step: ProgramStep, failure: StepFailed | None) -> tuple[StepStat
         return "failed", f"expected to fail with {expected}, but it succeeded"
     if failure.code != expected:
         return "failed", f"expected {expected}, but it failed with {failure}"
-    return "expected_error", failure.message
+    return "expected error", failure.message
 
 
 def _with_unreached(

@@ -70,7 +70,7 @@ def _steps(
     describe: Describe,
 ) -> list[str]:
     options = {step.path: step.options for step in program.all_steps()}
-    expected = [record.path for record in predicted if record.status == "expected_error"]
+    expected = [record.path for record in predicted if record.status == "expected error"]
     lines: list[str] = []
     for record in predicted:
         indent = "  " * (1 + record.path.count("."))

@@ -80,7 +80,7 @@ def unexpected(records: Sequence[StepRecord]) -> tuple[StepRecord, ...]:
     is not reported again for the step that contains it. That an expected failure stays away cannot
     be known without physics.
     """
-    expected = [record.path for record in records if record.status == "expected_error"]
+    expected = [record.path for record in records if record.status == "expected error"]
     failed = [record for record in records if record.error_code and record.status == "failed"]
     return tuple(
         record

@@ -9,8 +9,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from pydantic import Field, model_validator
 
-from harness.assertions.distances import Key, recorded_distances, unknown_distances
-from harness.assertions.expectation import SPECIAL_BODIES, Predicate
+from harness.assertions.distances import (
+    MEASURED_WORDS,
+    Key,
+    recorded_distances,
+    unknown_distances,
+)
+from harness.assertions.expectation import Predicate
 from harness.assertions.margins import Evidence, MarginSignal, measured
 from harness.assertions.observations import CLEARANCE_ROOM, Observations
 from harness.assertions.text import amount, amounts
@@ -60,7 +65,8 @@ class Clearance(Predicate):
 
     def check(self, at: At) -> None:
         for index, name in enumerate(self.between):
-            at.scope.check_body(name, at.key("between", index), special=SPECIAL_BODIES)
+            if name not in MEASURED_WORDS:
+                at.scope.check_object(name, at.key("between", index))
 
     def observations(self) -> Observations:
         cutoff = (self.at_least or 0.0) + CLEARANCE_ROOM

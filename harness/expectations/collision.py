@@ -16,6 +16,7 @@ from harness.assertions.observations import Observations
 from harness.assertions.temporal import episodes
 from harness.assertions.text import amount
 from harness.assertions.window import Window
+from harness.cell.possible_contacts import check_contact
 from harness.cell.scope import At
 from harness.core.types import FloatArray
 from harness.language.base import Flag, Name
@@ -59,6 +60,7 @@ class Collision(Predicate):
     short = "between"
     judged = "eventually"
     quantities = (FORCE, LEFT)
+    synonyms = ("collide", "collides", "colliding", "collisions")
     is_opposed: ClassVar[bool] = True
 
     between: tuple[Name, Name] | None = Field(
@@ -75,6 +77,9 @@ class Collision(Predicate):
     def check(self, at: At) -> None:
         for index, name in enumerate(self.between or ()):
             at.scope.check_body(name, at.key("between", index), special=SPECIAL_BODIES)
+        if self.between is not None:
+            loc = at.key("between")
+            check_contact(at.scope, *self.between, loc, overlaps_count=self.count_allowed)
 
     def observations(self) -> Observations:
         return Observations(clearance_cutoff=0.0)

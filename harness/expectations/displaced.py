@@ -21,6 +21,7 @@ class Displaced(ObjectPredicate):
     """The object is away from where it started."""
 
     quantities = (DISTANCE,)
+    opposite = "static"
     is_change = True
 
     at_least: PositiveLength = Field(

@@ -25,6 +25,7 @@ class Effort(Predicate):
     short = "max_fraction"
     judged = "always"
     quantities = (EFFORT,)
+    is_upper_bound = True
 
     max_fraction: Annotated[Share, Field(gt=0)] = Field(
         default=1.0,

@@ -6,10 +6,12 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
+from harness.assertions.distances import MEASURED_WORDS
 from harness.assertions.expectation import SPECIAL_BODIES, Expectation
 from harness.assertions.formula import formula_verdict
 from harness.assertions.observations import CLEARANCE_ROOM, Observations
 from harness.assertions.window import window_of
+from harness.cell.possible_contacts import HINT, why_never_in_contact
 from harness.cell.scope import At
 from harness.language.formula.formula import (
     SIGNALS,
@@ -54,14 +56,20 @@ class Formula(Expectation):
                 "both sides must be of one kind",
             )
         known = {"joint": robot.joint_names, "frame": frames, "body": bodies}
+        measured = (*MEASURED_WORDS, *at.scope.objects)
         kind_names = {"joint": "joint", "frame": "link or object", "body": "object or link"}
         for signal in signals_of(root):
             kinds, _, _ = SIGNALS[signal.name]
             for kind, name, start in zip(kinds, signal.arguments, signal.starts, strict=True):
-                if name not in known[kind]:
+                names = measured if signal.name == "distance" else known[kind]
+                if name not in names:
                     at.scope.problems.unknown(
-                        at.key("formula"), kind_names[kind], name, known[kind], start=start
+                        at.key("formula"), kind_names[kind], name, names, start=start
                     )
+            if signal.name == "force":
+                reason = why_never_in_contact(at.scope, *signal.arguments)
+                if reason:
+                    at.scope.problems.add_in_text(at.key("formula"), signal.starts[0], reason, HINT)
 
     def observations(self) -> Observations:
         root = parse_formula(self.formula)

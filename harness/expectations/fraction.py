@@ -14,6 +14,7 @@ from harness.assertions.window import NotReached, Window, refuse_unrecorded_step
 from harness.language.base import Share
 from harness.language.expectation import Quantity
 from harness.recording.run import Measure
+from harness.recording.step_results import CartesianPathResult
 
 FRACTION = Quantity("fraction", "1", "at least `at_least`, for each path")
 
@@ -41,29 +42,24 @@ class FractionCheck(Predicate):
         run = window.run
         least = np.full(len(run.signals.times), np.inf)
         reporters = [
-            step
+            (step, followed.fraction)
             for step in run.steps
-            if step.status != "not_reached"
-            and "fraction" in step.result
+            if step.status != "not reached"
+            and (followed := step.result.find(CartesianPathResult)) is not None
             and window.start <= max(step.end_index - 1, step.start_index) < window.stop
         ]
         if not reporters:
             refuse_unrecorded_steps(run)
             raise NotReached("no step of it followed a Cartesian path")
-        for step in reporters:
+        for step, share in reporters:
             last = max(step.end_index - 1, step.start_index)
-            least[last:] = np.minimum(least[last:], _share(step.result["fraction"]))
+            least[last:] = np.minimum(least[last:], share)
         reported = window.cut(least)
         part = Part(FRACTION, reported, self.at_least, ">=", ceiling=1.0)
 
         def text(_: int, measure: Measure) -> str:
-            worst = min(reporters, key=lambda step: _share(step.result["fraction"]))
+            worst = min(reporters, key=lambda reporter: reporter[1])[0]
             followed, required = percentages(measure.value, self.at_least)
             return f"{followed} of the path of {worst.id} followed, {required} required"
 
         return all_of(window, [part], text, present=np.isfinite(reported))
-
-
-def _share(value: object) -> float:
-    """A reported share; what is no number is unknown."""
-    return float(value) if isinstance(value, int | float) else float("nan")

@@ -47,6 +47,8 @@ class Grasped(ObjectPredicate):
     """
 
     quantities = (FINGERS, BETWEEN, HELD, SLIP, TURN)
+    synonyms = ("held", "holding")
+    opposite = "released"
 
     min_force: Annotated[Force, Field(ge=0)] = Field(
         default=0.05, description="The smallest force on each side [N]."

@@ -21,6 +21,7 @@ from harness.assertions.window import (
 from harness.cell.scope import At
 from harness.language.base import Flag, JointValue, Name, NonNegativeLength
 from harness.language.expectation import Quantity
+from harness.recording.execution_failures import GripperOutcome
 from harness.recording.run import Measure
 
 GAP = Quantity("gap error", "m", "with `width`: at most `tolerance`, 2 mm if not given")
@@ -105,8 +106,9 @@ def _stalled(expected: bool, window: Window) -> MarginSignal:
     run = window.run
     reported = np.full(len(run.signals.times), np.nan)
     for step in run.steps:
-        if step.status != "not_reached" and isinstance(step.result.get("stalled"), bool):
-            reported[max(step.end_index - 1, 0) :] = float(step.result["stalled"])
+        outcome = step.result.find(GripperOutcome)
+        if step.status != "not reached" and outcome is not None:
+            reported[max(step.end_index - 1, 0) :] = float(outcome.stalled)
     reported = window.cut(reported)
     if np.isnan(reported).all():
         refuse_unrecorded_steps(run)

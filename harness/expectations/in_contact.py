@@ -21,6 +21,7 @@ from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import amount
 from harness.assertions.window import Window
+from harness.cell.possible_contacts import check_contact
 from harness.cell.scope import At
 from harness.language.base import Force, Name
 from harness.language.expectation import Quantity
@@ -39,6 +40,7 @@ class InContact(Predicate):
     short = "between"
     judged = "eventually"
     quantities = (CONTACT,)
+    synonyms = ("contact", "contacts", "touch", "touching")
 
     between: tuple[Name, Name] = Field(
         description="The two bodies: each a link, an object, `robot`, `gripper` or `any`."
@@ -50,6 +52,7 @@ class InContact(Predicate):
     def check(self, at: At) -> None:
         for index, name in enumerate(self.between):
             at.scope.check_body(name, at.key("between", index), special=SPECIAL_BODIES)
+        check_contact(at.scope, *self.between, at.key("between"))
 
     def signal(self, window: Window) -> MarginSignal:
         """Force between the two bodies [N], sample by sample, while both are in the physics.

@@ -12,6 +12,7 @@ from harness.assertions.poses import present
 from harness.assertions.support import supports
 from harness.assertions.text import amounts
 from harness.assertions.window import Window, object_record
+from harness.cell.possible_contacts import check_contact
 from harness.cell.scope import At
 from harness.language.base import Name
 from harness.language.expectation import Quantity
@@ -30,6 +31,7 @@ class On(ObjectPredicate):
     def check(self, at: At) -> None:
         super().check(at)
         at.scope.check_body(self.support, at.key("support"), special=())
+        check_contact(at.scope, self.object, self.support, at.key("support"))
 
     def signal(self, window: Window) -> MarginSignal:
         """Touches the support, which is under it and carries half of its weight or more."""

@@ -26,6 +26,7 @@ from harness.assertions.poses import (
 from harness.assertions.support import supports
 from harness.assertions.text import amounts
 from harness.assertions.window import NotReached, Window, object_record
+from harness.cell.possible_contacts import check_contact
 from harness.cell.scope import At
 from harness.core.pose_arrays import (
     angle_between,
@@ -95,8 +96,9 @@ class Placed(ObjectPredicate):
         super().check(at)
         if self.on is not None:
             at.scope.check_body(self.on, at.key("on"), special=())
+            check_contact(at.scope, self.object, self.on, at.key("on"))
         if self.pose is not None:
-            at.scope.check_frame(self.pose.frame, at.key("pose", "frame"))
+            at.scope.check_frame(self.pose.frame, at.key("pose", "frame"), of=self.object)
 
     def observations(self) -> Observations:
         return Observations(frozenset() if self.pose is None else frozenset({self.pose.frame}))

@@ -20,6 +20,7 @@ class Released(ObjectPredicate):
     """No part of the gripper touches the object, and it is not attached."""
 
     quantities = (CONTACT, ATTACHED)
+    opposite = "grasped"
 
     def check(self, at: At) -> None:
         at.scope.check_gripper(at.loc, "`released`")

@@ -25,6 +25,7 @@ class Slip(ObjectPredicate):
 
     judged = "always"
     quantities = (SLIP, TURN)
+    is_upper_bound = True
 
     max_distance: PositiveLength = Field(
         default=0.003, description="The largest distance between the two [m]."

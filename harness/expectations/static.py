@@ -36,6 +36,7 @@ class Static(Predicate):
 
     short = "object"
     quantities = (SPEED, TURNING, JOINT_SPEED)
+    opposite = "displaced"
 
     object: Name | None = Field(
         default=None,

@@ -17,6 +17,7 @@ from harness.core.types import FloatArray
 from harness.language.base import Fraction, PositiveLength, SpecModel
 from harness.language.expectation import Quantity
 from harness.language.poses import Pose
+from harness.language.step import step_class
 from harness.recording.link_poses import replayed_link_poses as placed_links
 from harness.recording.run import Measure
 
@@ -138,7 +139,7 @@ def _point(window: Window, pose: Pose) -> FloatArray:
 
 
 def _planned(window: Window) -> list[FloatArray]:
-    """Start and goal of the window's step as it was planned, and of `circ` a point between them.
+    """Start and goal of the window's step as it was planned, and of an arc a point between them.
 
     Only they are taken from the plan: what lies between is a line or a circle, however the arm was
     commanded.
@@ -158,7 +159,7 @@ def _planned(window: Window) -> list[FloatArray]:
             raise NotReached(window.cut_short)
         raise NotObservable(f"step '{step.id}' has no path of its own: give a line or an arc")
     planned = np.asarray(step.trajectory["positions"], dtype=float)
-    rows = [0, len(planned) // 2, -1] if step.verb == "circ" else [0, -1]
+    rows = [0, len(planned) // 2, -1] if step_class(step.verb).is_arc else [0, -1]
     columns = {joint.name: column for column, joint in enumerate(run.robot.joints)}
     positions = np.repeat(window.cut(run.signals.joint_positions)[:1], len(rows), axis=0)
     for joint, values in zip(step.trajectory["joint_names"], planned[rows].T, strict=True):

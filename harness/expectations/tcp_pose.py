@@ -44,7 +44,8 @@ class TcpPose(Predicate):
 
     def check(self, at: At) -> None:
         at.scope.check_link(self.link, at.key("link"))
-        at.scope.check_frame(self.pose.frame, at.key("pose", "frame"))
+        link = self.link or at.scope.description.tcp_link
+        at.scope.check_frame(self.pose.frame, at.key("pose", "frame"), of=link)
 
     def observations(self) -> Observations:
         links = () if self.link is None else (self.link,)

@@ -26,6 +26,7 @@ class TrackingError(Predicate):
     short = "max"
     judged = "always"
     quantities = (ERROR,)
+    is_upper_bound = True
 
     max: Annotated[JointValue, Field(gt=0)] = Field(
         default=0.05,

@@ -5,12 +5,12 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Any
 
 import numpy as np
 
 from harness.core.spatial import SE3, xyzw_from_wxyz
+from harness.core.suggestion import did_you_mean
 from harness.core.types import FloatArray
 from harness.strategies.tasks import Task, pose_pitch
 from harness.suite.discovery import UsageError
@@ -89,11 +89,9 @@ def parameter_words(function: Callable[..., Any]) -> tuple[str, ...]:
         elif each.kind in (each.VAR_POSITIONAL, each.VAR_KEYWORD) or each.default is not each.empty:
             continue
         else:
-            near = get_close_matches(each.name.lower(), WORDS, 1)
-            hint = f"did you mean `{near[0]}`? " if near else ""
             raise UnusableSolver(
-                f"no argument is known for the parameter `{each.name}`; {hint}"
-                f"names: {', '.join(WORDS)}"
+                f"no argument is known for the parameter `{each.name}`; "
+                + did_you_mean(each.name, WORDS, "names")
             )
     task_of_parameters(words)
     return tuple(words)

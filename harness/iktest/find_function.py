@@ -8,12 +8,12 @@ import inspect
 import sys
 import traceback
 from collections.abc import Callable
-from difflib import get_close_matches
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 from harness.core.registry import broken_plugins, registry
+from harness.core.suggestion import did_you_mean
 from harness.iktest.contract import UnusableSolver
 
 OWN = "own"
@@ -108,6 +108,4 @@ class _ImportErrorsReported:
 def _offers(module: ModuleType, name: str) -> str:
     names = [name for name, value in vars(module).items()
              if inspect.isfunction(value) and value.__module__ == module.__name__]  # fmt: skip
-    near = get_close_matches(name, names, 1)
-    hint = f"did you mean '{near[0]}'? " if near else ""
-    return f"{hint}functions there: {', '.join(names) or 'none'}"
+    return did_you_mean(name, names, "functions there")

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from harness.language.files.mistakes import MistakeError, nearest, value_text
+from harness.core.suggestion import nearest
+from harness.language.files.mistakes import MistakeError, value_text
 
 NAMED = """
     aliceblue=f0f8ff antiquewhite=faebd7 aqua=00ffff aquamarine=7fffd4 azure=f0ffff beige=f5f5dc

@@ -63,11 +63,17 @@ class ExpectationFields(SpecModel):
             lower case with underscores. A base class that is no expectation itself has none.
         subject: The field that names what the expectation is about; by default that of the short
             form, unless it is a number.
+        synonyms: What people call the expectation; an error suggests its word for them.
+        opposite: The predicate that holds at the end where this one does not; empty without one.
+        is_upper_bound: Whether it demands a small value by itself, as `slip` does.
     """
 
     plugin_kind: ClassVar[str] = KIND
     word: ClassVar[str] = ""
     subject: ClassVar[str] = ""
+    synonyms: ClassVar[tuple[str, ...]] = ()
+    opposite: ClassVar[str] = ""
+    is_upper_bound: ClassVar[bool] = False
 
     during: Name | None = Field(
         default=None,

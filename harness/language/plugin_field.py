@@ -9,8 +9,9 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
 from harness.core.registry import broken_plugins, noun, registry
+from harness.core.suggestion import did_you_mean
 from harness.language.base import SpecModel
-from harness.language.files.mistakes import MistakeError, did_you_mean
+from harness.language.files.mistakes import MistakeError
 
 MARK = "plugin"
 """In a field's JSON Schema: the kind of plug-in that it holds."""

@@ -76,6 +76,7 @@ class MoveItFiles(SpecModel):
 
 
 IkSolverName = Annotated[Name, PluginName("ik_solver", also=("auto",))]
+ControllerName = Annotated[Name, PluginName("controller")]
 
 
 class RobotSpec(SpecModel):
@@ -131,6 +132,11 @@ class RobotSpec(SpecModel):
         description="The inverse kinematics solver, built-in or a plug-in; `auto` is the closed "
         "form that fits, else `numeric`. By default the one that the robot's folder names; "
         "`harness list ik-solvers` has the names.",
+    )
+    joint_controller: ControllerName | None = Field(
+        default=None,
+        description="The controller of the arm's joints in the physics, built-in or a plug-in; the "
+        "default is `position_servo`. `harness list controllers` has the names.",
     )
     collision: (
         Annotated[

@@ -8,10 +8,11 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
+from harness.core.details import Detail
 from harness.core.errors import ErrorCode
 from harness.core.registry import Registry, registry
 from harness.language.base import Name, PositiveDuration, SpecModel
-from harness.language.expectation import AnyExpectation
+from harness.language.expectation import AnyExpectation, ExpectationFields
 from harness.language.files.source import Loc
 from harness.language.planning import Planning
 from harness.language.plugin_field import PluginField
@@ -45,13 +46,28 @@ class Step(SpecModel):
 
     Attributes:
         verb: The key of the step in a file; empty in classes that several steps share.
+        synonyms: What other programs call the step; an error suggests the verb for them.
         moves_arm: Whether the step is one motion of the arm, which `parallel` can combine with a
             `gripper` step.
+        is_arc: Whether that motion is an arc, which three of its points determine.
+        moves_gripper: Whether the step commands the gripper while the arm keeps its place.
+        keeps_arm_still: Whether the arm keeps its place during the step.
+        moves_objects: Whether the step lets objects appear, vanish or jump.
+        detaches_object: Whether the step detaches what the gripper holds.
+        results: The types of the parts that the step reports with `cell.report`, besides those of
+            the cell's own methods; a saved run is read back with them.
     """
 
     plugin_kind: ClassVar[str] = "step"
     verb: ClassVar[str] = ""
+    synonyms: ClassVar[tuple[str, ...]] = ()
     moves_arm: ClassVar[bool] = False
+    is_arc: ClassVar[bool] = False
+    moves_gripper: ClassVar[bool] = False
+    keeps_arm_still: ClassVar[bool] = False
+    moves_objects: ClassVar[bool] = False
+    detaches_object: ClassVar[bool] = False
+    results: ClassVar[tuple[type[Detail], ...]] = ()
 
     id: Name | None = Field(
         default=None,
@@ -124,6 +140,10 @@ class Step(SpecModel):
         """
         raise NotImplementedError(self.verb)
 
+    def ends(self) -> Iterator[ExpectationFields]:
+        """Expectations that the step evaluates itself, to end when one of them passes."""
+        return iter(())
+
     def new_objects(self) -> Iterator[tuple[Loc, ObjectSpec]]:
         """Objects that the step adds to the scene, each with its place in the step."""
         return iter(())
@@ -141,5 +161,11 @@ class Step(SpecModel):
 
 STEPS: Registry[type[Step]] = registry(Step.plugin_kind)
 """The class of every verb."""
+
+
+def step_class(verb: str) -> type[Step]:
+    """The class of a recorded step; `Step`, which states no facts, where it is not installed."""
+    return STEPS.get(verb, Step)
+
 
 AnyStep = Annotated[Step, PluginField(Step.plugin_kind, TAG)]

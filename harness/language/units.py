@@ -9,7 +9,8 @@ from collections.abc import Callable
 from typing import Any
 
 from harness.core.quantity import constant_of
-from harness.language.files.mistakes import MistakeError, nearest, value_text
+from harness.core.suggestion import nearest
+from harness.language.files.mistakes import MistakeError, value_text
 
 DEFINITIONS = (
     "nano- = 1e-9 = n-",

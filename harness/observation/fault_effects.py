@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from harness.core.types import BoolArray
-from harness.recording.faults import FaultKind, InjectedFault, faults_of
+from harness.recording.faults import FaultKind, InjectedFault, InjectedFaults, faults_of
 from harness.recording.run import Finding, ObjectRecord, RobotRecord, Signals, StepRecord
 
 MOVING = 1e-3
@@ -59,9 +59,7 @@ def with_receipts(
         if not faults:
             done.append(step)
             continue
-        done.append(
-            replace(step, result={**step.result, "faults": [fault.plain() for fault in faults]})
-        )
+        done.append(replace(step, result=step.result.replaced(InjectedFaults(tuple(faults)))))
         findings += [
             Finding(
                 "fault_without_effect",

@@ -16,6 +16,7 @@ from harness.core.pose_arrays import compose
 from harness.core.types import FloatArray, IntArray
 from harness.ports import Kinematics
 from harness.recording.run import AttachmentRecord, Finding, Pair, Run, Signals, StepRecord
+from harness.recording.step_results import AllowedCollisions
 
 LOST = 0.003
 """An object that drifted further in the hand is not where the planner carries it [m]."""
@@ -220,7 +221,8 @@ def _allowances(run: Run, pair: Pair) -> list[tuple[str, np.ndarray]]:
     links = set(run.robot.link_names)
     names = [{name, "robot"} if name in links else {name} for name in pair]
     for step in run.steps:
-        for first, second in step.result.get("allowed_collisions", ()):
+        allowed = step.result.find(AllowedCollisions)
+        for first, second in allowed.allowed_collisions if allowed else ():
             both = (first in names[0] and second in names[1]) or (
                 first in names[1] and second in names[0]
             )

@@ -12,7 +12,7 @@ from harness.recording.plain import PlainError, from_plain
 from harness.recording.run import Floats, Pair
 
 StageName = Literal["reach", "inverse kinematics", "start state", "path", "time parameterisation"]
-StageStatus = Literal["passed", "failed", "not reached"]
+StageStatus = Literal["passed", "failed", "skipped"]
 
 STAGES: tuple[StageName, ...] = (
     "reach",
@@ -120,45 +120,12 @@ class StraightResult(Detail):
 
 
 @dataclass(frozen=True)
-class DistanceResult(Detail):
-    """How far a relative motion goes [m or rad]."""
-
-    distance: float
-
-
-@dataclass(frozen=True)
-class SequenceResult(Detail):
-    """How many motions a sequence has, and between how many of them it stops or blends."""
-
-    items: int
-    stops: int
-    blends: int
-
-
-@dataclass(frozen=True)
 class ArcResult(Detail):
     """The circle of an arc [m], and the angle that it sweeps [rad]."""
 
     center: Floats
     radius: float
     sweep: float
-
-
-@dataclass(frozen=True)
-class CartesianPathResult(Detail):
-    """What a Cartesian path reaches.
-
-    Attributes:
-        fraction: The share of its length.
-        largest_joint_step: Between two states [rad or m].
-        deviation: The largest distance from its lines [m]; None until it is timed.
-        min_fraction: The share that is required, where less is reached.
-    """
-
-    fraction: float
-    largest_joint_step: float
-    deviation: float | None = None
-    min_fraction: float | None = None
 
 
 @dataclass(frozen=True)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from harness.core.details import Detail
 from harness.recording.run import StepRecord
 
 FaultKind = Literal[
@@ -15,7 +15,7 @@ Receipt = Literal["landed", "no_effect"]
 
 
 @dataclass(frozen=True)
-class InjectedFault:
+class InjectedFault(Detail):
     """A fault of the physics.
 
     Attributes:
@@ -24,7 +24,7 @@ class InjectedFault:
         before: The value that it replaces.
         after: The value that it sets.
         receipt: Whether it had an effect; None until the run has been observed.
-        evidence: What shows the effect, or why there is none.
+        evidence: What shows the effect, or why there is none; None until then.
     """
 
     fault: FaultKind
@@ -32,7 +32,7 @@ class InjectedFault:
     before: Any
     after: Any
     receipt: Receipt | None = None
-    evidence: str = ""
+    evidence: str | None = None
 
     @property
     def name(self) -> str:
@@ -40,20 +40,15 @@ class InjectedFault:
         kind = self.fault.replace("_", " ")
         return f"{kind} of {self.target}" if self.target else kind
 
-    def plain(self) -> dict[str, Any]:
-        """As plain data for a step's record."""
-        begun = {
-            "fault": self.fault,
-            "target": self.target,
-            "before": self.before,
-            "after": self.after,
-        }
-        if self.receipt is None:
-            return begun
-        return {**begun, "receipt": self.receipt, "evidence": self.evidence}
+
+@dataclass(frozen=True)
+class InjectedFaults(Detail):
+    """The faults that a step began, in its order."""
+
+    faults: tuple[InjectedFault, ...]
 
 
 def faults_of(step: StepRecord) -> tuple[InjectedFault, ...]:
     """The faults that a step began; none for most steps."""
-    entries: tuple[Mapping[str, Any], ...] = tuple(step.result.get("faults", ()))
-    return tuple(InjectedFault(**entry) for entry in entries)
+    begun = step.result.find(InjectedFaults)
+    return begun.faults if begun else ()

@@ -6,9 +6,20 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
+from harness.core.details import Detail
 from harness.recording.run import StepRecord
 
 PictureKind = Literal["color", "depth", "segmentation"]
+
+
+@dataclass(frozen=True)
+class TakenPicture(Detail):
+    """What a step took with a camera: the recorded sample of the pictures, and its time [s]."""
+
+    camera: str
+    kinds: tuple[PictureKind, ...]
+    time: float
+    sample: int
 
 
 @dataclass(frozen=True)
@@ -31,9 +42,9 @@ class Look:
 def looks_of_steps(steps: Iterable[StepRecord]) -> tuple[Look, ...]:
     """What `capture` steps took."""
     return tuple(
-        Look(step.result["camera"], step.result["sample"], tuple(step.result["kinds"]), step.id)
+        Look(taken.camera, taken.sample, taken.kinds, step.id)
         for step in steps
-        if step.verb == "capture" and "sample" in step.result
+        if (taken := step.result.find(TakenPicture)) is not None
     )
 
 

@@ -16,6 +16,7 @@ from typing import Any, Literal, Union, cast, get_args, get_origin, get_type_hin
 
 import numpy as np
 
+from harness.core.details import Details
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Sphere
 from harness.core.spatial import SE3
 
@@ -52,6 +53,8 @@ def to_plain(value: Any) -> Any:
             return [to_plain(item) for item in cast("list[Any]", value)]
         case set() | frozenset():
             return [to_plain(item) for item in sorted(cast("set[Any]", value))]
+        case Details():
+            return to_plain(value.plain())
         case _ if is_dataclass(value):
             plain = {entry.name: to_plain(getattr(value, entry.name)) for entry in fields(value)}
             kind = type(value).__name__.lower()

@@ -10,12 +10,13 @@ from typing import Any, Literal
 import numpy as np
 
 from harness.core.camera import Camera
+from harness.core.details import Details
 from harness.core.geometry import Rgba, Shape
 from harness.core.quantity import distinct
 from harness.core.types import FloatArray, IntArray
 from harness.recording.commands import CommandRecord
 
-StepStatus = Literal["passed", "failed", "expected_error", "not_reached"]
+StepStatus = Literal["passed", "failed", "expected error", "not reached"]
 VerdictStatus = Literal["passed", "failed", "not reached", "not observable"]
 Outcome = Literal["passed", "failed", "invalid", "error"]
 Pair = tuple[str, str]
@@ -203,7 +204,7 @@ class StepRecord:
         trajectory: Commanded trajectory (joint_names, times, positions) for motion steps.
         planner: Statistics: planner_id, checks, attempts, path lengths ...
         explanation: Plain data: IK solutions and what became of them, blocking pairs, nearest pose.
-        result: What the step reports: `reached_goal`, `stalled`, fraction, allowed pairs ...
+        result: What the step reports; `harness.recording.step_results` has the common parts.
     """
 
     id: str
@@ -222,7 +223,7 @@ class StepRecord:
     trajectory: Mapping[str, Any] | None = None
     planner: Mapping[str, Any] = field(default_factory=dict[str, Any])
     explanation: Mapping[str, Any] = field(default_factory=dict[str, Any])
-    result: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    result: Details = field(default_factory=Details)
 
 
 def is_nested(inner: str, outer: str) -> bool:

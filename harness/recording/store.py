@@ -30,10 +30,11 @@ from harness.recording.consistency import (
 from harness.recording.digest import digest as digest_of
 from harness.recording.files import FolderFiles, checked, write_files
 from harness.recording.npz_file import NpzError, NpzFile
+from harness.recording.older_runs import FORMAT, KNOWN_FORMATS, in_present_words
 from harness.recording.plain import PlainError, from_plain, to_plain
 from harness.recording.run import MeshRecord, Outcome, Run, Signals, StepRecord, Verdict
+from harness.recording.step_results import SavedResult
 
-FORMAT = "armharness-run/1"
 RUN, SIGNALS, RESOLVED = "run.json", "signals.npz", "scenario.resolved.yaml"
 CHECKSUM = "checksum"
 LONE_SURROGATE = "\\ud"
@@ -178,7 +179,7 @@ def _read_document(path: Path) -> dict[str, Any]:
     if not isinstance(document, dict):
         raise _damage(path, "expected a mapping")
     content = cast("dict[str, Any]", document)
-    if content.get("format") != FORMAT:
+    if content.get("format") not in KNOWN_FORMATS:
         said = f"format: expected '{FORMAT}', found {content.get('format')!r}"
         raise SpecError([Problem(str(path), 0, 0, said)])
     return content
@@ -188,8 +189,10 @@ def _run(path: Path, document: dict[str, Any]) -> tuple[Run, list[Any]]:
     """The run without its arrays, and the trajectories of its steps as run.json has them."""
     hints = get_type_hints(Run)
     with _damaged(path):
+        document = in_present_words(document)
         steps = _mappings(document, "steps")
-        bare = [{**step, "summary": step.get("step"), "trajectory": None} for step in steps]
+        own: dict[str, Any] = {"trajectory": None, "result": {"parts": ()}}
+        bare = [{**step, "summary": step.get("step"), **own} for step in steps]
         plain = {**document, "steps": bare}
         known = {
             name: from_plain(plain[name], hint, name)
@@ -198,8 +201,17 @@ def _run(path: Path, document: dict[str, Any]) -> tuple[Run, list[Any]]:
         }
         for name in NEEDED:
             _needed(known, name)
+        known["steps"] = tuple(
+            replace(record, result=_result(record.verb, step, f"steps[{index}]."))
+            for index, (record, step) in enumerate(zip(known["steps"], steps, strict=True))
+        )
         run = Run(**known, signals=NO_SIGNALS, meshes=_meshes(document))
     return run, [step.get("trajectory") for step in steps]
+
+
+def _result(verb: str, step: Mapping[str, Any], within: str) -> SavedResult:
+    saved = from_plain(step.get("result", {}), Mapping[str, Any], f"{within}result")
+    return SavedResult(verb=verb, saved=saved)
 
 
 def _mappings(document: Mapping[str, Any], name: str) -> list[dict[str, Any]]:

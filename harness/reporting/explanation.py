@@ -21,8 +21,8 @@ def explanation_lines(explanation: Mapping[str, Any], message: str = "") -> tupl
     found = recorded_explanation(explanation)
     for stage in found.stages or ():
         text = "" if stage.text == message else stage.text
-        if stage.status == "not reached":
-            text = f"not reached, {text}" if text else "not reached"
+        if stage.status == "skipped":
+            text = f"skipped, {text}" if text else "skipped"
         lines.append(": ".join(part for part in (stage.stage, stage.code, text) if part))
         lines += [f"{INDENT}{detail}" for detail in stage.details]
     if found.advice:

@@ -86,12 +86,12 @@ def step_done(event: ProgressEvent, style: Style = PLAIN) -> str:
 
     The speed is how many times faster than the real thing it was, where anything moved.
     """
-    is_good = event.status in {"passed", "expected_error"}
+    is_good = event.status in {"passed", "expected error"}
     line = f"  {style.mark(is_good)} {_count(event)}  {printable(event.step)}"
     line += style.quiet(f"  t={event.sim_time:.2f} s")
     if event.speed:
         line += style.quiet(f"  {speed_text(event.speed)}")
-    if event.status == "expected_error":
+    if event.status == "expected error":
         line += style.quiet("  failed as expected")
     if not is_good and event.message:
         line += f"  {printable(event.message.splitlines()[0])}"

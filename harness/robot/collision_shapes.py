@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from harness.core.errors import RobotOptionError
 from harness.core.geometry import CollisionMode, Mesh, Shape, undivided
+from harness.core.suggestion import did_you_mean
 from harness.robot.description import RobotDescription
 from harness.robot.mesh_file import decomposition_of
 
@@ -61,9 +61,10 @@ def with_collision_shapes(
     )
     for name in by_link:
         if name not in description.link_names:
-            near = difflib.get_close_matches(name, description.link_names, 1)
-            hint = f"; did you mean '{near[0]}'?" if near else ""
-            raise RobotOptionError("collision", f"'{description.name}' has no link '{name}'{hint}")
+            hint = did_you_mean(name, description.link_names, "links")
+            raise RobotOptionError(
+                "collision", f"'{description.name}' has no link '{name}'; {hint}"
+            )
     described = replace(
         description,
         links=tuple(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import count
@@ -13,6 +12,7 @@ import numpy as np
 from harness.core.camera import Camera
 from harness.core.errors import RobotError
 from harness.core.spatial import SE3
+from harness.core.suggestion import did_you_mean
 from harness.robot.description import (
     Gripper,
     Joint,
@@ -223,9 +223,8 @@ def _cameras(parts: list[RobotPart], links: tuple[Link, ...]) -> dict[str, Camer
             if name in cameras:
                 raise RobotError(f"{where}: another camera has the name '{name}'")
             if facts.link not in names:
-                near = difflib.get_close_matches(facts.link, names, 1)
-                hint = f"; did you mean '{near[0]}'?" if near else ""
-                raise RobotError(f"{where}.link: there is no link '{facts.link}'{hint}")
+                hint = did_you_mean(facts.link, names, "links")
+                raise RobotError(f"{where}.link: there is no link '{facts.link}'; {hint}")
             pose = SE3.from_xyz_rpy(facts.pose.xyz, facts.pose.rpy)
             cameras[name] = facts.camera(name, facts.link, pose)
     return cameras

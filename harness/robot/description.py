@@ -194,6 +194,7 @@ class RobotDescription:
         position_only_groups: Groups whose pose goals fix the position alone, as with MoveIt's
             `position_only_ik`.
         controllers: Names of its ROS 2 controllers, of `arm` and `gripper`; MoveIt's by default.
+        joint_controller: A plug-in of the kind `controller`, which moves the joints in the physics.
         notes: Notes on ignored elements and assumptions.
     """
 
@@ -215,6 +216,7 @@ class RobotDescription:
     ik_solver: str = "numeric"
     position_only_groups: frozenset[str] = frozenset()
     controllers: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    joint_controller: str = "position_servo"
     notes: tuple[str, ...] = ()
 
     @cached_property

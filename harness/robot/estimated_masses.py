@@ -10,6 +10,7 @@ import numpy as np
 from harness.core.errors import Problem, RobotError, SpecError
 from harness.core.geometry import Mesh, Shape
 from harness.core.solids import solid_of
+from harness.robot.collision_shapes import convex_shapes
 from harness.robot.description import Inertial, Link
 from harness.robot.mesh_file import hull_solid
 from harness.robot.tree import carriers
@@ -64,11 +65,12 @@ def with_estimated_masses(urdf: Urdf, source: str) -> Urdf:
 
 
 def _with_mass(link: Link) -> Link:
-    return replace(link, inertial=solid_inertial(link.collisions or link.visuals, DENSITY))
+    shapes = convex_shapes(link.collisions) or link.visuals
+    return replace(link, inertial=solid_inertial(shapes, DENSITY))
 
 
 def solid_inertial(shapes: Sequence[Shape], density: float) -> Inertial:
-    """Mass properties of solid shapes in their body's axes; of a mesh, those of its convex hull.
+    """Mass properties of solid shapes in their body's axes; of a mesh, those of its hull or part.
 
     Raises:
         RobotError: A mesh cannot be read, or is flat.

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Collection, Iterator
 
+from harness.core.suggestion import did_you_mean
 from harness.language.files.source import Loc
 from harness.robot.robot_yaml import RobotYaml
 from harness.robot.srdf.srdf import Srdf
@@ -47,8 +47,7 @@ def _unknown(
     key: Loc, name: str | None, known: Collection[str], what: str, where: str
 ) -> Iterator[Unknown]:
     if name is not None and name not in known:
-        near = difflib.get_close_matches(name, known, 1)
-        hint = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(sorted(known))}"
+        hint = did_you_mean(name, sorted(known), f"{what}s")
         yield key, f"the {where} has no {what} '{name}'; {hint}"
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -10,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from harness.core.errors import RobotError, RobotOptionError
+from harness.core.suggestion import did_you_mean
 from harness.language.scenario import RobotSpec, StartState
 from harness.robot.compose import RobotPart
 from harness.robot.description import Joint, Link, PlanningGroup
@@ -169,12 +169,10 @@ def _arm_group(
     movable = {name: group for name, group in groups.items() if group.joint_names}
     if spec.group is not None:
         if spec.group not in movable:
-            near = difflib.get_close_matches(spec.group, list(movable), 1)
-            hint = f"did you mean '{near[0]}'? " if near else ""
             raise RobotOptionError(
                 "group",
-                f"there is no group '{spec.group}' with joints that move; {hint}"
-                f"known are {', '.join(movable) or 'none'}",
+                f"there is no group '{spec.group}' with joints that move; "
+                + did_you_mean(spec.group, movable, "groups"),
             )
         return movable[spec.group]
     parents = [tool.parent_group for tool in srdf.end_effectors if tool.parent_group in movable]
@@ -192,11 +190,8 @@ def _arm_group(
 def _refuse_unknown_link(name: str | None, key: str, links: Sequence[Link]) -> None:
     names = [link.name for link in links]
     if name is not None and name not in names:
-        near = difflib.get_close_matches(name, names, 1)
-        hint = f"did you mean '{near[0]}'? " if near else ""
-        raise RobotOptionError(
-            key, f"the robot has no link '{name}'; {hint}links: {', '.join(names)}"
-        )
+        hint = did_you_mean(name, names, "links")
+        raise RobotOptionError(key, f"the robot has no link '{name}'; {hint}")
 
 
 def _start(joints: Sequence[Joint], srdf: Srdf, arm: PlanningGroup) -> dict[str, float]:

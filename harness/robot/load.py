@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import importlib.util
 from collections.abc import Collection, Mapping
 from dataclasses import replace
@@ -14,6 +13,7 @@ from harness.core.errors import RobotOptionError
 from harness.core.geometry import CollisionMode
 from harness.core.registry import broken_plugins
 from harness.core.resources import data_folder
+from harness.core.suggestion import did_you_mean
 from harness.language.files.xml_file import LARGEST_FILE, read_xml
 from harness.language.files.yaml_file import read_text
 from harness.language.scenario import RobotSpec
@@ -98,7 +98,9 @@ def load_robot(
     if spec.gripper is not None and not (main and _is_own(main, spec.gripper)):
         tool = _part(spec.gripper, "gripper", {}, base_dir)
     if tool is not None and tool.facts.kind != "gripper":
-        raise RobotOptionError("gripper", f"'{spec.gripper}' is an arm; {_known(gripper_names())}")
+        raise RobotOptionError(
+            "gripper", f"'{spec.gripper}' is an arm; grippers: {', '.join(gripper_names())}"
+        )
     if main is not None and main.facts.kind == "gripper":
         if tool is not None:
             raise RobotOptionError("model", f"'{spec.model}' is a gripper and carries no other one")
@@ -149,18 +151,14 @@ def _part(name: str, key: str, args: Mapping[str, Any], base_dir: Path) -> Robot
     if name in collected_robots():
         folder, facts = collected_robots()[name]
         return _read(folder, facts, name if facts.variants else "", args)
-    names = gripper_names() if key == "gripper" else robot_names()
-    hint = ""
+    if key == "gripper":
+        known = did_you_mean(name, gripper_names(), "grippers")
+    else:
+        known = did_you_mean(name, robot_names(), "robots")
+    hints = [known, *broken_plugins()]
     if "/" in name or name.startswith(".") or folder.is_dir():
-        hint = f"{folder} has no robot.yaml; "
-    elif near := difflib.get_close_matches(name.lower(), names, 1):
-        hint = f"did you mean '{near[0]}'? "
-    known = "; ".join([_known(names), *broken_plugins()])
-    raise RobotOptionError(key, f"'{name}' is not known; {hint}{known}")
-
-
-def _known(names: tuple[str, ...]) -> str:
-    return f"known are {', '.join(names)}"
+        hints.insert(0, f"{folder} has no robot.yaml")
+    raise RobotOptionError(key, f"'{name}' is not known; {'; '.join(hints)}")
 
 
 @lru_cache(maxsize=32)

@@ -75,19 +75,19 @@ def convex_hull(geometry: Mesh) -> Any:
     """The convex hull of a file's points, or of a part of the mesh, as Coal's geometry, a solid.
 
     Raises:
-        RobotError: As `read_triangles`; or the mesh is flat.
+        RobotError: As `read_triangles`; or the mesh is flat, or Qhull fails.
     """
     if geometry.part is not None:
-        return _hull_of(decomposition_of(geometry).parts[geometry.part])
-    model = _load(geometry)
-    flat = f"{geometry.path.name} is flat: it encloses nothing to touch"
-    if _thickness(np.array(model.vertices())) < FLAT:  # Qhull can crash on such points
-        raise RobotError(flat)
+        points = decomposition_of(geometry).parts[geometry.part]
+    else:
+        points = np.array(_load(geometry).vertices())
+        if _thickness(points) < FLAT:  # Qhull can crash on such points
+            raise RobotError(f"{geometry.path.name} is flat: it encloses nothing to touch")
     try:
-        model.buildConvexHull(True, "Qt")
+        return hull_of(points)
     except (RuntimeError, ValueError) as error:
-        raise RobotError(flat) from error
-    return model.convex
+        reason = str(error).splitlines()[-1]
+        raise RobotError(f"{geometry.path.name} has no convex hull: {reason}") from error
 
 
 def _thickness(points: FloatArray) -> float:
@@ -97,12 +97,18 @@ def _thickness(points: FloatArray) -> float:
     return float(np.ptp(away @ normal))
 
 
-def _hull_of(points: FloatArray) -> Any:
+def hull_of(points: FloatArray) -> Any:
+    """The convex hull of points as Coal's geometry."""
     import coal
 
     corners = coal.StdVec_Vec3s()
     corners.extend(list(points))
-    return coal.Convex.convexHull(corners, True, "Qt")
+    try:
+        return coal.Convex.convexHull(corners, True, "Qt")
+    except RuntimeError:
+        # A corner of Coal's hulls has at most 255 neighbours, and Qhull divides a disc of many
+        # corners into triangles about one of them. Joggled input divides it otherwise.
+        return coal.Convex.convexHull(corners, True, "QJ")
 
 
 def decomposition_of(geometry: Mesh) -> Decomposition:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from harness.core.errors import RobotOptionError
+from harness.core.suggestion import did_you_mean
 from harness.language.scenario import JointLimits, MoveItFiles, RobotSpec, StartState
 from harness.robot.description import Joint, NamedState, RobotDescription
 from harness.robot.find_file import find_file
@@ -45,6 +45,8 @@ def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescrip
         description = replace(description, start_state=start)
     if spec.ik_solver is not None:
         description = replace(description, ik_solver=spec.ik_solver)
+    if spec.joint_controller is not None:
+        description = replace(description, joint_controller=spec.joint_controller)
     for name, position in description.start_state.items():
         _within(description, name, position, "start_state")
     return description
@@ -75,12 +77,10 @@ def with_moveit_files(
 
 def _movable(description: RobotDescription, name: str, where: str) -> Joint:
     if name not in description.joint_index:
-        near = difflib.get_close_matches(name, description.joint_names, 1)
-        hint = f"did you mean '{near[0]}'? " if near else ""
+        hint = did_you_mean(name, description.joint_names, "joints")
         raise RobotOptionError(
             where,
-            f"'{description.name}' has no joint '{name}'; {hint}"
-            f"joints: {', '.join(description.joint_names)}",
+            f"'{description.name}' has no joint '{name}'; {hint}",
         )
     return description.joint_by_name[name]
 

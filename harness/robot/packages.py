@@ -20,6 +20,9 @@ DEEPEST = 4
 HIGHEST = 3
 """Levels above a robot's file at which a folder of a package's name is taken as the package."""
 MOST_FOLDERS = 5_000
+DESCRIPTIONS = ("urdf", "xacro", "robots")
+"""Usual folders of the descriptions in a package."""
+
 LARGEST_MANIFEST = 200_000
 NAME = re.compile(rb"<name>\s*([\w.-]+)\s*</name>")
 SCHEMES = ("package://", "model://")
@@ -48,6 +51,7 @@ class PackagePath:
     home: Path
     given: tuple[Path, ...] = ()
     _found: dict[str, Path] = field(default_factory=dict[str, Path], repr=False, compare=False)
+    _assumed: dict[str, Path] = field(default_factory=dict[str, Path], repr=False, compare=False)
 
     @classmethod
     def of_file(cls, path: Path, given: Sequence[Path] = ()) -> PackagePath:
@@ -58,14 +62,34 @@ class PackagePath:
         )
         return cls(home, (*(each.resolve() for each in given), *environment_folders()))
 
-    def package(self, name: str) -> Path:
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was assumed about packages that are nowhere."""
+        return tuple(
+            f"the package '{name}' is not found: {folder} is read instead"
+            for name, folder in self._assumed.items()
+        )
+
+    def package(self, name: str, inside: str = "") -> Path:
         """The folder of a package.
+
+        Files are often copied out of their package. So where a package is not found, the folder
+        around the robot's file is read instead that has the required path, or the one whose folder
+        of descriptions has the robot's file.
+
+        Args:
+            name: The name of the package.
+            inside: The required path in it; empty for any.
 
         Raises:
             NotFoundError: The package is not found; the message has the searched places.
         """
         if name not in self._found:
             found = next(self._candidates(name), None)
+            if found is None:
+                found = next((each for each in self._above() if _may_be(each, inside)), None)
+                if found is not None:
+                    self._assumed[name] = found.resolve()
             if found is None:
                 raise NotFoundError(
                     f"the package '{name}' is not found; give the folder that holds it with "
@@ -89,7 +113,7 @@ class PackagePath:
         if scheme is not None:
             package, _, rest = name.removeprefix(scheme).partition("/")
             try:
-                path = (self.package(package) / rest).resolve()
+                path = (self.package(package, rest) / rest).resolve()
             except NotFoundError as error:
                 raise NotFoundError(f"'{name}': {error}") from error
         elif re.match(r"\w+://", name) and not name.startswith("file://"):
@@ -119,7 +143,8 @@ class PackagePath:
                 yield folder
         for folder in (*self.given, *self._around()):
             yield from _inside(folder, name)
-        yield from (each for each in self._above() if each.name == name)
+        for folder in self._above():
+            yield from (each for each in (folder, folder / name) if _is_folder(each, name))
         yield from _installed(name)
         for folder in self.given:
             yield from (each for each in _packages_below(folder) if _is_package(each, name))
@@ -165,6 +190,17 @@ def additional_package_folders(folders: Sequence[Path]) -> Iterator[None]:
             os.environ[SEARCH_VARIABLE] = before
         else:
             os.environ.pop(SEARCH_VARIABLE, None)
+
+
+def _is_folder(folder: Path, name: str) -> bool:
+    return folder.name == name and folder.is_dir()
+
+
+def _may_be(folder: Path, inside: str) -> bool:
+    """Whether a folder may be the package of which a file of the robot has a path."""
+    if inside:
+        return (folder / inside).is_file()
+    return any((folder / each).is_dir() for each in DESCRIPTIONS)
 
 
 def _inside(folder: Path, name: str) -> Iterator[Path]:

@@ -52,6 +52,13 @@ def box_corners(solid: Any) -> FloatArray:
     return np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
 
 
+def hull_corners(solid: Any) -> FloatArray:
+    """Corners of a convex hull; of another of Coal's geometries those of its box, (n, 3) [m]."""
+    if hasattr(solid, "points"):
+        return np.array(solid.points(), dtype=float).reshape(-1, 3)
+    return box_corners(solid)
+
+
 def distance_to_point(shapes: Iterable[Shape], point: FloatArray) -> float:
     """Distance between a point and the nearest of a body's shapes, 0 inside one [m]."""
     import coal

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import combinations
 
 from harness.core.errors import Problem, RobotError, SpecError
 from harness.language.files.xml_file import XmlElement
-from harness.robot.description import Joint, Link
+from harness.robot.description import Joint, Link, RobotDescription
 
 Elements = Mapping[tuple[str, str], XmlElement]
 """Elements of links and joints, by kind (`link`, `joint`) and name."""
@@ -89,3 +90,28 @@ def carriers(joints: Iterable[Joint], root: str) -> dict[str, str]:
     for joint in joints:
         carrier[joint.child] = joint.child if joint.is_movable else carrier[joint.parent]
     return carrier
+
+
+def is_rigid(robot: RobotDescription, first: str, second: str) -> bool:
+    """Whether no movable joint is between two links (or a link and `world`)."""
+    carrier = carriers(robot.joints, "world")
+    return carrier[first] == carrier[second]
+
+
+def excluded_contacts(robot: RobotDescription) -> frozenset[frozenset[str]]:
+    """Pairs of links whose contact the physics leaves out.
+
+    Those are the pairs that the SRDF allows, links that a joint connects, and links that cannot
+    move against each other.
+    """
+    carrier = carriers(robot.joints, "world")
+    across = {
+        frozenset((carrier[joint.parent], carrier[joint.child])) for joint in robot.movable_joints
+    }
+    return frozenset(
+        frozenset(pair)
+        for pair in combinations(robot.link_names, 2)
+        if tuple(sorted(pair)) in robot.allowed_collisions
+        or len(groups := frozenset(carrier[name] for name in pair)) == 1
+        or groups in across
+    )

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
 from harness.core.errors import SpecError
+from harness.core.suggestion import did_you_mean
 from harness.language.files.source import Entry, Located, Source
 from harness.language.files.yaml_file import parse_yaml, read_text, require_key
 
@@ -51,8 +51,7 @@ def known_entry(
     """
     names = list(known)
     if name not in names:
-        near = difflib.get_close_matches(name, names, 1)
-        hint = (f"did you mean '{near[0]}'? " if near else "") + f"{kind}s: {', '.join(names)}"
+        hint = did_you_mean(name, names, f"{kind}s")
         problem = entries[name].key.problem(f"'{robot}' has no {kind} '{name}'", hint)
         raise SpecError([problem])
     return entries[name].value

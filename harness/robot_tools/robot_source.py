@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from harness.core.errors import RobotError
+from harness.core.suggestion import did_you_mean
 from harness.core.types import FloatArray
-from harness.language.files.mistakes import did_you_mean
 from harness.language.files.xml_file import XmlElement, read_xml
 from harness.language.reading.load import load_scenario
 from harness.language.scenario import RobotSpec

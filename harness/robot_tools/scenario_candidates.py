@@ -16,14 +16,14 @@ from harness.robot.description import Gripper, RobotDescription
 SAMPLES = 5000
 """Random configurations that measure the reach."""
 
-DISTANCES, HEIGHTS = (0.25, 0.35, 0.45, 0.55, 0.65), (0.1, 0.2, 0.35, 0.5)
+DISTANCES, HEIGHTS = (0.25, 0.35, 0.45, 0.55, 0.65), (0.03, 0.1, 0.2, 0.35, 0.5)
 """Distances from the base and heights above it where the box is tried, as shares of the reach."""
 
 NEAR = 0.08
 """Distance up to which a random configuration shows that a place is reached, likewise."""
 
-DOWNWARD = 0.9
-"""Cosine between the gripper and the vertical from which it points downward."""
+DOWNWARD = math.radians(10)
+"""Angle between the gripper and the vertical up to which it points downward, roughly [rad]."""
 
 MOST_PLACES = 6
 """Places of the box that are tried in a direction."""
@@ -90,21 +90,28 @@ class Candidates:
     def _places(self, gripper: Gripper) -> list[tuple[float, float]]:
         """Distances and heights that most random configurations reach, the most first.
 
-        An arm of six joints takes a box from above, so its gripper points downward there.
+        An arm of six joints takes a box from above, so the more its gripper points downward there,
+        the more a configuration counts; likewise above the place, where the approach starts.
         """
         description = self._description
         links = (description.base_link, description.tcp_link, gripper.palm_link)
         base, tcp, palm = np.moveaxis(self._kinematics.link_poses(self._samples, links), 1, 0)
         away = (tcp - base)[:, :3] / self._reach
         along = (tcp - palm)[:, :3]
-        fits = -along[:, 2] > DOWNWARD * np.linalg.norm(along, axis=1)
+        cosine = -along[:, 2] / np.maximum(np.linalg.norm(along, axis=1), 1e-9)
+        weights = np.exp(-((np.arccos(np.clip(cosine, -1.0, 1.0)) / DOWNWARD) ** 2))
         if len(description.groups[description.arm_group].joint_names) < FREE_ROTATION:
-            fits[:] = True
-        reached = np.column_stack([np.hypot(away[fits, 0], away[fits, 1]), away[fits, 2]])
+            weights[:] = 1.0
+        reached = np.column_stack([np.hypot(away[:, 0], away[:, 1]), away[:, 2]])
+
+        def weight(*place: float) -> float:
+            return float(weights[np.abs(reached - place).max(axis=1) < NEAR].sum())
+
+        above = _travel(self._reach) / self._reach
         grid = [(distance, height) for height in HEIGHTS for distance in DISTANCES]
-        counts = [int((np.abs(reached - place).max(axis=1) < NEAR).sum()) for place in grid]
+        counts = [min(weight(*place), weight(place[0], place[1] + above)) for place in grid]
         order = np.argsort(np.negative(counts), kind="stable")
-        return [grid[number] for number in order if counts[number]]
+        return [grid[number] for number in order if counts[number] > 0]
 
     def motions(self) -> Iterator[dict[str, str]]:
         """Goals of the arm between its start and random configurations, inside the limits."""
@@ -162,12 +169,17 @@ class Candidates:
         """Height of the base at which the arm starts clear of the floor [m]."""
         description = self._description
         lowest = min(
-            float(pose.apply(self._scene.link_corners(link))[:, 2].min())
+            float(pose.apply(self._scene.corners(link))[:, 2].min())
             for link in description.link_names
             if link not in description.static_links
             for pose in [self._kinematics.link_pose(self._start, link)]
         )
         return 0.0 if lowest > 0 else math.ceil(10 * (FLOOR_CLEARANCE - lowest)) / 10
+
+
+def _travel(reach: float) -> float:
+    """Length of the approach and of the lift of an arm with a reach [m]."""
+    return round(min(0.1, 0.1 * reach), 2)
 
 
 def _pick(
@@ -180,7 +192,7 @@ def _pick(
     width = max(0.6 * float(opening), 0.5 * float(least + opening))
     width = math.floor(1e3 * min(WIDEST_BOX, width)) / 1e3
     height = min(TALLEST_BOX, 2.0 * width)
-    travel = round(min(0.1, 0.1 * reach), 2)
+    travel = _travel(reach)
     numbers = {
         "base": base,
         "x": x,

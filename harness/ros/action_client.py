@@ -67,15 +67,14 @@ class ActionClient:
         return True
 
     def send(self, goal: Any) -> ClientGoal:
-        """Send a goal; its result is requested as soon as it is accepted."""
+        """Send a goal and request its result; that of a rejected goal may give the reason."""
         sent = ClientGoal(uuid.uuid4().hex)
         self._goals[sent.identifier] = sent
 
         def answered(response: Any) -> None:
             sent.is_accepted = bool(response.accepted)
-            if sent.is_accepted:
-                request = message(f"{self.kind}_GetResult_Request", goal_id=_uuid(sent))
-                self._result.call(request, ended)
+            request = message(f"{self.kind}_GetResult_Request", goal_id=_uuid(sent))
+            self._result.call(request, ended)
 
         def ended(response: Any) -> None:
             sent.status, sent.result = Status(response.status), response.result

@@ -40,7 +40,7 @@ class CancelCode(IntEnum):
 @dataclass
 class _Goal:
     accepted: float
-    status: Status = Status.EXECUTING
+    status: Status = Status.UNKNOWN
     result: Any = None
     waiting: list[Reply] = field(default_factory=list[Reply])
 
@@ -65,8 +65,8 @@ class ActionServer:
             name: The action's name, such as `/arm_controller/follow_joint_trajectory`.
             kind: The action's type, such as `control_msgs/action/FollowJointTrajectory`.
             clock: The simulated time [s].
-            on_goal: Called with a goal's identifier and content; whether it is accepted. It runs
-                from then on, and may have ended already.
+            on_goal: Called with a goal's identifier and content; whether it is accepted. A rejected
+                goal may have been given a result, for those who request it nevertheless.
             on_cancel: Called with the identifier of a running goal; whether it will be canceled.
         """
         self.name, self.kind = name, kind
@@ -92,9 +92,11 @@ class ActionServer:
     def finish(self, goal: str, status: Status, result: Any) -> None:
         """End a goal; who requested its result gets it."""
         known = self._goals[goal]
+        known.result = result
         if known.status is Status.CANCELING and status is Status.ABORTED:
             status = Status.CANCELED
-        known.status, known.result = status, result
+        if known.status is not Status.UNKNOWN:
+            known.status = status
         for reply in known.waiting:
             reply(self._response(known))
         known.waiting.clear()
@@ -107,10 +109,11 @@ class ActionServer:
         goal = _hex(request.goal_id)
         accepted = goal not in self._goals
         if accepted:
-            now = self._clock()
-            self._goals[goal] = _Goal(now)
+            known = self._goals[goal] = _Goal(self._clock())
             accepted = self._on_goal(goal, request.goal)
-            if not accepted:
+            if accepted:
+                known.status = Status.EXECUTING
+            elif known.result is None:
                 del self._goals[goal]
         kind = f"{self.kind}_SendGoal_Response"
         reply(message(kind, accepted=accepted, stamp=stamp(self._clock())))
@@ -167,6 +170,7 @@ class ActionServer:
         states = [
             message(kind, goal_info=self._info(goal), status=int(known.status))
             for goal, known in self._goals.items()
+            if known.status is not Status.UNKNOWN
         ]
         self._status.publish(message("action_msgs/msg/GoalStatusArray", status_list=states))
 

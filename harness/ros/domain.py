@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from harness.core.errors import Problem, SpecError
-from harness.ros.rtps.participant import NetworkError
+from harness.ros.rtps.participant import MOST_DOMAINS, NetworkError
 
 VARIABLE = "ROS_DOMAIN_ID"
 CHOICES = range(20, 101)
@@ -22,13 +22,14 @@ def domain_of_user(given: int | None) -> int:
     """The domain that an option names, else that of ROS_DOMAIN_ID, else 0.
 
     Raises:
-        SpecError: ROS_DOMAIN_ID is no number.
+        SpecError: It is not the number of a domain.
     """
-    if given is not None:
-        return given
-    text = os.environ.get(VARIABLE, "").strip() or "0"
-    if not text.isdigit():
-        raise SpecError([Problem(VARIABLE, 0, 0, f"{text!r} is no number")])
+    text = str(given) if given is not None else os.environ.get(VARIABLE, "").strip() or "0"
+    if not text.isdecimal() or int(text) > MOST_DOMAINS:
+        where = VARIABLE if given is None else "--domain"
+        raise SpecError(
+            [Problem(where, 0, 0, f"'{text}' is no domain; they are 0 to {MOST_DOMAINS}")]
+        )
     return int(text)
 
 

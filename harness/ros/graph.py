@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Protocol
 
+from harness.ros.names import Names
+
 Reply = Callable[[Any], None]
 """Sends the response of a service; at once or later."""
 
@@ -72,6 +74,10 @@ class Graph(Protocol):
 
     def client(self, name: str, kind: str) -> ServiceClient:
         """A client of a service."""
+        ...
+
+    def names(self) -> tuple[Names, Names]:
+        """The topics of this node, and those of all other nodes that are known."""
         ...
 
     def spin(self, until: float) -> None:

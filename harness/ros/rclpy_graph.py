@@ -13,9 +13,7 @@ from typing import Any
 from harness.core.errors import Problem, SpecError
 from harness.ros.graph import Publisher, Reply, ServiceClient
 from harness.ros.interfaces import CANCEL, decoded, typestore
-
-OPTIONAL = "tf2_msgs/"
-"""A package that installations have and wheels lack; frames are left out without it."""
+from harness.ros.names import Names
 
 _PARTS = ("SendGoal", "GetResult")
 
@@ -37,7 +35,7 @@ class _Codec:
 
 
 class _Silent:
-    """Stands for a topic whose message package is not installed."""
+    """Takes the place of a publisher whose message package is not installed."""
 
     subscribers = 0
 
@@ -76,13 +74,21 @@ class _Client:
 class RclpyGraph:
     """A node of rclpy; callbacks run inside `spin`."""
 
-    def __init__(self, domain: int, *, node: str, is_local: bool = True) -> None:
+    def __init__(
+        self,
+        domain: int,
+        *,
+        node: str,
+        is_local: bool = True,
+        say: Callable[[str], None] = lambda _: None,
+    ) -> None:
         """Join a domain.
 
         Args:
             domain: The number of the ROS domain.
             node: The name of the node.
             is_local: Whether it talks to this machine alone.
+            say: Receives a note for each topic that cannot be published.
 
         Raises:
             SpecError: rclpy or a message package cannot be imported.
@@ -97,6 +103,9 @@ class RclpyGraph:
         except ImportError as error:
             said = f"rclpy cannot be imported: {error}"
             raise SpecError([Problem("--adapter rclpy", 0, 0, said)]) from error
+        self._say = say
+        self._published: set[str] = set()
+        self._subscribed: set[str] = set()
         self._context = rclpy.Context()
         rclpy.init(context=self._context, domain_id=domain)
         self._node = rclpy.create_node(node, context=self._context)
@@ -114,8 +123,11 @@ class RclpyGraph:
         reliable: bool = True,
         depth: int = 10,
     ) -> Publisher:
-        if kind.startswith(OPTIONAL) and importlib.util.find_spec("tf2_msgs") is None:
+        package, folder, _ = kind.split("/")
+        if folder == "msg" and importlib.util.find_spec(package) is None:
+            self._say(f"note: --adapter rclpy: {topic} is not published: {_advice(package)}")
             return _Silent()
+        self._published.add(topic)
         codec = self._codec(kind)
         profile = self._profile(latched, reliable, depth)
         return _Publisher(self._node.create_publisher(codec.ros_type, topic, profile), codec)
@@ -129,6 +141,7 @@ class RclpyGraph:
         latched: bool = False,
         reliable: bool = True,
     ) -> None:
+        self._subscribed.add(topic)
         codec, profile = self._codec(kind), self._profile(latched, reliable, 10)
 
         def take(content: Any) -> None:
@@ -149,6 +162,13 @@ class RclpyGraph:
     def client(self, name: str, kind: str) -> ServiceClient:
         service, request, response = self._service(kind)
         return _Client(self._node.create_client(service, name), request, response)
+
+    def names(self) -> tuple[Names, Names]:
+        node, own = self._node, Names.of(self._published, self._subscribed)
+        topics = [name for name, _ in node.get_topic_names_and_types()]
+        published = [n for n in topics if node.count_publishers(n) > (n in own.published)]
+        subscribed = [n for n in topics if node.count_subscribers(n) > (n in own.subscribed)]
+        return own, Names.of(published, subscribed)
 
     def spin(self, until: float) -> None:
         self._executor.spin_once(timeout_sec=0.0)
@@ -197,6 +217,13 @@ class RclpyGraph:
 def _imported(module: str) -> Any:
     try:
         return importlib.import_module(module)
-    except ImportError as error:
-        said = f"the package `{module}` cannot be imported: {error}"
-        raise SpecError([Problem("--adapter rclpy", 0, 0, said)]) from error
+    except ModuleNotFoundError as error:
+        problem = Problem("--adapter rclpy", 0, 0, _advice(module.partition(".")[0]))
+        raise SpecError([problem]) from error
+
+
+def _advice(package: str) -> str:
+    """How a package of messages that is not installed gets installed."""
+    distribution = os.environ.get("ROS_DISTRO", "DISTRO")
+    debian = f"ros-{distribution}-{package.replace('_', '-')}"
+    return f"the package `{package}` is not installed; install {debian}, or build it from source"

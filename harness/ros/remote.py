@@ -43,6 +43,9 @@ UNRECORDED = (
 PATIENCE = 10.0
 """Wall time in which servers must be found, and joint states must come [s]."""
 
+REASON = 1.0
+"""Wall time in which the result of a rejected goal, which may give the reason, must come [s]."""
+
 START_TOLERANCE = 0.01
 """Largest distance of the arm from where a trajectory begins [rad or m], as MoveIt allows."""
 
@@ -102,7 +105,8 @@ class RemoteArm:
         found = self._wait(lambda: any(a.is_ready for a in self._arms.values()), PATIENCE)
         if not found:
             required = " or ".join(f"/{name}/follow_joint_trajectory" for name in self._arms)
-            _unreachable(f"no action server {required} answers in this domain")
+            served = ", ".join(graph.names()[1].actions) or "no action"
+            _unreachable(f"{required} is not served in this domain; served are: {served}")
         self._arm = next(arm for arm in self._arms.values() if arm.is_ready)
         if not self._wait(lambda: bool(self._times), PATIENCE):
             _unreachable(
@@ -357,14 +361,16 @@ class RemoteArm:
 
     def _refuse_failure(self, goal: ClientGoal, client: ActionClient) -> None:
         if goal.is_accepted is False:
-            raise StepFailed("CONTROL_FAILED", f"{client.name} rejected the trajectory")
-        code = goal.result.error_code
-        if goal.status is not Status.SUCCEEDED or code != Code.SUCCESSFUL:
-            name = Code(code).name if code in list(Code) else str(code)
-            said = f": {goal.result.error_string}" if goal.result.error_string else ""
-            raise StepFailed(
-                "CONTROL_FAILED", f"{client.name} ended with {goal.status.name}, {name}{said}"
-            )
+            self._wait(lambda: goal.result is not None, REASON)
+        code = goal.result.error_code if goal.result else Code.SUCCESSFUL
+        if goal.is_accepted and goal.status is Status.SUCCEEDED and code == Code.SUCCESSFUL:
+            return
+        how = f"ended with {goal.status.name}" if goal.is_accepted else "rejected the trajectory"
+        name = Code(code).name if code in list(Code) else str(code)
+        reason = f", {name}" if code or goal.is_accepted else ""
+        if goal.result and goal.result.error_string:
+            reason += f": {goal.result.error_string}"
+        raise StepFailed("CONTROL_FAILED", f"{client.name} {how}{reason}")
 
     def _fail(self, joint: str, error: float, tolerance: float, said: str) -> NoReturn:
         unit = "m" if self.description.joint_by_name[joint].kind == "prismatic" else "rad"

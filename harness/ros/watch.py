@@ -54,7 +54,7 @@ class Watch:
         step = StepRecord(
             id=self.request.step,
             path=self.request.step,
-            verb="external",
+            verb="",
             summary="",
             line=self.request.line,
             status="passed",

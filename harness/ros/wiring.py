@@ -89,8 +89,9 @@ class Wiring:
     def _follow(self, name: str, goal: str, content: Any) -> bool:
         if not self.is_open:
             return False
-        self._take(self._cell.receive("trajectory", name, goal, follow_content(content)))
-        return True  # what cannot be followed ends at once, with its error code
+        record = self._cell.receive("trajectory", name, goal, follow_content(content))
+        self._take(record)
+        return record.answer == "accepted"
 
     def _grip(self, goal: str, content: Any) -> bool:
         if not self.is_open or self._cell.gripper is None:

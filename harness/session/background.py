@@ -6,6 +6,7 @@ import os
 import pickle
 import select
 import signal
+import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from multiprocessing.connection import Connection, Pipe
@@ -23,26 +24,35 @@ _TASKS = Path("/proc/self/task")
 class Background(Generic[T]):
     """The value of a function, from a fork of this process.
 
-    A process that has threads is not forked: it computes the value itself when it is needed. The
-    function must not have other effects, so that an interruption leaves nothing half-written.
+    A process that has threads is not forked unless that is requested: it computes the value itself
+    when it is needed. The function must not have other effects, so that an interruption leaves
+    nothing half-written.
     """
 
-    def __init__(self, function: Callable[[Activity], T]) -> None:
+    def __init__(self, function: Callable[[Activity], T], *, despite_threads: bool = False) -> None:
         """Begin to compute the value.
 
         Args:
             function: Returns a value that can be pickled; reports its progress to its argument.
+            despite_threads: Whether a process with threads is forked too. A lock that another
+                thread holds then stays locked in the fork, so the value may never come.
         """
         self._function = function
         self._pid = 0
-        if len(list(_TASKS.iterdir())) > 1:
+        if not despite_threads and len(list(_TASKS.iterdir())) > 1:
             return
         self._reading, writing = Pipe(duplex=False)
-        self._pid = os.fork()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # Python 3.12's, of threads
+            self._pid = os.fork()
         if self._pid == 0:
             self._reading.close()  # so that writing fails once the parent is gone
             _compute(function, writing)
         writing.close()
+
+    def has_message(self) -> bool:
+        """Whether the value, its failure or its progress is known, so that none is waited for."""
+        return bool(self._pid) and self._reading.poll()
 
     def result(self, activity: Activity) -> T:
         """The value, as soon as it is known; its progress is reported until then.
@@ -65,7 +75,7 @@ class Background(Generic[T]):
             _, status = os.waitpid(self._pid, 0)
             self._pid = 0
             code = os.waitstatus_to_exitcode(status)
-            raise HarnessError(f"the process that draws pictures ended with code {code}") from None
+            raise HarnessError(f"the process in the background ended with code {code}") from None
         finally:
             self.close()
 

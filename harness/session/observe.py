@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from harness.assertions.facts import remembered_facts
 from harness.engine.execute import Execution
 from harness.observation.beliefs import believed_poses
 from harness.observation.contacts import contact_records
@@ -19,6 +20,7 @@ def with_believed_poses(prepared: Prepared, execution: Execution, recorded: Sign
     return replace(recorded, object_poses={**recorded.object_poses, **believed})
 
 
+@remembered_facts()
 def observed_run(prepared: Prepared, executed: Run) -> Run:
     """The run with distances, contacts, and what physics and plan disagree about."""
     from harness.observation.clearance import CoalClearance

@@ -34,7 +34,6 @@ from harness.recording.run import Finding
 from harness.robot.collision_shapes import parts_notes
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
-from harness.steps.external import External
 from harness.world.imported import ImportedWorld
 from harness.world.world_format import read_foreign_world
 
@@ -64,8 +63,7 @@ class Prepared:
     @cached_property
     def observations(self) -> Observations:
         """Everything that the expectations read of a run, the ends of steps included."""
-        ends = (step.spec.until for step in self.program.all_steps()
-                if isinstance(step.spec, External) and step.spec.until is not None)  # fmt: skip
+        ends = (end for step in self.program.all_steps() for end in step.spec.ends())
         specs = (*(each.spec for each in self.expectations), *map(as_expectation, ends))
         return merged(spec.observations() for spec in specs)
 
@@ -91,7 +89,7 @@ def prepare(
     if reading.loaded is None:
         raise SpecError(reading.problems)
     try:
-        prepared = _prepared(reading.loaded, reading.missing)
+        prepared = _prepared(reading.loaded, reading)
     except SpecError as error:
         problems = _together(reading, error.problems)
         raise SpecError(_with_notes(problems, reading.loaded.notes)) from error
@@ -112,21 +110,15 @@ def _with_notes(problems: Sequence[Problem], notes: Sequence[Problem]) -> list[P
 
 
 def _together(reading: Reading, more: Sequence[Problem]) -> list[Problem]:
-    """All problems, but those that may follow from another."""
+    """All problems; of those at one place only the first, from which others may follow."""
     places = {(problem.path, problem.line, problem.column) for problem in reading.problems}
-    return [
-        *reading.problems,
-        *(
-            problem
-            for problem in more
-            if (problem.path, problem.line, problem.column) not in places
-            and not any(f"'{word}'" in problem.message for word in reading.doubtful)
-        ),
-    ]
+    rest = (each for each in more if (each.path, each.line, each.column) not in places)
+    return [*reading.problems, *rest]
 
 
-def _prepared(loaded: LoadedScenario, missing: frozenset[Prerequisite]) -> Prepared:
+def _prepared(loaded: LoadedScenario, reading: Reading) -> Prepared:
     problems: list[Problem] = []
+    missing: frozenset[Prerequisite] = reading.missing
     try:
         description = _robot(loaded)
     except SpecError as error:
@@ -153,6 +145,7 @@ def _prepared(loaded: LoadedScenario, missing: frozenset[Prerequisite]) -> Prepa
         checks_per_second=STATE_CHECKS_PER_SECOND,
         check_mesh=_check_mesh,
         missing=missing,
+        doubtful=reading.doubtful,
     )
     notes = (*description.notes, *map(str, world.notes))
     try:

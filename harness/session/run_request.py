@@ -55,6 +55,7 @@ class RunRequest:
         strict: Whether a warning of a verdict fails the case.
         nodes: Commands by name that steps may start as ROS 2 nodes.
         share: Whether results are taken from other cases of the same command.
+        live: The Unix socket to which the case sends its poses while it runs; empty sends none.
     """
 
     file: Path
@@ -72,3 +73,4 @@ class RunRequest:
     strict: bool = False
     nodes: Mapping[str, str] = field(default_factory=dict[str, str])
     share: bool = True
+    live: str = ""

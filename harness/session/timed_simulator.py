@@ -2,20 +2,41 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from harness.core.trajectory import JointTrajectory
+from harness.core.types import FloatArray
 from harness.ports import GripperResult
 from harness.session.timing import Clock
 from harness.simulation.mujoco_simulator import MujocoSimulator
+from harness.simulation.set_points import SetPoints
+
+SAMPLES_BETWEEN_LOOKS = 32
+"""Samples between two calls of `watch`; the results do not depend on it."""
 
 
 class TimedSimulator(MujocoSimulator):
-    """The simulator, which measures the wall time of what moves apart from that of planning."""
+    """The simulator, which measures the wall time of what moves apart from that of planning.
+
+    Attributes:
+        watch: Called a few hundred times a second while the physics advances; None: never. What
+            it does must not change the simulator.
+    """
 
     def __init__(self, clock: Clock, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
         self._clock = clock
+        self.watch: Callable[[], None] | None = None
+
+    def _advance(self, points: SetPoints, controls: FloatArray) -> None:
+        if self.watch is None:
+            return super()._advance(points, controls)
+        for begin in range(0, len(points) - 1, SAMPLES_BETWEEN_LOOKS):
+            end = min(begin + SAMPLES_BETWEEN_LOOKS, len(points) - 1)
+            super()._advance(points.part(begin, end), controls[begin : end + 1])
+            self.watch()
+        return None
 
     def track(self, trajectory: JointTrajectory) -> None:
         with self._clock.part("simulate"):

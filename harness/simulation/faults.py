@@ -108,10 +108,14 @@ class MujocoFaults:
         self._waiting = np.tile(self._data.ctrl, (samples, 1))
         return before
 
-    def distorted(self, controls: FloatArray) -> FloatArray:
+    def distorted(self, controls: FloatArray, position_share: FloatArray) -> FloatArray:
         """The controls that arrive at the motors for the controls sent, both of shape (N + 1, m).
 
         Noise on a measured position acts on a servo like noise subtracted from its control.
+
+        Args:
+            controls: The controls that were sent.
+            position_share: 1 for a motor whose servo has a stiffness, else 0, shape (m,).
         """
         if not len(self._waiting) and not self._deviation:
             return controls
@@ -120,7 +124,7 @@ class MujocoFaults:
         arrived, self._waiting = sent[: count + 1], sent[count : len(sent) - 1]
         if self._deviation:
             self.noise = np.concatenate([self.noise[-1:], self._draw(count)])
-            return arrived - self.noise
+            return arrived - position_share * self.noise
         return arrived
 
     def measured_noise(self, samples: int) -> FloatArray:

@@ -21,11 +21,11 @@ from harness.robot.description import RobotDescription
 from harness.simulation.contact_record import BodyPair
 from harness.simulation.faults import MujocoFaults
 from harness.simulation.gripper_drive import GripperDrive
+from harness.simulation.joint_drive import JointDrive
 from harness.simulation.model import build_model
 from harness.simulation.objects import Objects, overlaps
 from harness.simulation.recording import Recording, refresh
 from harness.simulation.robot_mjcf import coupling
-from harness.simulation.servo import FeedForward
 from harness.simulation.set_points import SetPoints, sample_trajectory
 from harness.simulation.shared_physics import SharedPhysics
 from harness.simulation.snapshot import (
@@ -91,7 +91,7 @@ class MujocoSimulator:
         self._data.qpos[self.physics.qpos] = description.start_positions()
         self._coupling = coupling(description)
         self._offsets = description.with_mimics(np.zeros(len(description.joint_names)))
-        self._feed_forward = FeedForward(description, self.physics.servos, gravity)
+        self._drive = JointDrive(self.physics, self._data, gravity, timestep)
         self._command = description.start_positions()[self.physics.actuated]
         self._control = self._controls(self._still(self._command))[0]
         self._data.ctrl[:] = self._control
@@ -165,11 +165,7 @@ class MujocoSimulator:
         for begin in range(0, len(whole) - 1, CHECK_EVERY):
             end = min(begin + CHECK_EVERY, len(whole) - 1)
             first = self._recording.count
-            self._advance(
-                controls[begin : end + 1],
-                whole.positions[begin + 1 : end + 1],
-                whole.velocities[begin + 1 : end + 1],
-            )
+            self._advance(whole.part(begin, end), controls[begin : end + 1])
             self._command = whole.positions[end]
             self._refuse_lag(first, whole.positions[begin + 1 : end + 1, columns], columns)
         self.command(whole.positions[-1])
@@ -242,7 +238,9 @@ class MujocoSimulator:
     def snapshot(self) -> PhysicsState:
         """Everything that decides how the run goes on from here."""
         pending = None if self._gripper is None else self._gripper.pending
-        command = SimulatorCommand(self._command.copy(), self._control.copy(), self._grip, pending)
+        command = SimulatorCommand(
+            self._command.copy(), self._control.copy(), self._grip, pending, self._drive.copy()
+        )
         history, faults = self._objects.history, self.faults.state()
         return saved_state(self._model, self._data, command, self.sample_count, history, faults)
 
@@ -252,6 +250,7 @@ class MujocoSimulator:
         command = state.command
         self._command, self._control = command.positions.copy(), command.control.copy()
         self._grip = command.grip
+        self._drive.restore(command.controller)
         if self._gripper is not None:
             self._gripper.pending = command.pending
         self._objects.history = state.history
@@ -266,20 +265,17 @@ class MujocoSimulator:
     def hold_samples(self, count: int) -> None:
         """Hold the last commands for a number of samples."""
         self._recording.refuse_beyond(count)
-        shape = (count, len(self._command))
-        self._advance(
-            np.broadcast_to(self._control, (count + 1, len(self._command))),
-            np.broadcast_to(self._command, shape),
-            np.zeros(shape),
-        )
+        shape = (count + 1, len(self._command))
+        still = np.zeros(shape)
+        points = SetPoints(np.broadcast_to(self._command, shape), still, still)
+        self._advance(points, np.broadcast_to(self._control, shape))
 
     def limit_grip(self, actuator: int, effort: float) -> None:
         """Limit a gripper's effort, in addition to the effort that carries its own weight."""
         self._grip = actuator, effort
         effort *= self.faults.grip_share
         largest = self.physics.servos.effort[actuator]
-        still = np.zeros((1, len(self.physics.qpos)))
-        weight = self._feed_forward(self.joint_positions()[None], still, still)[0, actuator]
+        weight = self._drive.weight(self.joint_positions())[actuator]
         limits = np.clip([weight - effort, weight + effort], -largest, largest)
         self._model.actuator_forcerange[actuator] = limits
 
@@ -290,8 +286,8 @@ class MujocoSimulator:
 
     def follow(self, whole: SetPoints, begin: int, end: int) -> None:
         """Advance along set points of all actuated joints from row `begin` to row `end`."""
-        part = SetPoints(*(rows[begin : end + 1] for rows in vars(whole).values()))
-        self._advance(self._controls(part), part.positions[1:], part.velocities[1:])
+        part = whole.part(begin, end)
+        self._advance(part, self._controls(part))
         self._command = part.positions[-1]
 
     @property
@@ -342,11 +338,24 @@ class MujocoSimulator:
         accelerations[:, columns] = points.accelerations
         return SetPoints(positions, velocities, accelerations)
 
-    def _advance(
-        self, controls: FloatArray, commands: FloatArray, command_velocities: FloatArray
-    ) -> None:
-        """Step with the controls that arrive at the motors; record the commands."""
-        self._shared.advance(self.faults.distorted(controls), commands, command_velocities)
+    def _advance(self, points: SetPoints, controls: FloatArray) -> None:
+        """Step along set points, with the controls that arrive at the motors.
+
+        Args:
+            points: Set points of all actuated joints, the first row for now.
+            controls: Inputs of the motors at these; a controller that measures computes its own.
+        """
+        cycle = self._drive.cycle
+        if cycle is None:
+            self._step(points, controls)
+            return
+        for begin in range(0, len(points) - 1, cycle):
+            part = points.part(begin, min(begin + cycle, len(points) - 1))
+            self._step(part, self._drive.inputs(part, self.faults.measured_noise(1)[-1]))
+
+    def _step(self, points: SetPoints, controls: FloatArray) -> None:
+        arrived = self.faults.distorted(controls, self._drive.position_share)
+        self._shared.advance(arrived, points.positions[1:], points.velocities[1:])
 
     def _actuated_columns(self, joint_names: Sequence[str]) -> IntArray:
         places = [self.description.joint_index[name] for name in joint_names]
@@ -357,15 +366,10 @@ class MujocoSimulator:
         return SetPoints(command[None], still, still)
 
     def _controls(self, points: SetPoints) -> FloatArray:
-        """Servo inputs whose position, velocity and feed-forward parts follow the set points."""
-        servos = self.physics.servos
-        efforts = self._feed_forward(
-            points.positions @ self._coupling.T + self._offsets,
-            points.velocities @ self._coupling.T,
-            points.accelerations @ self._coupling.T,
-        )
-        lead = servos.damping / servos.stiffness
-        return points.positions + lead * points.velocities + efforts / servos.stiffness
+        """Inputs of the motors; those of a controller that measures are not known beforehand."""
+        if self._drive.cycle is not None:
+            return np.zeros_like(points.positions)
+        return self._drive.inputs(points)
 
     def _refuse_lag(self, first: int, commanded: FloatArray, columns: IntArray) -> None:
         tolerance = self.description.tracking.trajectory

@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import mujoco
 import numpy as np
 
@@ -11,7 +13,7 @@ from harness.core.geometry import Friction
 from harness.core.types import FloatArray
 from harness.robot.collision_shapes import convex_shapes
 from harness.robot.description import Inertial, Joint, RobotDescription
-from harness.robot.tree import carriers
+from harness.robot.tree import excluded_contacts
 from harness.simulation.geoms import Surfaces, add_collision_geom
 
 LINK_FRICTION = Friction()
@@ -67,7 +69,7 @@ def add_robot(spec: mujoco.MjSpec, description: RobotDescription, surfaces: Surf
     for joint in description.joints:
         if joint.mimic is not None:
             _couple(spec, joint)
-    _exclude_allowed_pairs(spec, description)
+    _exclude_contacts(spec, description)
 
 
 def set_inertia(body: mujoco.MjsBody, inertial: Inertial) -> None:
@@ -138,22 +140,11 @@ def _couple(spec: mujoco.MjSpec, joint: Joint) -> None:
     equality.solimp = MIMIC_SOLIMP
 
 
-def _exclude_allowed_pairs(spec: mujoco.MjSpec, description: RobotDescription) -> None:
-    """Exclude contacts between pairs that the SRDF allows, and between links that a joint connects.
-
-    MuJoCo excludes parent and child itself, except where the parent is static.
-    """
+def _exclude_contacts(spec: mujoco.MjSpec, description: RobotDescription) -> None:
+    """Exclude the contacts that the physics leaves out; MuJoCo has none between static links."""
     static = description.static_links
     shaped = [link.name for link in description.links if link.collisions]
-    carrier = carriers(description.joints, "world")
-    across = {
-        frozenset((carrier[joint.parent], carrier[joint.child]))
-        for joint in description.movable_joints
-    }
-    for index, first in enumerate(shaped):
-        for second in shaped[index + 1 :]:
-            if first in static and second in static:
-                continue
-            allowed = tuple(sorted((first, second))) in description.allowed_collisions
-            if allowed or frozenset((carrier[first], carrier[second])) in across:
-                spec.add_exclude(bodyname1=first, bodyname2=second)
+    excluded = excluded_contacts(description)
+    for first, second in combinations(shaped, 2):
+        if frozenset((first, second)) in excluded and not {first, second} <= static:
+            spec.add_exclude(bodyname1=first, bodyname2=second)

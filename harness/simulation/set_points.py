@@ -27,6 +27,10 @@ class SetPoints:
     def __len__(self) -> int:
         return len(self.positions)
 
+    def part(self, begin: int, end: int) -> SetPoints:
+        """The set points from one row to another, both included."""
+        return SetPoints(*(rows[begin : end + 1] for rows in vars(self).values()))
+
 
 def sample_trajectory(trajectory: JointTrajectory, timestep: float) -> SetPoints:
     """Sample the cubic Hermite splines through positions and velocities of a trajectory."""

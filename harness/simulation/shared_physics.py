@@ -26,6 +26,10 @@ SURFACES = ("geom_friction", "geom_priority", "pair_friction")
 """Arrays of the model that only contacts read."""
 
 
+SHORTEST = 8
+"""Steps of a stretch that is worth looking up."""
+
+
 @dataclass(frozen=True, eq=False)
 class _Stretch:
     """What was recorded in a stretch, and the state at its end."""
@@ -51,7 +55,7 @@ class SharedPhysics:
     ) -> None:
         """Step once for each row of `controls` except the last, as `Recording.advance` does."""
         recording, steps = self._recording, len(controls) - 1
-        if self._chain is None or self._chain.is_over or steps <= 0:
+        if self._chain is None or self._chain.is_over or steps < SHORTEST:
             recording.advance(controls, commands, command_velocities)
             if self._chain is not None:
                 self._chain.note(max(0, steps))

@@ -12,6 +12,7 @@ import mujoco
 import numpy as np
 
 from harness.core.types import FloatArray
+from harness.ports import JointController
 from harness.simulation.recording import refresh
 from harness.simulation.set_points import SetPoints
 
@@ -29,6 +30,8 @@ CHANGED_IN_PLACE = (
     "eq_obj1id",
     "eq_data",
     "actuator_forcerange",
+    "actuator_gainprm",
+    "actuator_biasprm",
     "pair_friction",
     "jnt_limited",
     "jnt_range",
@@ -49,12 +52,14 @@ class SimulatorCommand:
         control: Inputs of the servos, shape (m,).
         grip: The actuator and the effort limit of the gripper.
         pending: Set points of a gripper that sets out with the next motion.
+        controller: The joint controller, with its state.
     """
 
     positions: FloatArray
     control: FloatArray
     grip: tuple[int, float] | None
     pending: SetPoints | None
+    controller: JointController
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,6 +22,7 @@ class AddObject(Step):
     short_is_list = True
 
     verb: ClassVar[str] = "add_object"
+    moves_objects: ClassVar[bool] = True
 
     objects: Annotated[tuple[ObjectSpec, ...], Field(min_length=1)] = Field(
         description="One or several objects; a dynamic one falls from where it appears."

@@ -12,6 +12,7 @@ from harness.cell.scope import At
 from harness.language.base import Name
 from harness.language.files.source import Loc
 from harness.language.step import AnyStep, Block, Step
+from harness.recording.step_results import AllowedCollisions
 
 SPECIAL_BODIES = ("robot",)
 
@@ -20,6 +21,7 @@ class AllowCollisions(Step):
     """Allow collisions of pairs while the nested steps run."""
 
     verb: ClassVar[str] = "allow_collisions"
+    results = (AllowedCollisions,)
 
     pairs: Annotated[tuple[tuple[Name, Name], ...], Field(min_length=1)] = Field(
         description="Pairs of names of links or objects that may touch."
@@ -41,7 +43,7 @@ class AllowCollisions(Step):
 
     def execute(self, cell: Cell) -> None:
         """Allow the pairs, run the nested steps, and check the pairs again, whatever happened."""
-        cell.notes.result["allowed_collisions"] = [list(pair) for pair in self.pairs]
+        cell.report(AllowedCollisions(self.pairs))
         cell.scene.set_allowed(self.pairs, allowed=True)
         cell.allowed.append(self.pairs)
         try:

@@ -11,6 +11,7 @@ from harness.cell.cell import Cell
 from harness.cell.scope import At
 from harness.language.base import Name
 from harness.language.step import Step
+from harness.recording.looks import TakenPicture
 
 
 class Capture(Step):
@@ -19,6 +20,8 @@ class Capture(Step):
     short = "camera"
 
     verb: ClassVar[str] = "capture"
+    synonyms = ("photo", "take_picture", "snapshot")
+    results = (TakenPicture,)
 
     camera: Name = Field(description="The name of the camera.")
     kinds: Annotated[
@@ -41,9 +44,5 @@ class Capture(Step):
         now = cell.simulator.time
         taken = math.floor(now * camera.update_rate + 1e-6) + 1
         cell.simulator.hold(taken / camera.update_rate - now)
-        cell.notes.result.update(
-            camera=self.camera,
-            kinds=list(self.kinds),
-            time=cell.simulator.time,
-            sample=cell.simulator.sample_count - 1,
-        )
+        sample = cell.simulator.sample_count - 1
+        cell.report(TakenPicture(self.camera, self.kinds, cell.simulator.time, sample))

@@ -23,7 +23,7 @@ from harness.ports import (
     WaypointMotion,
 )
 from harness.ports import JumpThreshold as PlannedJumpThreshold
-from harness.recording.explanation import CartesianPathResult
+from harness.recording.step_results import CartesianPathResult
 
 
 class JumpThresholdSpec(SpecModel):
@@ -102,7 +102,7 @@ class CartesianPath(Step):
         except PlanningFailed as failure:
             followed = failure.details.find(CartesianPathResult)
             if followed is not None:
-                cell.notes.result.update(replace(followed, min_fraction=None).plain())
+                cell.report(replace(followed, min_fraction=None))
             raise
 
 

@@ -18,6 +18,8 @@ class Circ(ArcFields, Step):
     """Pilz CIRC: the link moves on an arc, through `interim` or about `center`."""
 
     verb: ClassVar[str] = "circ"
+    synonyms = ("movec", "arc")
+    is_arc: ClassVar[bool] = True
     moves_arm: ClassVar[bool] = True
 
     def check(self, at: At) -> None:

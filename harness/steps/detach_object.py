@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import ClassVar
 
 from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
+from harness.core.details import Detail
 from harness.language.base import Name
 from harness.language.step import Step
+
+
+@dataclass(frozen=True)
+class Detached(Detail):
+    """The object that is attached no more, by name."""
+
+    detached: str
 
 
 class DetachObject(Step):
@@ -18,6 +27,8 @@ class DetachObject(Step):
     short = "object"
 
     verb: ClassVar[str] = "detach_object"
+    detaches_object: ClassVar[bool] = True
+    results = (Detached,)
 
     object: Name = Field(description="The name of the object.")
 
@@ -33,4 +44,4 @@ class DetachObject(Step):
     def execute(self, cell: Cell) -> None:
         """Detach the object; it stays in the planning scene where it is."""
         cell.detach(self.object)
-        cell.notes.result["detached"] = self.object
+        cell.report(Detached(self.object))

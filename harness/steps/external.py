@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import ClassVar
 
 from pydantic import Field
@@ -11,9 +12,9 @@ from harness.cell.cell import Cell
 from harness.cell.scope import At
 from harness.core.errors import StepFailed
 from harness.language.base import Name, PositiveDuration
-from harness.language.expectation import AnyExpectation
+from harness.language.expectation import AnyExpectation, ExpectationFields
 from harness.language.step import Step
-from harness.ports import ExternalRequest
+from harness.ports import ExternalRequest, ExternalResult
 from harness.recording.execution_failures import TimeoutFailure
 
 DEFAULT_TIMEOUT = 60.0  # [s] of simulation
@@ -28,6 +29,7 @@ class External(Step):
     """
 
     verb: ClassVar[str] = "external"
+    results = (ExternalResult,)
 
     timeout: PositiveDuration | None = Field(
         default=DEFAULT_TIMEOUT,
@@ -46,6 +48,10 @@ class External(Step):
 
     def summary(self) -> str:
         return f"nodes, up to {self.timeout or DEFAULT_TIMEOUT:g} s"
+
+    def ends(self) -> Iterator[ExpectationFields]:
+        if self.until is not None:
+            yield self.until
 
     def check(self, at: At) -> None:
         at.scope.take_time(self.timeout or DEFAULT_TIMEOUT, at.key("timeout"))
@@ -75,9 +81,7 @@ class External(Step):
         begin = cell.simulator.time
         request = ExternalRequest(step.id, step.line, timeout, self.until, self.launch or "")
         result = cell.external.hand_over(request)
-        cell.notes.result.update(
-            ended_by=result.ended_by, commands=result.commands, detail=result.detail
-        )
+        cell.report(result)
         if self.until is None or result.ended_by == "until":
             return
         spent = cell.simulator.time - begin

@@ -11,7 +11,8 @@ from harness.cell.scope import At
 from harness.core.errors import StepFailed
 from harness.language.base import JointEffort, JointValue, Name
 from harness.language.step import Step
-from harness.recording.execution_failures import GraspFailure
+from harness.recording.execution_failures import GraspFailure, GripperOutcome
+from harness.recording.step_results import GraspMode
 from harness.steps.gripper import DEFAULT_TIMEOUT, check_gripper_position, note_result
 
 GripperAction = Literal["friction", "weld"]
@@ -27,6 +28,9 @@ class Grasp(Step):
     short = "object"
 
     verb: ClassVar[str] = "grasp"
+    moves_gripper: ClassVar[bool] = True
+    keeps_arm_still: ClassVar[bool] = True
+    results = (GripperOutcome, GraspMode)
 
     object: Name = Field(description="The name of the object.")
     mode: GripperAction = Field(
@@ -65,7 +69,7 @@ class Grasp(Step):
             target, self.max_effort or hand.grip_effort, timeout=self.timeout or DEFAULT_TIMEOUT
         )
         outcome = note_result(cell, target, result)
-        cell.notes.result["mode"] = self.mode
+        cell.report(GraspMode(self.mode))
         empty = [side for side, names in result.contacts.items() if self.object not in names]
         if empty:
             message = _missed(self.object, empty, cell)

@@ -26,6 +26,10 @@ class Gripper(Step):
     short = "named_target"
 
     verb: ClassVar[str] = "gripper"
+    synonyms = ("open_gripper", "close_gripper", "hand")
+    moves_gripper: ClassVar[bool] = True
+    keeps_arm_still: ClassVar[bool] = True
+    results = (GripperOutcome,)
 
     named_target: Name | None = Field(
         default=None, description="The gripper moves to this SRDF group state."
@@ -132,7 +136,7 @@ def note_result(cell: Cell, target: float, result: GripperResult) -> GripperOutc
         reached_goal=result.reached_goal,
         contacts=result.contacts,
     )
-    cell.notes.result.update(outcome.plain())
+    cell.report(outcome)
     return outcome
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -11,7 +11,7 @@ from harness.cell.cell import Cell
 from harness.cell.scope import At
 from harness.language.base import Angle, Duration, Force, Fraction, Name, Number, PositiveDuration
 from harness.language.step import Step
-from harness.recording.faults import FaultKind, InjectedFault
+from harness.recording.faults import FaultKind, InjectedFault, InjectedFaults
 
 PushForce = tuple[Force, Force, Force]
 
@@ -23,6 +23,7 @@ class Inject(Step):
     """
 
     verb: ClassVar[str] = "inject"
+    results = (InjectedFaults,)
 
     friction: dict[Name, Annotated[Number, Field(ge=0, le=100)]] | None = Field(
         default=None,
@@ -97,10 +98,11 @@ class Inject(Step):
     def execute(self, cell: Cell) -> None:
         """Begin the faults; their effect is read from the recording after the run."""
         faults = cell.simulator.faults
-        done: list[dict[str, Any]] = cell.notes.result.setdefault("faults", [])
 
         def note(fault: FaultKind, target: str, before: object, after: object) -> None:
-            done.append(InjectedFault(fault, target, before, after).plain())
+            begun = cell.notes.result.find(InjectedFaults) or InjectedFaults(())
+            one = InjectedFault(fault, target, before, after)
+            cell.report(InjectedFaults((*begun.faults, one)))
 
         for name, sliding in (self.friction or {}).items():
             note("friction", name, faults.set_friction(name, sliding), sliding)

@@ -17,6 +17,7 @@ class MoveObject(Step):
     """Put an object somewhere else, at rest."""
 
     verb: ClassVar[str] = "move_object"
+    moves_objects: ClassVar[bool] = True
 
     object: Name = Field(description="The name of the object.")
     pose: Pose = Field(description="The object's new pose.")
@@ -31,4 +32,3 @@ class MoveObject(Step):
     def execute(self, cell: Cell) -> None:
         """Put the object somewhere else, at rest, in planning scene and physics."""
         cell.move_in_scene(self.object, cell.world_pose(self.pose))
-        cell.notes.result["moved"] = [self.object]

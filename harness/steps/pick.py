@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -16,12 +16,13 @@ from harness.cell.grasping import (
     check_opening,
     grasp_points,
     gripper_axes,
+    has_simple_shape,
     top_grasps,
     top_grasps_at,
 )
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
-from harness.core.details import Details
+from harness.core.details import Detail, Details
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
@@ -60,14 +61,22 @@ class Travel(SpecModel):
     )
 
 
+@dataclass(frozen=True)
+class GraspChoice(Detail):
+    """How many grasps there are, and which of them was taken, from 1."""
+
+    grasps: int
+    grasp: int = 1
+
+
 class Pick(Step):
     """Approach, grasp, lift; expands into the steps it is made of.
 
     Without a `grasp_pose` the object's shape gives the grasps from above that are as good as each
     other: half a turn of the gripper, a box's other side if it fits, eight turns about what is
-    round. With a `grasp_pose` that has no rotation the same rotations are tried at its point. The
-    first grasp that the arm can approach, and lift from, is taken; the step reports which `grasp`
-    of how many `grasps`.
+    round; a mesh, or several shapes, are taken as the box around them. With a `grasp_pose` that has
+    no rotation the same rotations are tried at its point. The first grasp that the arm can
+    approach, and lift from, is taken; the step reports which `grasp` of how many `grasps`.
 
     An arm of fewer than six joints turns to the object by itself: it grasps the middle of the
     object, or its upper part, with the first pitch of the gripper that works, from level (0) to
@@ -79,6 +88,7 @@ class Pick(Step):
     short = "object"
 
     verb: ClassVar[str] = "pick"
+    results = (GraspChoice,)
 
     object: Name = Field(description="The name of the object.")
     grasp_pose: Pose | None = Field(
@@ -166,7 +176,7 @@ def _approach(step: Pick, lift: MoveRelative, cell: Cell) -> list[ProgramStep]:
         for length in travel_lengths(step.approach)
         for number, goal in enumerate(goals)
     ]
-    cell.notes.result.update(grasps=len(goals), grasp=1)
+    cell.report(GraspChoice(len(goals)))
     search = GraspSearch(
         group_of(cell, step.group),
         cell.with_open_gripper(cell.planning_start()),
@@ -177,7 +187,7 @@ def _approach(step: Pick, lift: MoveRelative, cell: Cell) -> list[ProgramStep]:
         chosen = choose_approach(approaches, search, cell)
     except PlanningFailed as failure:
         raise with_advice(failure, pick_advice(step, failure, len(goals), cell)) from failure
-    cell.notes.result.update(grasp=chosen.number + 1)
+    cell.report(GraspChoice(len(goals), chosen.number + 1))
     return [
         cell.child(
             "reach", MoveTo(**chosen.before.keys, group=step.group), f"move_to before {step.object}"
@@ -296,8 +306,9 @@ def grasp_goals(step: Pick, cell: Cell) -> list[TcpGoal]:
             else top_grasps_at(given.translation, obj, object_pose, cell)
         )
         return [TcpGoal(world_pose_spec(pose)) for pose in poses]
-    check_opening(obj, object_pose, cell)
-    points = grasp_points(obj, object_pose) if given is None else [given.translation]
+    if given is None or has_simple_shape(obj):
+        check_opening(obj, object_pose, cell)
+    points = grasp_points(obj, object_pose, cell) if given is None else [given.translation]
     return [
         TcpGoal(Position(xyz=(float(x), float(y), float(z))), pitch)
         for x, y, z in points

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -15,6 +15,7 @@ from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach
 from harness.cell.grasping import UP, gripper_axes, matrix_pitch, turn_about
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
+from harness.core.details import Detail
 from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.spatial import SE3
 from harness.core.symmetry import equal_turns
@@ -50,6 +51,14 @@ TURNS_OF_ROUND = 8
 DEFAULT_RETREAT = Travel(min_distance=0.03, max_distance=0.1)
 
 
+@dataclass(frozen=True)
+class TurnChoice(Detail):
+    """How many turns of the object there are, and which of them was taken, from 1."""
+
+    turns: int
+    turn: int = 1
+
+
 class Place(Step):
     """Approach, lower, release, retreat; expands into the steps it is made of.
 
@@ -62,6 +71,7 @@ class Place(Step):
     """
 
     verb: ClassVar[str] = "place"
+    results = (TurnChoice,)
 
     object: Name | None = Field(
         default=None,
@@ -138,7 +148,7 @@ def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
         for length in travel_lengths(step.approach)
         for number, (target, goal) in enumerate(zip(targets, goals, strict=True))
     ]
-    cell.notes.result.update(turns=len(targets), turn=1)
+    cell.report(TurnChoice(len(targets)))
     refused: list[Touch] = []
     search = GraspSearch(
         group_of(cell, step.group),
@@ -154,7 +164,7 @@ def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
     least = max(refused, key=lambda touch: touch.distance, default=None)
     if least is not None and least.distance < -DEEPEST_OPENING:
         raise _no_room(name, least)
-    cell.notes.result.update(turn=chosen.number + 1)
+    cell.report(TurnChoice(len(targets), chosen.number + 1))
     return [
         cell.child(
             "reach",

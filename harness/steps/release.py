@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import ClassVar
 
 from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
+from harness.core.details import Detail
 from harness.core.errors import StepFailed
 from harness.language.base import JointValue, Name
 from harness.language.step import Step
+from harness.recording.execution_failures import GripperOutcome
 from harness.steps.gripper import DEFAULT_TIMEOUT, note_result
+
+
+@dataclass(frozen=True)
+class Released(Detail):
+    """The object that the gripper let go, by name."""
+
+    released: str
 
 
 class Release(Step):
@@ -20,6 +30,10 @@ class Release(Step):
     short = "object"
 
     verb: ClassVar[str] = "release"
+    moves_gripper: ClassVar[bool] = True
+    keeps_arm_still: ClassVar[bool] = True
+    detaches_object: ClassVar[bool] = True
+    results = (GripperOutcome, Released)
 
     object: Name | None = Field(
         default=None,
@@ -76,4 +90,4 @@ class Release(Step):
             message = f"{sides} still touches '{name}' with the gripper open"
             raise StepFailed("CONTROL_FAILED", message)
         cell.detach(name)
-        cell.notes.result["released"] = name
+        cell.report(Released(name))

@@ -3,20 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from pydantic import Field
 
 from harness.cell.cell import Cell
+from harness.core.details import Detail
 from harness.language.base import Count
 from harness.language.files.source import Loc
 from harness.language.step import AnyStep, Block, Step
+
+
+@dataclass(frozen=True)
+class Times(Detail):
+    """How many times the steps run."""
+
+    times: int
 
 
 class Repeat(Step):
     """Run the same steps several times; an `id` inside gets `#1`, `#2` ... appended to it."""
 
     verb: ClassVar[str] = "repeat"
+    results = (Times,)
 
     times: Annotated[Count, Field(ge=1, le=1000)] = Field(
         description="The steps run this many times."
@@ -35,5 +45,5 @@ class Repeat(Step):
 
     def execute(self, cell: Cell) -> None:
         """Run every time through; each step has a seed and a record of its own."""
-        cell.notes.result["times"] = self.times
+        cell.report(Times(self.times))
         cell.run_children()

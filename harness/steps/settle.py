@@ -19,6 +19,7 @@ class Settle(Step):
     short = "max_velocity"
 
     verb: ClassVar[str] = "settle"
+    keeps_arm_still: ClassVar[bool] = True
 
     max_velocity: Annotated[LinearVelocity, Field(gt=0)] = Field(
         default=1e-3,

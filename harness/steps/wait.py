@@ -18,6 +18,8 @@ class Wait(Step):
     short = "duration"
 
     verb: ClassVar[str] = "wait"
+    synonyms = ("sleep", "delay", "pause")
+    keeps_arm_still: ClassVar[bool] = True
 
     duration: PositiveDuration = Field(description="This much simulated time passes [s].")
 

@@ -14,6 +14,7 @@ from harness.language.files.source import Located, Source
 from harness.language.files.yaml_file import parse_yaml
 
 INDENT = "  "
+ROBOT_BLOCK = re.compile(r"^robot:.*(?:\n[ \t#].*|\n(?=[ \t\n#]))*", re.MULTILINE)
 STAND_IN = "wait: 1 ms"
 """The step that a scenario without steps is compiled with."""
 
@@ -30,6 +31,16 @@ def new_text(title: str, robot: Mapping[str, Plain], world: str) -> str:
         "planning: {max_velocity_scaling_factor: 0.3, max_acceleration_scaling_factor: 0.3}\n"
         "steps: []\n"
     )
+
+
+def robot_alone(text: str) -> str:
+    """The text of a scenario with the robot of a text that has mistakes elsewhere, and no more.
+
+    The text need not be YAML: its robot is the block of lines that begins with `robot:`.
+    """
+    block = ROBOT_BLOCK.search(text)
+    robot = block[0].rstrip() if block else "robot:"
+    return f"scenario: the robot alone\n{robot}\nsteps: []\n"
 
 
 def flow(value: Plain) -> str:
@@ -66,7 +77,7 @@ class Document:
         Raises:
             SpecError: It is not YAML, or not a mapping.
         """
-        self.text = text
+        self.text, self.name = text, name
         self.lines = text.splitlines()
         self.root: Located = parse_yaml(text, Source.of_text(name, text), [])
 
@@ -118,7 +129,7 @@ class Document:
         lines = self.lines[: first - 1] + self.lines[last:]
         if self.step_count == 1:
             lines[self.root.mapping()["steps"].key.line - 1] = "steps: []"
-        return Document(_joined(lines))
+        return self._with(lines)
 
     def with_object(self, spec: Mapping[str, Plain]) -> Document:
         """The document with an object; one of the same name in `objects` is replaced."""
@@ -133,7 +144,7 @@ class Document:
         first, last = self._extent("objects", names.index(name))
         if len(names) == 1:
             first = self.root.mapping()["objects"].key.line
-        return Document(_joined(self.lines[: first - 1] + self.lines[last:]))
+        return self._with(self.lines[: first - 1] + self.lines[last:])
 
     def object_names(self) -> list[str]:
         """Names of the objects in `objects`, in file order."""
@@ -165,7 +176,7 @@ class Document:
         margin = " " * column
         if given is None:
             added = [f"{margin}expect:", *(f"{margin}{INDENT}- {text}" for text in expectations)]
-            return Document(_joined([*self.lines[:last], *added, *self.lines[last:]]))
+            return self._with([*self.lines[:last], *added, *self.lines[last:]])
         items = given.value.items()
         if not items or self.lines[given.key.line - 1].rstrip().endswith("]"):
             raise SpecError([given.key.problem("write `expect` as a list over several lines")])
@@ -173,7 +184,11 @@ class Document:
         dash = " " * (len(self.lines[row - 1]) - len(self.lines[row - 1].lstrip()))
         end = self._end_of_item(row, len(dash), last)
         added = [f"{dash}- {text}" for text in expectations]
-        return Document(_joined([*self.lines[:end], *added, *self.lines[end:]]))
+        return self._with([*self.lines[:end], *added, *self.lines[end:]])
+
+    def _with(self, lines: Sequence[str]) -> Document:
+        """The document with other lines."""
+        return Document("\n".join(lines).rstrip("\n") + "\n", self.name)
 
     def _items(self, key: str) -> list[Located]:
         entry = self.root.mapping().get(key)
@@ -214,7 +229,7 @@ class Document:
         row = entry.key.line
         if not items:
             head = [*self.lines[: row - 1], f"{key}:"]
-            return Document(_joined([*head, *_item_lines(item, INDENT), *self.lines[row:]]))
+            return self._with([*head, *_item_lines(item, INDENT), *self.lines[row:]])
         dash = self.lines[self._first_line(key, 0) - 1]
         margin = dash[: len(dash) - len(dash.lstrip())]
         if index < len(items):
@@ -222,7 +237,7 @@ class Document:
         else:
             at = self._extent(key, len(items) - 1)[1]
         lines = [*self.lines[:at], *_item_lines(item, margin), *self.lines[at:]]
-        return Document(_joined(lines))
+        return self._with(lines)
 
     def _with_key(self, key: str, item: str) -> Document:
         """The document with a new list at the top level: objects stand before the steps."""
@@ -230,17 +245,13 @@ class Document:
         steps = self.root.mapping().get("steps")
         if key == "objects" and steps is not None:
             at = steps.key.line - 1
-            return Document(_joined([*self.lines[:at], *lines, *self.lines[at:]]))
-        return Document(_joined([*self.lines, *lines]))
+            return self._with([*self.lines[:at], *lines, *self.lines[at:]])
+        return self._with([*self.lines, *lines])
 
 
 def _item_lines(item: str, margin: str) -> list[str]:
     first, *rest = item.splitlines()
     return [f"{margin}- {first}", *(f"{margin}  {line}" for line in rest)]
-
-
-def _joined(lines: Sequence[str]) -> str:
-    return "\n".join(lines).rstrip("\n") + "\n"
 
 
 def _first_place(item: Located) -> int:

@@ -87,7 +87,7 @@ class StudioFiles:
             if looks_like_path and not (folder / given).resolve().is_relative_to(self.root):
                 line = next((n for n, t in enumerate(document.lines, 1) if words in t), 1)
                 message = f"`{words}` is outside {self.root}, where the studio reads nothing"
-                problems.append(Problem(self.path.name, line, 1, message))
+                problems.append(Problem(str(self.path), line, 1, message))
         if problems:
             raise SpecError(problems)
 

@@ -30,7 +30,7 @@ class GoalActions(LiveStudio):
         super().__init__(files, text, notice)
         self.follows = False
         self._drag: tuple[str, SE3, str] | None = None
-        self._goal = self.cell.tcp_pose()
+        self._goal = SE3.identity()
 
     def on_drag(self, client: int, phase: str, pose: SE3, name: str) -> None:
         """Keep the newest pose for the cell's thread; poses of spectators are put back."""

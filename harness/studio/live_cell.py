@@ -8,24 +8,17 @@ from pathlib import Path
 
 import numpy as np
 
-from harness.assertions.judge import judge
 from harness.cell.cell import Belief, Cell, Presence
 from harness.cell.program import ProgramStep
-from harness.core.activity import unobserved
 from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.engine.execute import OnStep, ProgramExecution
 from harness.planning.collision.scene import CoalScene, SceneState
 from harness.ports import MotionPlan, Touch
-from harness.recording.digest import digest
-from harness.recording.run import AttachmentRecord, Run, StepRecord, Verdict
+from harness.recording.run import AttachmentRecord, StepRecord
 from harness.robot.description import RobotDescription
-from harness.session.observe import observed_run, with_believed_poses
-from harness.session.pictures import Pictures
 from harness.session.prepare import Prepared, prepare
-from harness.session.record import executed_run
-from harness.session.run_request import RunRequest
 from harness.session.start import start_physics
 from harness.simulation.snapshot import PhysicsState
 from harness.studio.document import Document
@@ -57,21 +50,6 @@ class CellState:
     ended_early: str
 
 
-@dataclass(frozen=True, eq=False)
-class Judged:
-    """The verdicts on the steps executed so far.
-
-    Attributes:
-        digest: The digest of the run; empty while steps remain, or after motions by hand.
-        outcome: The outcome so far: `passed` or `failed`.
-    """
-
-    run: Run
-    verdicts: tuple[Verdict, ...]
-    outcome: str
-    digest: str
-
-
 class LiveCell:
     """The cell of a scenario, in any state between its start and its end, or moved by hand.
 
@@ -84,7 +62,7 @@ class LiveCell:
         is_by_hand: Whether something was moved by hand since the last snapshot.
     """
 
-    def __init__(self, path: Path, text: str, on_step: OnStep = _no_step) -> None:
+    def __init__(self, path: Path, document: Document, on_step: OnStep = _no_step) -> None:
         """Build the cell at the scenario's start.
 
         Raises:
@@ -95,7 +73,7 @@ class LiveCell:
         self.pace: Pace | None = None
         self.history: list[CellState] = []
         self.is_by_hand = False
-        self._build(Document(text))
+        self._build(document)
 
     # -- the scenario -------------------------------------------------------------------------
 
@@ -108,7 +86,7 @@ class LiveCell:
         Raises:
             SpecError: With every problem of the text; the cell is as it was.
         """
-        prepared = self._prepared(document)
+        prepared = self.prepared_as(document)
         is_same = document.base_key() == self.document.base_key()
         if not is_same or set(prepared.observed_links) - set(self.prepared.observed_links):
             self._build(document, prepared)
@@ -163,9 +141,27 @@ class LiveCell:
         return self.history[-1].is_run and not self.is_by_hand
 
     @property
+    def is_at_end(self) -> bool:
+        """Whether every step of the file was executed."""
+        return self.steps_done >= self.document.step_count
+
+    @property
+    def has_run_digest(self) -> bool:
+        """Whether a run of the file would have recorded the same, and no less."""
+        return self.is_run and self._has_same_links
+
+    @property
     def overlaps_at_start(self) -> tuple[Touch, ...]:
         """Bodies that overlap at the start, deepest first."""
         return self.simulator.overlaps_at_start
+
+    def prepared_as(self, document: Document) -> Prepared:
+        """A text as it is compiled in the place of the cell's own.
+
+        Raises:
+            SpecError: With every problem of the text.
+        """
+        return prepare(self.path, text=document.compiled_text())
 
     # -- executing steps ----------------------------------------------------------------------
 
@@ -260,7 +256,7 @@ class LiveCell:
     def _step_by_hand(self, text: str) -> ProgramStep:
         """A step as the scenario's next one would be, seed included."""
         document = self.document.with_step(text, self.steps_done)
-        prepared = self._prepared(document)
+        prepared = self.prepared_as(document)
         if document.base_key() != self.document.base_key():
             raise StepFailed("INVALID_OBJECT_NAME", "objects are added to the scenario's `objects`")
         return prepared.program.steps[self.steps_done]
@@ -351,51 +347,19 @@ class LiveCell:
                 poses[name] = self.scene.object_pose(name, positions)
         return poses
 
+    def object_vectors(self) -> dict[str, FloatArray]:
+        """T_world_object (xyz, quat wxyz) of every object that is there, shape (7,) each."""
+        return {name: pose.as_vector() for name, pose in self.object_poses().items()}
+
     def nearest_pair(self) -> tuple[Touch, FloatArray] | None:
         """The pair of bodies with the smallest clearance now, and its nearest points, (2, 3)."""
         self.cell.sync_scene()
         return self.scene.nearest_points(self.joint_positions())
 
-    # -- verdicts -----------------------------------------------------------------------------
-
-    def judged(self) -> Judged:
-        """Verdicts on the samples so far; the digest once a run would be at its end.
-
-        They are what a run measures and judges: the same functions, on the same samples.
-        """
-        return self._judged(self.prepared)
-
-    def judged_as(self, document: Document) -> Judged:
-        """Verdicts on the samples so far, as a text with other expectations has them."""
-        return self._judged(
-            replace(self.prepared, expectations=self._prepared(document).expectations)
-        )
-
-    def _judged(self, prepared: Prepared) -> Judged:
-        request = RunRequest(self.path, text=self.document.text)
-        execution = self.execution.finish()
-        signals = with_believed_poses(prepared, execution, self.simulator.finish())
-        run = executed_run(request, prepared, execution, signals, self.overlaps_at_start)
-        with Pictures(request, prepared, run) as pictures:
-            run = pictures.captured(observed_run(prepared, run), unobserved)
-        verdicts = judge(run, prepared.expectations)
-        is_over = self.steps_done >= self.document.step_count or bool(execution.ended_early)
-        is_good = not run.ended_early and all(each.status == "passed" for each in verdicts)
-        is_whole = is_over and self.is_run and self._has_same_links
-        return Judged(
-            run,
-            verdicts,
-            "passed" if is_good else "failed",
-            digest(run, verdicts) if is_whole else "",
-        )
-
     # -- inside -------------------------------------------------------------------------------
 
-    def _prepared(self, document: Document) -> Prepared:
-        return prepare(self.path, text=document.compiled_text())
-
     def _build(self, document: Document, prepared: Prepared | None = None) -> None:
-        prepared = prepared or self._prepared(document)
+        prepared = prepared or self.prepared_as(document)
         simulator = start_physics(prepared, frames=prepared.observed_links, kind=LiveSimulator)
         assert isinstance(simulator, LiveSimulator)
         self.document, self.prepared, self.simulator = document, prepared, simulator

@@ -12,21 +12,22 @@ from typing import Any
 import numpy as np
 import viser
 
-from harness.core.errors import Problem
+from harness.core.errors import Problem, SpecError
 from harness.core.printable import printable
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.ports import Touch
 from harness.recording.run import StepRecord
+from harness.studio.document import Document, robot_alone
 from harness.studio.files import StudioFiles
-from harness.studio.live_cell import Judged, LiveCell
+from harness.studio.live_camera import LiveCamera
+from harness.studio.live_cell import LiveCell
+from harness.studio.live_verdicts import LiveVerdicts
 from harness.studio.messages import (
     Message,
     cell_message,
     problem_message,
-    reach_of,
     robot_message,
-    verdicts_message,
 )
 from harness.studio.reach import Reach, ReachStudy
 from harness.studio.scene_view import SceneView
@@ -40,20 +41,23 @@ MEASURED_EVERY = 5
 
 
 class LiveStudio(ABC):
-    """The cell's thread: physics that goes on, joints that are moved by hand, what pages see."""
+    """The cell's thread: physics that goes on, joints that are moved by hand, what pages see.
+
+    Attributes:
+        text: The text in the editor, with mistakes or without.
+        saved: The text of the file.
+        problems: The mistakes of `text`; the cell is then that of an earlier text, or the robot
+            alone, or there is none.
+    """
 
     def __init__(self, files: StudioFiles, text: str, notice: str = "") -> None:
-        """Build the cell.
-
-        Raises:
-            SpecError: The text has mistakes.
-        """
+        """Build the cell of a text, or of its robot alone where it has mistakes."""
         self.files = files
         self.text = self.saved = text
         self.notice = notice
         self.problems: list[Problem] = []
-        self.cell = LiveCell(files.path, text, self._on_step)
-        self.cell.pace = self._pace
+        self._cell: LiveCell | None = None
+        self.is_alone = False
         self.session = Session(
             self.do,
             self._frame,
@@ -70,7 +74,7 @@ class LiveStudio(ABC):
         self.study: ReachStudy | None = None
         self.reach: Reach | None = None
         self.chosen: FloatArray | None = None
-        self.judged: Judged | None = None
+        self.verdicts, self.camera = LiveVerdicts(), LiveCamera()
         self._last_tick = self._last_scene = time.monotonic()
         self._due, self._frames = 0.0, 0
         self.nearest: Touch | None = None
@@ -80,6 +84,53 @@ class LiveStudio(ABC):
             for name in dir(self)
             if name.startswith("do_")
         }
+
+        self.take_text(text)
+
+    # -- the text and its cell ----------------------------------------------------------------
+
+    @property
+    def cell(self) -> LiveCell:
+        """The live cell.
+
+        Raises:
+            RefusedError: There is none: the text never had a robot that can be loaded.
+        """
+        if self._cell is None:
+            raise RefusedError("there is no robot yet: correct the marked lines first")
+        return self._cell
+
+    def take_text(self, text: str) -> bool:
+        """Compile a text; with mistakes, the cell stays, or is the robot alone.
+
+        Returns:
+            Whether the cell was built, or built again.
+        """
+        self.text, self.problems = text, []
+        try:
+            is_new = self._compile(text)
+        except SpecError as error:
+            self.problems = list(error.problems)
+        else:
+            self.is_alone = False
+            return is_new
+        if self._cell is not None and not self.is_alone:
+            return False
+        try:
+            is_new = self._compile(robot_alone(text))
+        except SpecError:
+            return False
+        self.is_alone = True
+        return is_new
+
+    def _compile(self, text: str) -> bool:
+        document = Document(text, str(self.files.path))
+        self.files.refuse_outside(document)
+        if self._cell is not None:
+            return self._cell.load(document)
+        self._cell = LiveCell(self.files.path, document, self._on_step)
+        self._cell.pace = self._pace
+        return True
 
     # -- the server and the thread ------------------------------------------------------------
 
@@ -96,17 +147,18 @@ class LiveStudio(ABC):
         """End; unsaved work stays in its file."""
         self.stopping.set()
         self.session.stop()
+        self.verdicts.forget()
+        self.camera.look("")
 
     def show_cell(self) -> None:
-        if self.view is None:
+        if self.view is None or self._cell is None:
             return
         self.object_handle = ""
         cell = self.cell
         program = cell.prepared.program
-        reach = reach_of(cell)
-        self.view.show_cell(program.description, cell.prepared.kinematics, cell.tcp_pose(), reach)
+        self.view.show_cell(program.description, cell.tcp_pose())
         self.view.show_objects(program.all_objects())
-        self.view.move(cell.joint_positions(), cell.object_poses())
+        self.view.move(cell.joint_positions(), cell.object_vectors())
         self.study = self.reach = self.chosen = self.target = None
 
     def _pace(self, samples: int) -> bool:
@@ -126,11 +178,18 @@ class LiveStudio(ABC):
     def _frame(self, is_due: bool) -> None:
         now = time.monotonic()
         elapsed, self._last_tick = min(0.1, now - self._last_tick), now
+        if self._cell is None:
+            return
+        if self.session.viewers:
+            self.camera.draw(self._cell)
+        for message in (self.verdicts.taken(), self.camera.taken()):
+            if message is not None:
+                self.session.broadcast(message)
         if not self.busy and self.is_playing and self.session.viewers:
             self._go_on(elapsed * (self.speed or 1.0))
         if self.view is not None and now - self._last_scene >= 0.9 * FRAME:
             self._last_scene = now
-            self.view.move(self.cell.joint_positions(), self.cell.object_poses())
+            self.view.move(self.cell.joint_positions(), self.cell.object_vectors())
         if is_due and self.session.viewers:
             self._frames += 1
             if self._frames % MEASURED_EVERY == 0 and not self.busy:
@@ -140,7 +199,8 @@ class LiveStudio(ABC):
     def _recover(self) -> None:
         """Stand still where the steps executed so far left the cell."""
         self.is_playing, self.target = False, None
-        self.cell.restore(self.cell.steps_done)
+        if self._cell is not None:
+            self.cell.restore(self.cell.steps_done)
 
     def _measure_clearance(self) -> None:
         found = self.cell.nearest_pair()
@@ -162,7 +222,10 @@ class LiveStudio(ABC):
         if event == "step_started":
             self.busy = step.summary
             self.session.frame()
-        elif record is not None and record.status == "failed":
+            return
+        if self.cell.document.step_count and not self.cell.is_by_hand:
+            self.verdicts.begin(self.cell, is_last=False)
+        if record is not None and record.status == "failed":
             self.say("failed", f"{record.summary}: {record.error_code}: {record.message}")
 
     def working(self, what: str, action: Callable[[], None]) -> None:
@@ -194,17 +257,20 @@ class LiveStudio(ABC):
         try:
             return self._actions[name](message)
         finally:
-            self.session.broadcast(self.state_message())
+            if self._cell is not None:
+                self.session.broadcast(self.state_message())
 
     def say(self, kind: str, text: str) -> None:
         self.session.broadcast({"type": "note", "kind": kind, "text": printable(text)})
 
     def _greeting(self) -> list[Message]:
-        messages = [robot_message(self.cell), self.document_message(), self.state_message()]
+        messages = [self.document_message()]
+        if self._cell is not None:
+            messages = [robot_message(self.cell), *messages, self.state_message()]
         if self.notice:
             messages.append({"type": "note", "kind": "warning", "text": self.notice})
-        if self.judged is not None:
-            messages.append(verdicts_message(self.judged))
+        if self.verdicts.message is not None:
+            messages.append(self.verdicts.message)
         return messages
 
     def document_message(self) -> Message:
@@ -213,8 +279,9 @@ class LiveStudio(ABC):
             "text": self.text,
             "file": str(self.files.path.name),
             "is_saved": self.text == self.saved,
-            "problems": [problem_message(problem) for problem in self.problems],
-            "step_lines": self.cell.document.step_lines(),
+            "problems": [problem_message(each, str(self.files.path)) for each in self.problems],
+            "step_lines": [] if self._cell is None else self.cell.document.step_lines(),
+            "scene": "none" if self._cell is None else "robot" if self.is_alone else "whole",
         }
 
     def state_message(self) -> Message:
@@ -226,6 +293,7 @@ class LiveStudio(ABC):
             if nearest is None
             else [nearest.first, nearest.second, round(nearest.distance, 5)],
             "busy": self.busy,
+            "is_judging": self.verdicts.is_busy,
             "is_playing": self.is_playing,
             "speed": self.speed,
             "share": self.share,
@@ -303,7 +371,8 @@ class LiveStudio(ABC):
         return {}
 
     def after_jump(self) -> None:
-        self.study = self.judged = None
+        self.study = None
+        self.verdicts.forget()
         self.clear_preview()
         if self.view is not None:
             self.view.move_handle(self.cell.tcp_pose())

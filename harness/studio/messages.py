@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,10 +10,12 @@ import numpy as np
 from harness.core.errors import Problem
 from harness.core.printable import printable
 from harness.language.step import STEPS
-from harness.recording.run import StepRecord
+from harness.recording.run import StepRecord, Verdict
 from harness.reporting.explanation import explanation_lines
+from harness.reporting.result import StepLine
+from harness.studio.judging import Judged
 from harness.studio.language_help import Names
-from harness.studio.live_cell import Judged, LiveCell
+from harness.studio.live_cell import LiveCell
 from harness.studio.step_texts import MOTIONS
 
 Message = dict[str, Any]
@@ -82,23 +85,24 @@ def cell_message(cell: LiveCell) -> Message:
     }
 
 
-def names_of(cell: LiveCell) -> Names:
-    """Names that exist in a cell, for completion."""
+def names_of(cell: LiveCell | None) -> Names:
+    """Names that exist in a cell, for completion; without one, the bundled robots and worlds."""
     from harness.language.reading.load import bundled_worlds
     from harness.robot.load import gripper_names, robot_names
 
+    bundled = Names(worlds=bundled_worlds(), robots=robot_names(), grippers=gripper_names())
+    if cell is None:
+        return bundled
     description = cell.description
     gripper = description.gripper
-    return Names(
+    return replace(
+        bundled,
         states=list(description.states_of(description.arm_group)),
         gripper_states=[] if gripper is None else list(description.states_of(gripper.group)),
         joints=description.joint_names,
         links=description.link_names,
         objects=list(cell.cell.presence),
         groups=list(description.groups),
-        worlds=bundled_worlds(),
-        robots=robot_names(),
-        grippers=gripper_names(),
     )
 
 
@@ -114,37 +118,51 @@ def failure_message(record: StepRecord) -> Message:
 
 
 def verdicts_message(judged: Judged) -> Message:
-    """The verdicts, and what became of the steps of the file."""
+    """The verdicts, and what became of the steps of the file; `open` can still change."""
     return {
         "type": "verdicts",
         "outcome": judged.outcome,
         "digest": judged.digest,
         "steps": [
-            {"summary": printable(s.summary), "status": s.status, "line": s.line}
-            for s in judged.run.steps
-            if s.path.count("[") == 1 and "." not in s.path
+            step_message(step)
+            for step in judged.run.steps
+            if step.path.count("[") == 1 and "." not in step.path
         ],
         "verdicts": [
-            {
-                "text": printable(v.expectation),
-                "status": v.status,
-                "margin": None if v.margin is None or not np.isfinite(v.margin) else v.margin,
-                "unit": v.unit,
-                "line": v.line,
-                "reason": printable(v.reason),
-            }
-            for v in judged.verdicts
+            verdict_message(verdict, is_open=not is_decided)
+            for verdict, is_decided in zip(judged.verdicts, judged.is_decided, strict=True)
         ],
     }
 
 
-def problem_message(problem: Problem) -> Message:
-    """A mistake with its place."""
+def step_message(step: StepRecord | StepLine) -> Message:
+    """What became of a step."""
+    return {"summary": printable(step.summary), "status": step.status, "line": step.line}
+
+
+def verdict_message(verdict: Verdict, *, is_open: bool) -> Message:
+    """A verdict, which can still change where it is open."""
+    margin = verdict.margin
     return {
-        "line": problem.line,
+        "text": printable(verdict.expectation),
+        "status": verdict.status,
+        "open": is_open,
+        "margin": None if margin is None or not np.isfinite(margin) else margin,
+        "unit": verdict.unit,
+        "line": verdict.line,
+        "reason": printable(verdict.reason),
+    }
+
+
+def problem_message(problem: Problem, file: str) -> Message:
+    """A mistake with its place in a file; of one in another file, the text has the place."""
+    is_here = problem.path == file
+    where = "" if is_here else f"{problem.path}:{problem.line}: "
+    return {
+        "line": problem.line if is_here else 0,
         "column": problem.column,
         "length": problem.length,
-        "text": printable(problem.message),
+        "text": printable(f"{where}{problem.message}"),
         "hint": printable(problem.hint),
     }
 
@@ -156,14 +174,3 @@ def _width(cell: LiveCell) -> float | None:
     value = cell.joint_positions()[cell.description.joint_index[gripper.joint]]
     rows = gripper.widths[np.argsort(gripper.widths[:, 0])]
     return round(float(np.interp(value, rows[:, 0], rows[:, 1])), 5)
-
-
-def reach_of(cell: LiveCell) -> float:
-    """The length of the arm from its base to its TCP [m]: how far away the camera stands."""
-    description = cell.description
-    before = {joint.child: joint for joint in description.joints}
-    length, link = 0.0, description.tcp_link
-    while link in before and before[link].parent != "world":
-        length += float(np.linalg.norm(before[link].pose.translation))
-        link = before[link].parent
-    return max(0.2, length)

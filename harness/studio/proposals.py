@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from harness.studio.judging import judged
 from harness.studio.live_cell import LiveCell
 from harness.studio.step_texts import step_text
 
@@ -48,7 +49,7 @@ def holding(cell: LiveCell, proposed: list[Proposal]) -> list[Proposal]:
         return []
     document = cell.document.with_expectations([each.text for each in proposed], step)
     name = cell.execution.program.steps[step].id
-    verdicts = [each for each in cell.judged_as(document).verdicts if each.step == name]
+    verdicts = [each for each in judged(cell, document).verdicts if each.step == name]
     passed = [each.status == "passed" for each in verdicts[-len(proposed) :]]
     return [each for each, is_kept in zip(proposed, passed, strict=True) if is_kept]
 

@@ -15,8 +15,8 @@ from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sp
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
-from harness.ports import Kinematics
 from harness.robot.description import RobotDescription
+from harness.robot.forward_kinematics import LinkPoses, quats_wxyz
 
 MOST_TRIANGLES = 20_000
 """Triangles of the whole robot; its meshes are coarsened until they are no more."""
@@ -130,6 +130,16 @@ class _Body:
             self.handle.position, self.handle.wxyz = tuple(pose[:3]), tuple(pose[3:])
 
 
+def reach_of(description: RobotDescription) -> float:
+    """The length of the arm from its base to its TCP [m]: how far away the camera stands."""
+    before = {joint.child: joint for joint in description.joints}
+    length, link = 0.0, description.tcp_link
+    while link in before and before[link].parent != "world":
+        length += float(np.linalg.norm(before[link].pose.translation))
+        link = before[link].parent
+    return max(0.2, length)
+
+
 class SceneView:
     """Everything that viser shows of one cell; it is cleared and drawn again for another one."""
 
@@ -145,18 +155,17 @@ class SceneView:
         self._clearance: Any = None
         self._shapes: dict[str, list[Triangles]] = {}
 
-    def show_cell(
-        self, description: RobotDescription, kinematics: Kinematics, tcp_pose: SE3, reach: float
-    ) -> None:
-        """Draw another robot, without objects, and put the handle on its TCP."""
+    def show_cell(self, description: RobotDescription, tcp_pose: SE3 | None = None) -> None:
+        """Draw another robot, without objects, and put a handle on its TCP where it is given."""
         scene = self._server.scene
         scene.reset()
         self._objects, self._ghosts = {}, []
         self._path = self._object_handle = self._clearance = None
-        self._kinematics = kinematics
+        self._description = description
         self._shapes = robot_triangles(description)
-        center = kinematics.link_pose(description.start_positions(), description.base_link)
-        look_at = center.translation + np.array([0.0, 0.0, 0.3 * reach])
+        reach = reach_of(description)
+        [base] = self._link_poses(description.start_positions(), [description.base_link])
+        look_at = base[:3] + np.array([0.0, 0.0, 0.3 * reach])
         self._server.initial_camera.look_at = tuple(look_at)
         self._server.initial_camera.position = tuple(look_at + reach * np.array([1.1, -0.9, 0.6]))
         self._server.scene.set_up_direction("+z")
@@ -167,6 +176,8 @@ class SceneView:
             name: self._body(f"/robot/{name}", parts) for name, parts in self._shapes.items()
         }
         self._scale = 0.25 * reach
+        if tcp_pose is None:
+            return
         self.handle = scene.add_transform_controls(
             "/tcp", scale=self._scale, depth_test=False, line_width=3.0
         )
@@ -186,10 +197,10 @@ class SceneView:
             for obj in objects
         }
 
-    def move(self, joint_positions: FloatArray, objects: Mapping[str, SE3]) -> None:
+    def move(self, joint_positions: FloatArray, objects: Mapping[str, FloatArray]) -> None:
         """Show the robot at joint positions and the objects at their poses; others are hidden."""
         names = list(self._links)
-        poses = self._kinematics.link_poses(joint_positions[None], names)[0]
+        poses = self._link_poses(joint_positions, names)
         with self._server.atomic():
             for name, pose in zip(names, poses, strict=True):
                 self._links[name].move(pose)
@@ -197,7 +208,7 @@ class SceneView:
                 if body.handle.visible != (name in objects):
                     body.handle.visible = name in objects
                 if name in objects:
-                    body.move(objects[name].as_vector())
+                    body.move(objects[name])
 
     def show_ghosts(self, ways: Sequence[tuple[FloatArray, Color]]) -> None:
         """Show the robot a second time at each of some joint positions."""
@@ -215,9 +226,7 @@ class SceneView:
                 )
             for number, ghost in enumerate(self._ghosts):
                 is_shown = number < len(ways)
-                poses = (
-                    self._kinematics.link_poses(ways[number][0][None], names)[0] if is_shown else []
-                )
+                poses = self._link_poses(ways[number][0], names) if is_shown else []
                 for row, name in enumerate(names):
                     body = ghost[name]
                     if body.handle.visible != is_shown:
@@ -274,6 +283,13 @@ class SceneView:
         """Put the handle on a pose T_world_tcp."""
         vector = pose.as_vector()
         self.handle.position, self.handle.wxyz = tuple(vector[:3]), tuple(vector[3:])
+
+    def _link_poses(self, joint_positions: FloatArray, names: Sequence[str]) -> FloatArray:
+        """T_world_link (xyz, quat wxyz) of some links, shape (n, 7)."""
+        poses = LinkPoses(self._description, joint_positions, names)
+        translations = np.array([poses.translations[name][0] for name in names])
+        rotations = np.array([poses.rotations[name][0] for name in names])
+        return np.hstack([translations, quats_wxyz(rotations)])
 
     def _body(self, name: str, parts: Sequence[Triangles], opacity: float | None = None) -> _Body:
         scene = self._server.scene

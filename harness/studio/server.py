@@ -40,8 +40,8 @@ class PortInUseError(HarnessError):
     """Another program listens on the port."""
 
 
-def page_assets() -> dict[str, Asset]:
-    """The studio's page and scripts, the code editor's, and viser's client."""
+def page_assets(index: str = "index.html") -> dict[str, Asset]:
+    """A page of the studio at `/`, the scripts, the code editor's, and viser's client."""
     import django_static_ace_builds
 
     assets: dict[str, Asset] = {}
@@ -49,7 +49,7 @@ def page_assets() -> dict[str, Asset]:
         suffix = Path(each.name).suffix
         if suffix in KINDS:
             policy = PAGE_POLICY if suffix == ".html" else ""
-            name = "/" if each.name == "index.html" else f"/studio/{each.name}"
+            name = "/" if each.name == index else f"/studio/{each.name}"
             assets[name] = Asset.of(each.read_bytes(), KINDS[suffix], policy)
     theme = (files("harness.reporting.html") / "page" / "theme.css").read_bytes()
     assets["/studio/theme.css"] = Asset.of(theme, KINDS[".css"])

@@ -101,10 +101,11 @@ class Session:
         """Let the cell's thread do something."""
         self._jobs.put(job)
 
-    def broadcast(self, message: Message) -> None:
-        """Send a message to every page."""
+    def broadcast(self, message: Message, *, but: str = "") -> None:
+        """Send a message to every page, but one."""
         for viewer in tuple(self.viewers):
-            viewer.send(message)
+            if not but or viewer.name != but:
+                viewer.send(message)
 
     def frame(self) -> None:
         """Show the cell as it is now; called often, also while a step is executed."""

@@ -2,11 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-
-import cv2
-import numpy as np
-
 from harness.core.errors import SpecError
 from harness.core.printable import printable
 from harness.core.spatial import SE3
@@ -20,7 +15,6 @@ from harness.studio.messages import (
     failure_message,
     names_of,
     robot_message,
-    verdicts_message,
 )
 from harness.studio.proposals import holding, proposals
 from harness.studio.session import RefusedError
@@ -32,15 +26,10 @@ class Studio(GoalActions):
 
     @classmethod
     def opened(cls, files: StudioFiles, text: str, unsaved: str | None, notice: str) -> Studio:
-        """A studio on a file's text, in which unsaved work is shown as changes.
-
-        Raises:
-            SpecError: The file's text has mistakes.
-        """
-        files.refuse_outside(Document(text, str(files.path)))
+        """A studio on a file's text, in which unsaved work is shown as changes."""
         studio = cls(files, text, notice)
         if unsaved is not None:
-            studio.do_edit({"text": unsaved})
+            studio.take_text(unsaved)
         return studio
 
     def do_execute(self, message: Message) -> Message:
@@ -114,50 +103,32 @@ class Studio(GoalActions):
         self.do_handle({"name": name})
 
     def do_camera(self, message: Message) -> Message:
-        """The picture of a camera of the scenario, as it sees the cell now."""
-        from harness.cameras.camera_scene import CameraScene
-        from harness.cameras.ray_renderer import RayRenderer
-        from harness.robot.forward_kinematics import robot_poses
-
-        program = self.cell.prepared.program
-        camera = program.cameras[str(message["name"])]
-        scene = CameraScene(program.description, program.all_objects(), [camera])
-        poses = robot_poses(program.description, self.cell.joint_positions())
-        poses |= self.cell.object_poses()
-        scene.picture.pose(poses)
-        view = scene.view(camera, poses)
-        if view is None:
-            raise RefusedError(f"'{camera.frame}', which carries the camera, is not there")
-        picture = RayRenderer(scene.picture, camera.width, camera.height).render(view)
-        _, encoded = cv2.imencode(".jpg", np.ascontiguousarray(picture[:, :, ::-1]))
-        return {"image": base64.b64encode(encoded.tobytes()).decode()}
+        """Show what a camera of the scenario sees, until another is chosen, or none."""
+        name = str(message["name"])
+        if name and name not in self.cell.prepared.program.cameras:
+            raise RefusedError(f"there is no camera '{printable(name)}'")
+        self.camera.look(name)
+        return {}
 
     # -- the scenario -------------------------------------------------------------------------
 
     def do_edit(self, message: Message) -> Message:
         """Take the editor's text; its mistakes are returned with their places."""
         text = str(message["text"])
-        self.text = text
-        self.problems = []
-        try:
-            document = Document(text)
-            self.files.refuse_outside(document)
-            is_new = self.cell.load(document)
-        except SpecError as error:
-            self.problems = list(error.problems)
-        else:
-            if is_new:
-                self.judged = None
-                self.show_cell()
-                self.session.broadcast(robot_message(self.cell))
+        if self.take_text(text):
+            self.verdicts.forget()
+            self.show_cell()
+            self.session.broadcast(robot_message(self.cell))
         if text != self.saved:
             self.files.keep_unsaved(text)
-        return {"document": self.document_message()}
+        document = self.document_message()
+        self.session.broadcast(document, but=self.session.controller)
+        return {"document": document}
 
     def do_complete(self, message: Message) -> Message:
         """What may be written at a place of the text."""
         line, column = int(message["line"]), int(message["column"])
-        found = complete(str(message["text"]), line, column, names_of(self.cell))
+        found = complete(str(message["text"]), line, column, names_of(self._cell))
         return {"options": [{"text": o.text, "kind": o.kind, "help": o.help} for o in found]}
 
     def do_hover(self, message: Message) -> Message:
@@ -186,13 +157,9 @@ class Studio(GoalActions):
                 cell.run_steps(count)
             else:
                 cell.go_to(count)
-            self.busy = "judging"
-            self.session.broadcast(self.state_message())
-            self.judged = cell.judged()
 
         self.working("running", action)
-        assert self.judged is not None
-        self.session.broadcast(verdicts_message(self.judged))
+        self.verdicts.begin(cell, is_last=True)
         failed = next((r for r in cell.execution.records if r.status == "failed"), None)
         return {} if failed is None else failure_message(failed)
 
@@ -231,17 +198,19 @@ class Studio(GoalActions):
         texts = [str(text) for text in message["texts"]]
         step = self.cell.steps_done - 1
         self._take_text(self.cell.document.with_expectations(texts, step).text)
+        self.verdicts.begin(self.cell, is_last=True)
         return {}
 
     def do_save(self, message: Message) -> Message:
         """Write the file; the digest is that of the last whole run of this text."""
+        judged = self.verdicts.taken(wait=True)
+        if judged is not None:
+            self.session.broadcast(judged)
         self._refuse_mistakes()
         path = self.files.save(str(message.get("name") or self.files.path.name), self.text)
         self.saved = self.text
         self.session.broadcast(self.document_message())
-        judged = self.judged
-        is_current = judged is not None and judged.digest and judged.run.source == self.text
-        return {"file": path.name, "digest": judged.digest if judged and is_current else ""}
+        return {"file": path.name, "digest": self.verdicts.digest_of(self.text)}
 
     def _refuse_mistakes(self) -> None:
         if self.problems or self.text != self.cell.document.text:
@@ -249,13 +218,13 @@ class Studio(GoalActions):
 
     def _take_text(self, text: str) -> None:
         """Make a text the scenario's, and show it on every page."""
-        document = Document(text)
+        document = Document(text, str(self.files.path))
         self.files.refuse_outside(document)
         is_new = self.cell.load(document)
         self.text, self.problems = text, []
         self.files.keep_unsaved(text)
         if is_new:
-            self.judged = None
+            self.verdicts.forget()
             self.show_cell()
         self.session.broadcast(robot_message(self.cell))
         self.session.broadcast(self.document_message())

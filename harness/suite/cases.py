@@ -50,6 +50,11 @@ def run_job(job: RunRequest, notify: Callable[[ProgressEvent], None]) -> CaseRes
         from harness.ros.bridge import run_with_nodes
 
         return run_with_nodes(job, notify)
+    if job.live:
+        from harness.session.live_stream import LiveStream
+
+        with LiveStream(job.live) as stream:
+            return session.run_case(job, stream.with_events(notify), start=stream.start_case)
     return session.run_case(job, notify)
 
 

@@ -51,6 +51,7 @@ class SuiteRequest:
         nodes: Commands by name that steps may start as ROS 2 nodes.
         conditions: Samples to run instead of those that the files draw; all of them count.
         share: Whether cases take results from each other.
+        live: The Unix socket to which the cases send their poses; empty sends none.
     """
 
     expression: str = ""
@@ -68,6 +69,7 @@ class SuiteRequest:
     nodes: Mapping[str, str] = field(default_factory=dict[str, str])
     conditions: SampledConditions | None = None
     share: bool = True
+    live: str = ""
 
 
 @dataclass(frozen=True)
@@ -211,6 +213,7 @@ def _job(file: Path, case: Case, folder: Path | None, request: SuiteRequest) -> 
         strict=request.strict,
         nodes=request.nodes,
         share=request.share,
+        live=request.live,
     )
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, cast
 from harness import __version__
 from harness.core.errors import HarnessError
 from harness.core.printable import json_printable
+from harness.recording.older_runs import in_present_words
 from harness.recording.plain import to_plain
 from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
@@ -21,7 +22,8 @@ from harness.session.run_request import RunRequest
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
 
-FORMAT = "armharness-stream/1"
+FORMAT = "armharness-stream/2"
+KNOWN_FORMATS = ("armharness-stream/1", FORMAT)
 FILE = "results.jsonl"
 MESHES = (".stl", ".obj", ".dae")
 INPUTS = (
@@ -149,9 +151,9 @@ def entry_of(line: bytes) -> StreamEntry | None:
     """A line of a stream; None where it was cut off or has another format."""
     try:
         entry = cast("dict[str, Any]", json.loads(line))
-        if entry["format"] != FORMAT:
+        if entry["format"] not in KNOWN_FORMATS:
             return None
-        result = result_of(entry["result"])
+        result = result_of(in_present_words(entry["result"]))
         tags = tuple(map(str, entry.get("tags", ())))
         return StreamEntry(str(entry["key"]), result, dict(entry.get("values", {})), tags)
     except (ValueError, KeyError, TypeError, RecursionError):

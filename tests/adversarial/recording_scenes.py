@@ -134,6 +134,41 @@ def chosen_steps(recording, run):
     return recording
 
 
+def twice_as_fast(recording, _run):
+    """The simulated clock ran at half speed."""
+    for message in recording.messages:
+        message.stamp = GAZEBO_STARTED + (message.stamp - GAZEBO_STARTED) / 2
+    return recording
+
+
+def stuck_positions(recording, _run):
+    """A driver repeats positions from 1.4 s on, and goes on reporting velocities."""
+    last = []
+    for message in recording.of("/joint_states"):
+        if "joint1" in message.content["name"]:
+            last = message.content["position"] if message.stamp < GAZEBO_STARTED + 1.4 else last
+            message.content["position"] = last
+    return recording
+
+
+def exchanged_names(recording, _run):
+    """From 1.4 s on the first two joints have each other's names."""
+    other = {"joint1": "joint2", "joint2": "joint1"}
+    for message in recording.of("/joint_states"):
+        if message.stamp > GAZEBO_STARTED + 1.4:
+            message.content["name"] = [other.get(each, each) for each in message.content["name"]]
+    return recording
+
+
+def smoothed_velocities(recording, _run):
+    """Velocities are those of 40 ms before, as a filter makes them."""
+    states = [m for m in recording.of("/joint_states") if "joint1" in m.content["name"]]
+    velocities = [message.content["velocity"] for message in states]
+    for message, late in zip(states[2:], velocities, strict=False):
+        message.content["velocity"] = late
+    return recording
+
+
 @dataclass(frozen=True)
 class RecordingScene:
     """A damaged recording.
@@ -216,6 +251,22 @@ RECORDINGS = (
         chosen_steps, "during the step that it names the joint stays at its goal",
         lambda recording: abs(arm_positions(recording)[-1] - 0.6) < 0.05,
         {f"{{always: {{{ARRIVED}}}, during: swing}}": "steps"}, (ARRIVED, BOX_STANDS),
+    ),
+    RecordingScene(
+        "clock at half speed", "every stamp is half as far from the first one", twice_as_fast,
+        IN_RANGE, in_range, {"duration: {at_most: 2 s}": "velocities", ARRIVED: "velocities"},
+    ),
+    RecordingScene(
+        "positions that repeat", "from 1.4 s on the driver repeats the joints' positions",
+        stuck_positions, IN_RANGE, in_range, {ALWAYS_LOW: "velocities"},
+    ),
+    RecordingScene(
+        "joints exchanged on the way", "from 1.4 s on two joints have each other's names",
+        exchanged_names, IN_RANGE, in_range, {ALWAYS_LOW: "velocities", BOX_STANDS: "velocities"},
+    ),
+    RecordingScene(
+        "velocities that come 40 ms late", "a filter smooths them", smoothed_velocities,
+        IN_RANGE, in_range, {}, (ALWAYS_LOW, ARRIVED, BOX_STANDS),
     ),
     RecordingScene(
         "four lost messages", "80 ms of joint states are missing: less than ten periods",

@@ -8,6 +8,7 @@ from pathlib import Path
 from harness.recording.store import read_run
 from harness.session.check import check_file
 from tests.adversarial.contact_scenes import CONTACT_SCENES
+from tests.adversarial.container_scenes import CONTAINER_SCENES
 from tests.adversarial.file_scenes import FILES
 from tests.adversarial.overlap_scenes import OVERLAP_SCENES
 from tests.adversarial.recording_scenes import RECORDINGS, graded_scene, recorded_run
@@ -15,7 +16,7 @@ from tests.adversarial.scenes import SCENES, WEIGHTLESS
 from tests.adversarial.window_scenes import WINDOW_SCENES
 from tests.running import run_case
 
-ALL_SCENES = (*SCENES, *CONTACT_SCENES, *OVERLAP_SCENES, *WINDOW_SCENES)
+ALL_SCENES = (*SCENES, *CONTACT_SCENES, *OVERLAP_SCENES, *CONTAINER_SCENES, *WINDOW_SCENES)
 
 PAGE = Path(__file__).parents[2] / "docs/reference/verdicts.md"
 RENEW = "python -m tests.adversarial.table"
@@ -65,6 +66,12 @@ LIMITS = """
   `placed`, `upright` and `lifted` keep that meaning.
 - **`on` on slopes**: forces are counted by their upward part; on a slope steeper than 45 degrees
   less than half of the weight may be carried as normal force, and friction is not counted.
+- **Forces below 0.001 N** are no contact: what weighs less than 0.2 g rests on nothing, and touches
+  nothing where it lies.
+- **Two objects in one grip** touch one finger each: neither is between the fingers, so that neither
+  is `grasped` or `lifted`, and closing on them is a `collision`.
+- **Steps of the physics above 2 ms** make contacts softer and blows longer: gripping may then press
+  harder than `collision` excuses.
 - **Efforts** are those of the motors, which the simulation clamps at their limits: `effort` and
   `within_limits` see that a motor reached its limit, not what it would have needed.
 - **Planner's beliefs** are not judged as facts: where an object of the planning scene alone stands

@@ -177,6 +177,27 @@ WINDOW_SCENES = (
         ),
     ),
     Scene(
+        "step that takes no time",
+        "a step puts the box elsewhere; another is expected to fail before anything moves",
+        "objects:\n" + CUBE % ON_FLOOR
+        + "steps:\n  - wait: 0.1 s\n"
+        "  - {move_object: {object: cube, pose: {xyz: [0.3, 0.25, 0.0199]}}, id: put}\n"
+        "  - {move_to: {position: {xyz: [3, 0, 0.2]}}, expect_error: NO_IK_SOLUTION, id: fails}\n"
+        "  - {wait: 3 ms, id: short}\n",
+        "at no sample of the step anything touches the robot",
+        lambda run: not touched(run, "cube", at_end=False),
+        (),
+        (
+            "{never: {in_contact: {between: [robot, cube]}}, during: short}",
+            "{static: {object: cube, max_velocity: 10 m/s}, during: put}",
+        ),
+        warned=(
+            "{never: {in_contact: {between: [robot, cube]}}, during: put}",
+            "{never: collision, during: fails}",
+            "{always: {upright: cube}, during: fails}",
+        ),
+    ),
+    Scene(
         "ball that passes the gripper between two samples",
         "a ball at 30 m/s moves by 3 cm from sample to sample, and flies past the fingers",
         shot(30.0),

@@ -39,7 +39,9 @@ from tests.assertions.synthetic_run import (
     TABLE,
     at,
     attachment,
+    followed,
     force,
+    gripped,
     heights,
     lift_run,
     make_run,
@@ -104,8 +106,8 @@ MOVING = {
     * np.array([1.0, 0.0]),
 }
 REPORTS = (
-    step("path", 0, 100, "cartesian_path", result={"fraction": 0.9}),
-    step("late", 100, N, "gripper", result={"stalled": True}),
+    step("path", 0, 100, "cartesian_path", result=followed(0.9)),
+    step("late", 100, N, "gripper", result=gripped(stalled=True)),
 )
 
 CASES = [

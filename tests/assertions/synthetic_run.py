@@ -25,6 +25,7 @@ from harness.recording.run import (
     Signals,
     StepRecord,
 )
+from harness.recording.step_results import SavedResult
 
 DT = 0.01
 LINKS = ("world", "base_link", "arm_link", "palm", "left_finger", "right_finger")
@@ -130,7 +131,8 @@ def make_run(n=200, *, objects=(TABLE, BOX), steps=(), attachments=(), robot=ROB
 
 
 def step(name, start, stop, verb="move_to", status="passed", **fields):
-    """A step over samples [start, stop)."""
+    """A step over samples [start, stop); its `result` is plain data, as run.json has it."""
+    result = SavedResult(verb=verb, saved=fields.pop("result", {}))
     return StepRecord(
         id=name,
         path=fields.pop("path", f"steps[{start}]"),
@@ -142,8 +144,20 @@ def step(name, start, stop, verb="move_to", status="passed", **fields):
         end_time=(stop - 1) * DT,
         start_index=start,
         end_index=stop,
+        result=result,
         **fields,
     )
+
+
+def followed(share):
+    """The result of a Cartesian path that was followed to a share."""
+    return {"fraction": share, "largest_joint_step": 0.01}
+
+
+def gripped(*, stalled):
+    """The result of a gripper step."""
+    outcome = {"target": 0.0, "position": 0.0, "effort": 1.0, "reached_goal": not stalled}
+    return {**outcome, "stalled": stalled, "contacts": {}}
 
 
 def force(n, *spans, value=1.0):

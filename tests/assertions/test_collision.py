@@ -208,7 +208,7 @@ def test_objects_that_are_not_held_may_touch():
 
 
 def test_a_step_that_was_not_reached_has_no_collisions_to_be_proud_of():
-    run = make_run(steps=(step("later", 200, 200, status="not_reached"),))
+    run = make_run(steps=(step("later", 200, 200, status="not reached"),))
     assert verdict(run, NEVER, "later").status == "not reached"
 
 
@@ -274,10 +274,9 @@ def test_what_rests_on_a_held_object_weighs_too():
 
 
 def test_a_welded_object_is_held_though_no_finger_touches_it():
-    weld = step("grasp", 39, 80, "grasp", result={"mode": "weld", "attached": "box"})
     hits = {("box", "wall"): force(200, (120, 140))}
     for mode, expected in (("weld", True), ("friction", False)):
-        grasp = replace(weld, result={**weld.result, "mode": mode})
+        grasp = step("grasp", 39, 80, "grasp", result={"mode": mode, "attached": "box"})
         run = make_run(
             objects=(TABLE, BOX, WALL),
             steps=(grasp,),

@@ -104,7 +104,7 @@ def test_a_step_that_had_all_of_its_time_is_judged(code):
 
 def test_a_step_that_failed_as_expected_is_judged():
     run = make_run(
-        steps=(step("go", 0, 200, status="expected_error", error_code="NO_IK_SOLUTION"),)
+        steps=(step("go", 0, 200, status="expected error", error_code="NO_IK_SOLUTION"),)
     )
     assert verdict(run, Displaced(object="box"), "go").status == "failed"
     assert verdict(run, Displaced(object="box")).status == "failed"

@@ -38,6 +38,7 @@ from harness.expectations.lifted import Lifted
 from harness.expectations.until import Until
 from harness.language.language import PREDICATES
 from harness.recording.run import Signals
+from harness.recording.step_results import SavedResult
 from tests.assertions.evidence import AT_ONCE, COURSES
 from tests.assertions.free_shifts import FREE, free_shifts
 from tests.assertions.mutation_cases import CASES, N
@@ -264,10 +265,21 @@ MUTATIONS = {
 }
 
 
+def other_report(value):
+    """Another value that a step could have reported."""
+    match value:
+        case bool():
+            return not value
+        case int() | float():
+            return value - 0.5
+        case _:
+            return value
+
+
 def reported(run, spec):
     """Mutants of what steps report, and of how long they took."""
     for kind, change in (
-        ("shift", lambda value: not value if isinstance(value, bool) else value - 0.5),
+        ("shift", other_report),
         ("drop", None),
         ("NaN", lambda _: float("nan")),
     ):
@@ -275,7 +287,12 @@ def reported(run, spec):
             replace(
                 each,
                 end_time=each.end_time if kind != "shift" else each.end_time + 0.5,
-                result={key: change(value) for key, value in each.result.items()} if change else {},
+                result=SavedResult(
+                    verb=each.verb,
+                    saved={key: change(value) for key, value in each.result.plain().items()}
+                    if change
+                    else {},
+                ),
             )
             for each in run.steps
         ]

@@ -92,7 +92,7 @@ def test_without_a_picture_nothing_can_be_said(kind):
 @pytest.mark.parametrize("kind", SUBJECTS)
 def test_in_a_step_that_was_not_reached_it_never_applied(kind):
     words, thing = SUBJECTS[kind]
-    steps = (step("look", 0, 2, status="not_reached"),)
+    steps = (step("look", 0, 2, status="not reached"),)
     run, objects = run_with([eye()], [thing], steps=steps)
     answer = verdict(run, objects, Sees(camera="eye", **words), "look")
     assert answer.status == "not reached"

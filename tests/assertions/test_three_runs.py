@@ -55,6 +55,7 @@ from tests.assertions.synthetic_run import (
     thing,
     verdict,
 )
+from tests.assertions.synthetic_run import followed as path_followed
 
 N = 200
 
@@ -67,7 +68,7 @@ def quantity_of(word, measure):
     return None
 
 
-UNREACHED = make_run(steps=(step("later", N, N, status="not_reached"),))
+UNREACHED = make_run(steps=(step("later", N, N, status="not reached"),))
 NO_BOX = make_run(objects=(TABLE, replace(BOX, present=())), object_poses={"box": at(N) * np.nan})
 
 
@@ -123,7 +124,7 @@ def near(distance):
 
 
 def followed(share):
-    return make_run(steps=(step("path", 0, 100, "cartesian_path", result={"fraction": share}),))
+    return make_run(steps=(step("path", 0, 100, "cartesian_path", result=path_followed(share)),))
 
 
 def lasting(samples):

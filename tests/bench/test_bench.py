@@ -108,7 +108,7 @@ def test_one_command_prints_plots_and_keeps_the_numbers(file, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["--planners", "RRTConect"], "did you mean 'RRTConnect'?"),
+        (["--planners", "RRTConect"], "did you mean `RRTConnect`?"),
         (["--planners", "CHOMP"], "planner 'CHOMP' is refused"),
         (["--planners", "SBL"], "planner 'SBL' is refused"),
     ],

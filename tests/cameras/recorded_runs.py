@@ -79,5 +79,5 @@ def a_run(description):
     held = AttachmentRecord(
         "imagined", description.tcp_link, 3.0, 3.0, (0.0, 0, 0.1, 1, 0, 0, 0), "imagined"
     )
-    skipped = StepRecord("late", "steps[4]", "wait", "wait", 9, "not_reached")
+    skipped = StepRecord("late", "steps[4]", "wait", "wait", 9, "not reached")
     return Run("a run", "a.yaml", "", 1, robot, (imagined,), (held,), (*steps, skipped), signals)

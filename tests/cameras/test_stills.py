@@ -15,7 +15,9 @@ from harness.cameras.recorded_scene import scene_poses
 from harness.cameras.renderer import make_renderer
 from harness.cameras.stills import draw_stills, overview
 from harness.cameras.viewpoint import fit_viewpoint
+from harness.core.details import Details
 from harness.core.geometry import Mesh, Shape
+from harness.recording.step_results import SceneChange
 from harness.robot.forward_kinematics import robot_poses
 from tests.cameras.recorded_runs import IMAGINED, OBJECTS, RED_BOX, a_run
 
@@ -161,9 +163,9 @@ def test_of_steps_at_one_moment_each_shows_what_was_there_after_it(ur3e):
             run.steps[1], path=f"steps[{number}]", end_time=1.0, start_time=start, result=result
         )
         for number, start, result in (
-            (0, 0.0, {}),
-            (1, 1.0, {"added": ["imagined"]}),
-            (2, 1.0, {"removed": ["imagined"]}),
+            (0, 0.0, Details()),
+            (1, 1.0, Details.of(SceneChange(added=("imagined",)))),
+            (2, 1.0, Details.of(SceneChange(removed=("imagined",)))),
         )
     )
     run = replace(run, steps=(motion, adding, removing))

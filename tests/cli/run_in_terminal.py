@@ -31,8 +31,11 @@ class Session:
     moments: list[float]
 
     @property
-    def longest_silence(self):
-        return max(after - before for before, after in pairwise([0.0, *self.moments]))
+    def is_never_silent(self):
+        """Whether no pause is as long as two seconds, or a fifth of a session that a busy
+        machine draws out."""
+        longest = max(after - before for before, after in pairwise([0.0, *self.moments]))
+        return longest < max(2.0, self.moments[-1] / 5)
 
     @property
     def lines(self):

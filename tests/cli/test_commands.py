@@ -68,6 +68,10 @@ def test_the_version_is_the_packages(capsys):
         (["run", "x", "--hard-cap", "-1"], "'-1' is not a number of seconds above 0"),
         (["list", "robot"], "robots"),
         (["sweep", "x"], "invalid choice"),
+        (["run", "x", "--out", "here"], "there is no option --out; did you mean --report-dir?"),
+        (["check", "x", "--fromat=json"], "did you mean --format?"),
+        (["robot", "check", "ur3e", "--wrold"], "`harness robot check --help` lists the options"),
+        (["view", "run", "another"], "unexpected argument 'another'"),
     ],
 )
 def test_wrong_usage_is_exit_code_2_and_says_what_is_right(arguments, said, capsys):

@@ -112,7 +112,7 @@ def test_a_robot_that_starts_in_collision_gets_a_start_that_is_free(capsys, fold
     ("arguments", "said"),
     [
         (["--srdf", "arm.srdf"], "--srdf goes with --robot"),
-        (["--robot", "ur3f"], "'ur3f' is not known; did you mean 'ur3'?"),
+        (["--robot", "ur3f"], "'ur3f' is not known; did you mean `ur3`?"),
         (["--robot", "a.scenario.yaml"], "--robot is a robot, and 'a.scenario.yaml' a scenario"),
         (["--robot", "arm.urdf", "--gripper", "hand"], "robot.gripper: 'hand' is not known"),
     ],

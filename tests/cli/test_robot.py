@@ -256,7 +256,7 @@ def test_a_picture_is_drawn_on_request(folder, capsys):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["check", "ur3f"], "robot.model: 'ur3f' is not known; did you mean 'ur3'? known are"),
+        (["check", "ur3f"], "robot.model: 'ur3f' is not known; did you mean `ur3`? robots:"),
         (["check", "harm.urdf"], "there is no file harm.urdf; did you mean 'arm.urdf'?"),
         (["check", "arm.urdf", "--srdf", "a.srdf"], "robot.srdf: there is no file a.srdf"),
         (["check", "ur3e", "--srdf", "arm.srdf"], "robot.srdf: it requires a robot's file"),
@@ -280,7 +280,7 @@ def test_wrong_words_are_exit_code_2_and_write_nothing(arguments, said, folder, 
 def test_a_folder_that_is_no_robot_is_reported_what_it_lacks(folder, capsys):
     (folder / "cell").mkdir()
     assert main(["robot", "check", "cell"]) == 2
-    assert "'cell' is not known; cell has no robot.yaml; known are" in capsys.readouterr().err
+    assert "'cell' is not known; cell has no robot.yaml; robots:" in capsys.readouterr().err
 
 
 def test_a_robot_that_is_never_free_is_reported(capsys):

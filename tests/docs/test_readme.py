@@ -86,6 +86,6 @@ def test_every_lesson_has_its_line():
 def test_the_sample_of_a_refused_file_names_each_mistake():
     said = refusal()
     assert said in COMMANDS
-    assert "did you mean 'mogi_home'?" in said
+    assert "did you mean `mogi_home`?" in said
     assert "no verb is called `grip`" in said
     assert "`5 kg` is a mass" in said

@@ -108,7 +108,7 @@ def test_a_camera_of_a_robots_folder_on_an_unknown_link_is_reported_with_the_nea
         RobotError, match=r"cameras\.gripper_camera\.link: there is no link"
     ) as caught:
         load_robot(RobotSpec(model="."), tmp_path)
-    assert "did you mean 'gripper_camera_link'" in str(caught.value)
+    assert "did you mean `gripper_camera_link`" in str(caught.value)
 
 
 def test_a_marker_is_a_plate_to_planner_and_physics_and_black_boxes_to_the_eye(tmp_path):

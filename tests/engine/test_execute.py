@@ -18,7 +18,7 @@ def test_another_failure_than_the_expected_one_ends_the_run(tmp_path):
     assert result.outcome == "failed"
     assert statuses(result) == [
         ("steps[0]", "failed", "NO_IK_SOLUTION"),
-        ("steps[1]", "not_reached", ""),
+        ("steps[1]", "not reached", ""),
     ]
     assert result.steps[0].message.startswith(
         "expected GOAL_IN_COLLISION, but it failed with NO_IK"
@@ -43,7 +43,7 @@ def test_a_step_made_of_others_may_be_expected_to_fail_inside(tmp_path):
     result, _ = run(tmp_path, steps)
     assert result.outcome == "passed"
     assert statuses(result) == [
-        ("steps[0]", "expected_error", "NO_IK_SOLUTION"),
+        ("steps[0]", "expected error", "NO_IK_SOLUTION"),
         ("steps[0].repeat[0][0]", "passed", ""),
         ("steps[0].repeat[0][1]", "failed", "NO_IK_SOLUTION"),
         ("steps[1]", "passed", ""),
@@ -142,7 +142,7 @@ def test_a_step_that_takes_longer_than_its_timeout_fails_whatever_it_is_made_of(
     """
     result, _ = run(tmp_path, steps, robot="{gripper: rh_p12_rn_a}")
     assert result.outcome == "passed", [step.message for step in result.steps]
-    messages = [step.message for step in result.steps if step.status == "expected_error"]
+    messages = [step.message for step in result.steps if step.status == "expected error"]
     assert messages[0] == "the step took 1.000 s, its timeout is 0.5 s"
     assert messages[1].startswith("'rh_r1_joint' is at ")
     assert messages[2] == "the step took 0.600 s, its timeout is 0.5 s"

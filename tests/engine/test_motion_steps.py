@@ -86,7 +86,7 @@ def test_a_cartesian_path_reports_its_figures_whether_it_is_followed_or_refused(
     """
     result, record = run(tmp_path, steps, robot=ARM)
     assert result.outcome == "passed", [step.message for step in result.steps]
-    followed, refused = record.steps[1].result, record.steps[2].result
+    followed, refused = (step.result.plain() for step in record.steps[1:3])
     assert 0.1 < followed["fraction"] < 1
     assert 0 <= refused["fraction"] < 0.9
     assert set(followed) >= {"fraction", "largest_joint_step", "deviation"}

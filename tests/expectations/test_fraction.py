@@ -6,7 +6,7 @@ import pytest
 from harness.expectations.fraction import FractionCheck
 from harness.expectations.tcp_path import TcpPath
 from harness.reporting.margins import allowance_used, margin_share
-from tests.assertions.synthetic_run import heights, make_run, step, verdict
+from tests.assertions.synthetic_run import followed, heights, make_run, step, verdict
 
 LINE = {"start": {"xyz": [0, 0, 0.3]}, "end": {"xyz": [0, 0, 0.5]}}
 
@@ -20,8 +20,8 @@ def along_z(offset=0.0, start=0.3, end=0.5):
 def test_the_least_share_of_the_cartesian_paths_of_a_window_counts():
     run = make_run(
         steps=(
-            step("weld", 0, 50, "cartesian_path", result={"fraction": 1.0}),
-            step("back", 50, 100, "cartesian_path", result={"fraction": 0.74}),
+            step("weld", 0, 50, "cartesian_path", result=followed(1.0)),
+            step("back", 50, 100, "cartesian_path", result=followed(0.74)),
             step("wait", 100, 200, "wait"),
         )
     )
@@ -31,7 +31,7 @@ def test_the_least_share_of_the_cartesian_paths_of_a_window_counts():
     assert answer.reason.startswith("74.0 % of the path of back followed, 75.0 % required")
     assert verdict(run, FractionCheck(at_least=0.7)).status == "passed"
     assert verdict(run, FractionCheck(), "wait").status == "not reached"
-    broken = make_run(steps=(step("weld", 0, 50, "cartesian_path", result={"fraction": None}),))
+    broken = make_run(steps=(step("weld", 0, 50, "cartesian_path", result=followed(None)),))
     assert verdict(broken, FractionCheck(at_least=0)).status == "not reached"
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from harness.expectations.gripper import GripperState
-from tests.assertions.synthetic_run import make_run, step, verdict
+from tests.assertions.synthetic_run import gripped, make_run, step, verdict
 
 
 def positions(shoulder, finger=0.0):
@@ -15,9 +15,9 @@ def test_the_gripper_by_state_position_width_and_report():
     run = make_run(
         joint_positions=positions(0.0, 0.029),
         steps=(
-            step("open", 0, 50, "gripper", result={"stalled": False}),
-            step("squeeze", 50, 100, "gripper", result={"stalled": True}),
-            step("never", 200, 200, "gripper", "not_reached"),
+            step("open", 0, 50, "gripper", result=gripped(stalled=False)),
+            step("squeeze", 50, 100, "gripper", result=gripped(stalled=True)),
+            step("never", 200, 200, "gripper", "not reached"),
         ),
     )
     assert verdict(run, GripperState(named_target="open")).margin == pytest.approx(0.001)

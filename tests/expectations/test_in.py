@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from harness.assertions.window import Window
 from harness.core.geometry import Box, Cylinder, Plane, Shape
 from harness.core.spatial import SE3
 from harness.expectations.in_ import In
@@ -56,3 +57,61 @@ def test_being_in_needs_both_and_a_container_with_a_known_extent():
     floor = replace(record, shapes=(Shape(Plane()),))
     run = make_run(objects=(BOX, floor), object_poses={"bin": poses})
     assert verdict(run, In(object="box", container="bin")).status == "not observable"
+
+
+def boxes(rng, count=3):
+    """A container of tilted boxes between two specks far away that make its outline."""
+    tilted = [
+        Shape(
+            Box(tuple(rng.uniform(0.02, 0.3, 3))),
+            SE3.from_xyz_rpy(rng.uniform(-0.2, 0.2, 3), rng.uniform(-3, 3, 3)),
+        )
+        for _ in range(count)
+    ]
+    specks = [Shape(Box((1e-4,) * 3), SE3.from_xyz_rpy((far,) * 3)) for far in (-1.0, 1.0)]
+    return replace(thing("bin", static=True), shapes=(*tilted, *specks))
+
+
+def is_met(record, point, way):
+    """Whether a box of the container is met on the way from a point, by going there in steps."""
+    path = point + np.arange(0, 0.8, 0.0005)[:, None] * np.array(way)
+    for shape in record.shapes:
+        local = (path - shape.pose.translation) @ shape.pose.rotation
+        if (np.abs(local) <= np.array(shape.geometry.size) / 2).all(axis=1).any():
+            return True
+    return False
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_shape_is_under_an_object_or_on_all_four_sides_of_it(seed):
+    rng = np.random.default_rng(seed)
+    record = boxes(rng)
+    points = rng.uniform(-0.3, 0.3, (60, 3))
+    box = at(60, points)
+    run = make_run(60, objects=(BOX, record), object_poses={"bin": at(60), "box": box})
+    holds = In(object="box", container="bin").margins(Window(run, 0, 60)).values >= 0
+    sides = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0))
+    expected = [
+        is_met(record, point, (0, 0, -1)) or all(is_met(record, point, way) for way in sides)
+        for point in points
+    ]
+    assert holds.tolist() == expected
+    assert 0 < sum(expected) < 60
+
+
+def test_what_lies_under_a_table_is_not_in_it():
+    table = replace(
+        thing("bin", static=True),
+        shapes=tuple(
+            Shape(Box(size), SE3.from_xyz_rpy(place))
+            for size, place in (
+                ((0.4, 0.4, 0.02), (0, 0, 0.3)),
+                ((0.02, 0.02, 0.29), (0.19, 0.19, 0.145)),
+            )
+        ),
+    )
+    poses = {"bin": at(200), "box": at(200, (0.0, 0.0, 0.02))}
+    run = make_run(objects=(BOX, table), object_poses=poses)
+    answer = verdict(run, In(object="box", container="bin"))
+    assert (answer.status, answer.unit) == ("failed", "1")
+    assert "inside the outline of bin, which is neither under it nor around it" in answer.reason

@@ -5,11 +5,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from harness.assertions.window import NotObservable
+from harness.core.spatial import SE3
 from harness.expectations.fraction import FractionCheck
-from harness.expectations.tcp_path import TcpPath
+from harness.expectations.tcp_path import TcpPath, along_arc, along_line
 from harness.recording.run import LinkPlacement
 from harness.reporting.margins import allowance_used, margin_share
-from tests.assertions.synthetic_run import ROBOT, at, changed, heights, make_run, step, verdict
+from tests.assertions.synthetic_run import (
+    ROBOT,
+    at,
+    changed,
+    followed,
+    heights,
+    make_run,
+    step,
+    verdict,
+)
 
 LINE = {"start": {"xyz": [0, 0, 0.3]}, "end": {"xyz": [0, 0, 0.5]}}
 
@@ -111,7 +122,7 @@ def test_a_line_in_the_frame_of_an_object_moves_with_it():
 
 @pytest.mark.parametrize("at_least", [0.95, 1.0])
 def test_a_path_that_was_followed_to_its_end_has_the_largest_margin(at_least):
-    path = step("path", 0, 200, "cartesian_path", result={"fraction": 1.0})
+    path = step("path", 0, 200, "cartesian_path", result=followed(1.0))
     answer = verdict(make_run(steps=(path,)), FractionCheck(at_least=at_least))
     assert (answer.status, margin_share(answer)) == ("passed", 1.0)
     assert allowance_used(answer.measures[0]) == 0.0
@@ -161,3 +172,53 @@ def test_a_step_without_a_path_of_its_own_is_not_observable():
         ended_early="PLANNING_FAILED: no line",
     )
     assert verdict(failed, TcpPath(), "go").status == "not reached"
+
+
+@pytest.mark.parametrize("turn", [0.3, 2.0, 3.5, 6.0])
+@pytest.mark.parametrize("seed", range(3))
+def test_the_distance_to_an_arc_is_that_of_its_nearest_point(turn, seed):
+    """Compared with the nearest of many points of the arc, in a plane that is turned at random."""
+    rng = np.random.default_rng(seed)
+    plane = SE3.from_xyz_rpy(rng.uniform(-0.5, 0.5, 3), rng.uniform(-3, 3, 3))
+    radius = rng.uniform(0.05, 0.5)
+
+    def on_arc(share):
+        angle = turn * np.atleast_1d(share)
+        flat = radius * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+        return flat @ plane.rotation.T + plane.translation
+
+    points = plane.translation + rng.uniform(-2 * radius, 2 * radius, (12, 3))
+    start, interim, end = (
+        np.tile(on_arc(share), (12, 1)) for share in (0.0, rng.uniform(0.2, 0.8), 1.0)
+    )
+    distances, places = along_arc(points, start, interim, end)
+    shares = np.linspace(0, 1, 20001)
+    apart = np.linalg.norm(points[:, None] - on_arc(shares)[None], axis=2)
+    assert distances == pytest.approx(apart.min(axis=1), abs=1e-6)
+    assert places == pytest.approx(shares[apart.argmin(axis=1)], abs=2e-4)
+
+
+@pytest.mark.parametrize(("height", "is_judged"), [(1.1e-6, True), (0.9e-6, False)])
+def test_three_points_are_on_a_line_where_one_is_a_micrometre_from_the_line_of_the_others(
+    height, is_judged
+):
+    """Whatever the length of the arc: here 30 cm."""
+    points = np.zeros((4, 3))
+    start, interim, end = (
+        np.tile(place, (4, 1)) for place in ([0, 0, 0], [0.1, height, 0], [0.3, 0.0, 0])
+    )
+    if is_judged:
+        assert along_arc(points, start, interim, end)[0] == pytest.approx([0.0] * 4, abs=1e-7)
+    else:
+        with pytest.raises(NotObservable, match="lie on a line"):
+            along_arc(points, start, interim, end)
+
+
+@pytest.mark.parametrize(("length", "is_judged"), [(1.1e-6, True), (0.9e-6, False)])
+def test_a_line_is_longer_than_a_micrometre(length, is_judged):
+    start, end = np.zeros((2, 3)), np.tile([0, length, 0], (2, 1))
+    if is_judged:
+        assert along_line(end, start, end)[1].tolist() == [1.0, 1.0]
+    else:
+        with pytest.raises(NotObservable, match="one point"):
+            along_line(end, start, end)

@@ -42,7 +42,7 @@ def test_a_step_that_was_not_reached_or_has_no_samples_never_passes():
     run = make_run(
         steps=(
             step("empty", 50, 50),
-            step("unreached", 200, 200, status="not_reached"),
+            step("unreached", 200, 200, status="not reached"),
             step("move", 20, 40),
         )
     )

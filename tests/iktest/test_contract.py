@@ -109,7 +109,7 @@ def test_a_numpy_warning_is_no_error_but_its_nan_is_an_answer():
         ("ik", "", "'ik' is not module:function or file.py:function"),
         ("nowhere.py:ik", "", "no such file: 'nowhere.py'"),
         ("no_such_module:ik", "", r"no module 'no_such_module'.*my_ik\.py:ik"),
-        ("mine.py:slove", "def solve(x): ...", r"no function 'slove'; did you mean 'solve'\? "
+        ("mine.py:slove", "def solve(x): ...", r"no function 'slove'; did you mean `solve`\? "
          "functions there: solve"),
         ("mine.py:LIMIT", "LIMIT = 3", "is a int, not a function"),
         ("mine.py:ik", "import nothing_of_that_name", r"mine\.py:1: ModuleNotFoundError"),

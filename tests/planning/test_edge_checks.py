@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Shape, Sphere
+from harness.core.user_cache import store
+from harness.planning.collision import compiled
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.collision.compiled import use_compiled
 from harness.planning.collision.convex_tree import shapes_tree
@@ -175,9 +177,29 @@ from harness.ports import FreeMotion, JointGoal, MotionRequest, PlanningOptions
 cell = Cell(ur("ur3e"))
 goal = FreeMotion(JointGoal(cell.named("up")))
 cell.planner.plan(MotionRequest(ARM, cell.state, goal, PlanningOptions()))
-assert "numba" not in sys.modules
+assert "llvmlite" not in sys.modules
 """
     subprocess.run([sys.executable, "-c", program], check=True, cwd=Path(__file__).parents[2])
+
+
+def test_machine_code_of_an_earlier_process_is_loaded_without_numba():
+    program = """
+import sys
+from harness.planning.collision.compiled import compiled_check, use_compiled
+use_compiled("always")
+assert compiled_check(1) is not None
+print("numba" in sys.modules)
+"""
+    command = [sys.executable, "-c", program]
+    for _ in range(2):
+        done = subprocess.run(command, check=True, cwd=Path(__file__).parents[2], stdout=-1)
+    assert done.stdout == b"False\n"
+
+
+def test_damaged_machine_code_is_not_loaded(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    store(compiled.code_file(), b"x" * 100)
+    assert compiled.stored_code() is None
 
 
 @pytest.mark.parametrize("kind", ["arm", "gripper"])

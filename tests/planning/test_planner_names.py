@@ -31,7 +31,7 @@ def test_one_planner_has_the_names_of_ompl_and_moveit(name):
 
 
 def test_unknown_planners_get_a_suggestion_and_the_list():
-    with pytest.raises(ValueError, match=r"did you mean 'RRTConnect'\?.*KPIECE"):
+    with pytest.raises(ValueError, match=r"did you mean `RRTConnect`\?.*KPIECE"):
         resolve_planner_id("RRTConect")
 
 

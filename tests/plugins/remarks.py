@@ -1,5 +1,6 @@
 """Steps of another package: a remark about an object, and a joint that moves by an angle."""
 
+from dataclasses import dataclass
 from typing import ClassVar
 
 from pydantic import Field
@@ -7,9 +8,17 @@ from pydantic import Field
 from harness.cell.cell import Cell
 from harness.cell.goals import group_of
 from harness.cell.scope import At
+from harness.core.details import Detail
 from harness.language.base import Angle, Name, PositiveDuration
 from harness.language.step import Step
 from harness.ports import JointMotion
+
+
+@dataclass(frozen=True)
+class Remarked(Detail):
+    """The sentence, as it is in the step's `result`."""
+
+    text: str
 
 
 class Remark(Step):
@@ -17,6 +26,7 @@ class Remark(Step):
 
     short = "text"
     verb: ClassVar[str] = "remark"
+    results = (Remarked,)
 
     text: str = Field(description="The sentence that is written.")
     about: Name | None = Field(default=None, description="The object that the sentence is about.")
@@ -32,7 +42,7 @@ class Remark(Step):
 
     def execute(self, cell: Cell) -> None:
         cell.simulator.hold(self.pause)
-        cell.notes.result["text"] = self.text
+        cell.report(Remarked(self.text))
 
 
 class Jog(Step):

@@ -10,7 +10,7 @@ from tests.plugins.commands import EXAMPLE, harness
 
 SCENARIO = """\
 scenario: everything of a package
-robot: {model: ur3e, ik_solver: newton}
+robot: {model: ur3e, ik_solver: newton, joint_controller: computed_torque}
 world: boxes.csv
 planning: {pipeline: via_point}
 steps:
@@ -30,6 +30,7 @@ KINDS = {
     "expectations": "tcp_height",
     "pipelines": "via_point",
     "ik-solvers": "newton",
+    "controllers": "computed_torque",
     "world-formats": "boxes_csv",
     "reporters": "verdict_table",
     "robots": "gantry",

@@ -119,3 +119,17 @@ def test_the_list_has_the_solver_and_its_package(tmp_path):
         ["newton", "ik_solvers"],
         ["off_by_a_bit", "ik_solvers"],
     ]
+
+
+def test_a_solver_that_finds_nothing_is_named_where_the_goal_is_reachable(scenario):
+    (scenario / "none.py").write_text(
+        WRONG.split("    def solve")[0]
+        + "    def solve(self, request: IkRequest) -> IkResult:\n        return IkResult(())\n",
+        encoding="utf-8",
+    )
+    out = harness(
+        scenario, "check", "pose.scenario.yaml", "--plugin", "none.py",
+        "--set", "robot.ik_solver=mine", code=1,
+    )  # fmt: skip
+    assert "the inverse kinematics solver `mine` of the package `none` finds no solution" in out
+    assert "tool0 reaches (0.300, 0.100, 0.300) as requested" in out

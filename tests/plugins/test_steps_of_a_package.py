@@ -43,7 +43,7 @@ def plugged_in(request, tmp_path):
         case "module":
             return tmp_path, library, "remarks", ["--plugin", "remarks"]
         case _:
-            return tmp_path, tmp_path, "remarks", ["--plugin", "library/remarks.py"]
+            return tmp_path, library, "remarks", ["--plugin", "library/remarks.py"]
 
 
 def install(library):
@@ -67,6 +67,23 @@ def harness(folder, *arguments, path="", code=0):
     )
     assert done.returncode == code, done.stdout + done.stderr
     return done.stdout + done.stderr
+
+
+def typed_result(run, library):
+    """What the third step of a saved run reported, as the class of the plug-in gives it."""
+    code = (
+        "import sys; from pathlib import Path; from harness.core.registry import load_plugin;"
+        "load_plugin('remarks'); import remarks; from harness.recording.store import read_run;"
+        "print(read_run(Path(sys.argv[1])).run.steps[2].result.find(remarks.Remarked))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(run)],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join([str(library), *sys.path])},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return done.stdout.strip()
 
 
 def test_every_output_has_the_steps_of_a_plug_in(plugged_in):
@@ -113,6 +130,7 @@ def test_a_run_of_a_plug_in_s_steps_is_recorded_and_reported(plugged_in):
         "gripper open",
     ]
     assert steps[2]["result"] == {"text": "again"}
+    assert typed_result(record.parent, library) == "Remarked(text='again')"
     assert steps[2]["end_time"] - steps[2]["start_time"] == pytest.approx(0.04, abs=0.002)
     page = next(record.parent.glob("*.html")).read_text(encoding="utf-8")
     assert "remark the arm stands where it starts" in page

@@ -21,10 +21,12 @@ from harness.expectations.lifted import Lifted
 from harness.expectations.static import Static
 from harness.recording.arrays import arrays_of
 from harness.recording.digest import digest
+from harness.recording.explanation import stages_of
 from harness.recording.plain import to_plain
 from harness.recording.run import CaptureRecord, Finding, MeshRecord, VideoRecord
+from harness.recording.step_results import SavedResult
 from harness.recording.store import FORMAT, StoredRun, read_run, write_run
-from tests.assertions.synthetic_run import ROBOT, attachment, lift_run, thing
+from tests.assertions.synthetic_run import ROBOT, attachment, lift_run, make_run, step, thing
 
 EXPECTED = [
     PlacedExpectation(Lifted(object="box", above=0.05), "", 3),
@@ -58,7 +60,7 @@ def full_run():
         },
         planner={"checks": 12, "length": float("inf"), "note": None},
         explanation={"solutions": [{"positions": [0.1, float("nan")], "pair": ["a", "b"]}]},
-        result={"stalled": True},
+        result=SavedResult(verb=first.verb, saved={"stalled": True}),
         expected_error="GOAL_IN_COLLISION",
     )
     signals = replace(
@@ -315,3 +317,19 @@ def test_a_run_saved_before_there_were_cameras_is_read(tmp_path):
     (tmp_path / "run" / "run.json").write_text(json.dumps(document))
     run = read_run(tmp_path / "run").run
     assert (run.cameras, run.captures, run.videos, dict(run.files)) == ((), (), (), {})
+
+
+def test_a_run_of_the_first_format_is_read_in_the_present_words(tmp_path):
+    steps = (step("go", 0, 1, status="expected error"), step("late", 1, 1, status="not reached"))
+    run = make_run(steps=steps)
+    write_run(tmp_path / "run", StoredRun(run, (), "passed", digest(run, ()), {}))
+    file = tmp_path / "run" / "run.json"
+    document = json.loads(file.read_text())
+    document["format"] = "armharness-run/1"
+    for each, status in zip(document["steps"], ("expected_error", "not_reached"), strict=True):
+        each["status"] = status
+        each["explanation"] = {"stages": [{"stage": "path", "status": "not reached", "text": ""}]}
+    file.write_text(json.dumps(document))
+    first, second = read_run(tmp_path / "run").run.steps
+    assert (first.status, second.status) == ("expected error", "not reached")
+    assert [stage.status for stage in stages_of(first.explanation)] == ["skipped"]

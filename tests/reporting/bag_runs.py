@@ -55,7 +55,7 @@ def everything(folder, **options):
     file.write_text(EVERYTHING)
     result = run_case(file, report_dir=folder / "run", stills=False, page=False, **options)
     assert result.outcome == "failed", result.message
-    assert [step.status for step in result.steps].count("not_reached") == 1
+    assert [step.status for step in result.steps].count("not reached") == 1
     return folder / "run"
 
 

@@ -12,10 +12,11 @@ from scipy.spatial import ConvexHull
 
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh, Shape, undivided
+from harness.core.user_cache import cache_folder
 from harness.language.scenario import RobotSpec
 from harness.robot.collision_shapes import collision_shapes
 from harness.robot.decomposition.decomposition import MOST_PARTS, decompose
-from harness.robot.decomposition.parts_cache import cache_folder, stored_decomposition
+from harness.robot.decomposition.parts_cache import stored_decomposition
 from harness.robot.decomposition.solid_grid import surface_points
 from harness.robot.load import load_robot
 from harness.robot.mesh_file import decomposition_of, exact_surface, hull_points
@@ -132,7 +133,7 @@ def test_parts_are_computed_once_for_the_same_content(tmp_path, monkeypatch):
         again.hull_excess,
         again.is_closed,
     )
-    [file] = cache_folder().iterdir()
+    [file] = (cache_folder() / "convex_parts").iterdir()
     file.write_bytes(file.read_bytes()[:500])
     assert stored()[1], "a damaged file is computed again"
     assert not stored()[1]
@@ -142,7 +143,7 @@ def test_writers_at_the_same_time_leave_one_whole_file(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     with ThreadPoolExecutor(3) as pool:
         assert len(list(pool.map(lambda _: stored(), range(3)))) == 3
-    assert len(list(cache_folder().iterdir())) == 1
+    assert len(list((cache_folder() / "convex_parts").iterdir())) == 1
     assert not stored()[1]
 
 

@@ -8,6 +8,7 @@ import pytest
 from harness.core.errors import SpecError
 from tests.engine.front_door import run
 from tests.robot.arm_files import INERTIAL, SHAPE, URDF, load_arm, write_arm
+from tests.robot.vessels import vessel, write_obj
 from tests.world.sdf_files import TETRAHEDRON
 
 BARE = URDF.replace(INERTIAL, "")
@@ -46,6 +47,17 @@ def test_meshes_and_visuals_give_a_mass_too(tmp_path):
     write_arm(tmp_path, BARE.replace(SHAPE, mesh))
     mass = link(load_arm(tmp_path), "upper").inertial.mass
     assert 0 < mass < 1
+
+
+def test_a_hollow_mesh_weighs_its_convex_parts(tmp_path):
+    """A bin of 10 cm: its floor and walls are about a quarter of its hull."""
+    vertices, faces = vessel(sides=4, outer=0.1, inner=0.09, height=0.1, floor=0.01)
+    write_obj(tmp_path / "bin.obj", vertices, faces)
+    mesh = '<collision><geometry><mesh filename="bin.obj"/></geometry></collision>'
+    write_arm(tmp_path, BARE.replace(SHAPE, mesh))
+    hull = 1000 * 2 * 0.1**2 * 0.1  # of a square with corners 0.1 m from its middle
+    hollow = hull - 1000 * 2 * 0.09**2 * 0.09
+    assert hollow < link(load_arm(tmp_path), "upper").inertial.mass < 1.2 * hollow < 0.5 * hull
 
 
 def test_given_masses_stay(tmp_path):

@@ -135,8 +135,8 @@ def test_a_state_may_place_joints_of_several_axes_that_stand_still_here(tmp_path
         ({"urdf": "arn.urdf"}, ["robot.urdf", "arn.urdf", "did you mean 'arm.urdf'"]),
         ({"srdf": "gone.srdf"}, ["robot.srdf: there is no file"]),
         ({"packages": ["gone"]}, ["robot.packages: there is no folder"]),
-        ({"group": "manipulater"}, ["robot.group", "did you mean 'manipulator'"]),
-        ({"tcp_link": "tol"}, ["robot.tcp_link", "did you mean 'tool'"]),
+        ({"group": "manipulater"}, ["robot.group", "did you mean `manipulator`"]),
+        ({"tcp_link": "tol"}, ["robot.tcp_link", "did you mean `tool`"]),
         ({"urdf": "package://gone/arm.urdf"}, ["robot.urdf", "package 'gone' is not found"]),
     ],
 )

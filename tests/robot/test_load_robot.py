@@ -17,9 +17,9 @@ from tests.robot.models import robot
 @pytest.mark.parametrize(
     ("spec", "words"),
     [
-        ({"model": "ur3x"}, ["'ur3x' is not known", "did you mean 'ur3", "ur30"]),
-        ({"model": "open_manipulator"}, ["did you mean 'open_manipulator_x'"]),
-        ({"model": "ur3e", "gripper": "rh_p12"}, ["robot.gripper", "did you mean 'rh_p12_rn_a'"]),
+        ({"model": "ur3x"}, ["'ur3x' is not known", "did you mean `ur3", "ur30"]),
+        ({"model": "open_manipulator"}, ["did you mean `open_manipulator_x`"]),
+        ({"model": "ur3e", "gripper": "rh_p12"}, ["robot.gripper", "did you mean `rh_p12_rn_a`"]),
         ({"model": "ur3e", "gripper": "ur5e"}, ["'ur5e' is an arm", "rh_p12_rn_a"]),
         ({"model": "rh_p12_rn_a", "gripper": "rh_p12_rn_a"}, ["is a gripper"]),
         ({"model": "./nowhere"}, ["nowhere has no robot.yaml"]),
@@ -35,7 +35,7 @@ from tests.robot.models import robot
         ({"model": "open_manipulator_x", "args": {"a": 1}}, ["takes no arguments"]),
         (
             {"model": "ur3e", "joint_limits": {"elbow": {"max_velocity": 1}}},
-            ["no joint 'elbow'", "did you mean 'elbow_joint'"],
+            ["no joint 'elbow'", "did you mean `elbow_joint`"],
         ),
         (
             {"model": "ur3e", "joint_limits": {"elbow_joint": {"max_position": 3.2}}},
@@ -107,7 +107,7 @@ def test_a_folder_next_to_the_scenario_is_a_robot(tmp_path):
         ("gripper_right_joint: *finger", "thumb: *finger", ["joints.thumb", "no joint 'thumb'"]),
         ("robot: open_manipulator_x", "robot: [", ["robot.yaml:2:8: not YAML"]),
         ("srdf: open_manipulator_x.srdf", "srdf: gone.srdf", ["gone.srdf", "no such file"]),
-        ("arm_group: arm", "arm_group: arms", ["robot.yaml:7:12", "did you mean 'arm'?"]),
+        ("arm_group: arm", "arm_group: arms", ["robot.yaml:7:12", "did you mean `arm`?"]),
         ("tcp_link: end_effector_link", "tcp_link: tool", ["tcp_link: the URDF has no link"]),
         ("palm_link: link5", "palm_link: link55", ["gripper.palm_link: the URDF has no link"]),
         ("group: gripper", "group: hand", ["gripper.group: the SRDF has no group 'hand'"]),

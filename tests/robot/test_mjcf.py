@@ -88,6 +88,13 @@ def test_limits_efforts_states_and_pairs_are_read(tmp_path):
     )
 
 
+def test_a_mocap_base_that_carries_the_arm_is_fixed(tmp_path):
+    write(tmp_path, MJCF.replace('<body name="base">', '<body name="base" mocap="true">'))
+    arm = load(tmp_path)
+    assert arm.joint_names == tuple(JOINTS)
+    assert "body 'base' is a mocap body that carries joints: it is fixed" in arm.notes
+
+
 def test_an_mjcf_arm_moves(tmp_path):
     write(tmp_path)
     robot = "{mjcf: arm.xml, tcp_link: tcp, base: {xyz: [0, 0, 0.5]}}"

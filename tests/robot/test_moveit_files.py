@@ -79,7 +79,7 @@ def test_position_only_ik_frees_the_orientation(tmp_path, only):
     [
         (
             {"joint_limits": LIMITS.replace("elbow_joint", "elbo_joint")},
-            ["joint_limits.yaml:8:3", "no joint 'elbo_joint'", "did you mean 'elbow_joint'"],
+            ["joint_limits.yaml:8:3", "no joint 'elbo_joint'", "did you mean `elbow_joint`"],
         ),
         ({"joint_limits": LIMITS.replace("1.5", "fast")}, ["joint_limits.yaml:5:19", "'fast'"]),
         ({"joint_limits": LIMITS.replace("1.5", "-1")}, [":5:19", "above zero"]),

@@ -1,11 +1,14 @@
 """The gripper that an imported arm brings: recognised from its SRDF, or named."""
 
+import math
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from harness.core.errors import RobotError
+from harness.language.scenario import RobotSpec
+from harness.robot.load import load_robot
 from tests.engine.front_door import check, run
 from tests.robot.arm_files import INERTIAL, SRDF, URDF, load_arm, write_arm
 
@@ -184,9 +187,39 @@ def test_a_gripper_is_found_without_an_srdf(tmp_path, hand, joint, opening):
     assert arm.groups["gripper"].joint_names == (joint,)
 
 
+def test_the_opening_of_a_jaw_that_always_touches_at_its_hinge_is_that_of_its_outer_half(tmp_path):
+    """As on the SO-101: the jaw lies on the palm when closed, and turns about its lower edge."""
+    flat = (
+        '<link name="{0}"><inertial><mass value="0.05"/><inertia ixx="1e-5" iyy="1e-5" izz="1e-5"/>'
+        '</inertial><collision><origin xyz="0 {1} 0.05"/><geometry><box size="0.04 0.02 0.1"/>'
+        "</geometry></collision></link>"
+    )
+    hinge = (
+        '<joint name="jaw_joint" type="revolute"><parent link="palm"/><child link="jaw"/>'
+        '<axis xyz="-1 0 0"/><limit lower="0" upper="1.2" velocity="1" effort="2"/></joint>'
+    )
+    fixed = PALM.replace(f'<link name="palm">{INERTIAL}</link>', flat.format("palm", -0.01))
+    write(tmp_path, fixed + flat.format("jaw", 0.01) + hinge, group="")
+    gripper = load_arm(tmp_path, srdf=None).gripper
+    assert (gripper.closed_position, gripper.widths[0, 1]) == pytest.approx((0, 0), abs=1e-6)
+    corner = 0.05 * math.sin(1.2)
+    assert gripper.widths[-1, 1] == pytest.approx(corner, rel=0.05)
+
+
 def test_fingers_that_no_group_names_are_found_too(tmp_path):
     write(tmp_path, group="")
     assert load_arm(tmp_path).gripper.group == "gripper"
+
+
+def test_a_wheel_of_the_motor_next_to_the_fingers_is_not_part_of_the_arm(tmp_path):
+    wheel = FINGER.format(name="wheel", y=0, side=1, mimic="").replace("prismatic", "continuous")
+    (tmp_path / "arm.urdf").write_text(SIX.replace("</robot>", wheel + "</robot>"))
+    arm = load_robot(RobotSpec(urdf="arm.urdf"), tmp_path)
+    assert arm.groups["arm"].joint_names[-1] == "tool_joint"
+    assert (arm.gripper.joint, sorted(arm.gripper.pads.values())) == (
+        "left_joint",
+        ["left", "right"],
+    )
 
 
 def test_a_wrist_that_ends_an_arm_is_no_jaw(tmp_path):

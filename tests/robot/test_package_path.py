@@ -98,6 +98,36 @@ def test_a_folder_of_the_packages_name_around_the_robots_file_is_the_package(tmp
     assert mesh(tmp_path, urdf) == folder / "meshes" / "part.obj"
 
 
+@pytest.mark.parametrize("file", ["bare.urdf", "bare.xacro"])
+def test_a_package_that_is_nowhere_is_the_folder_around_the_robots_file_that_has_the_path(
+    tmp_path, file
+):
+    folder = looks(tmp_path / "copied", manifest=False)
+    robot = folder / "urdf" / "bare.urdf"
+    robot.parent.mkdir()
+    text = URDF.replace(SHAPE, SHAPE + LOOK)
+    if file == "bare.xacro":
+        (folder / "urdf" / "part.xacro").write_text(text)
+        text = (
+            '<robot name="arm" xmlns:xacro="http://ros.org/wiki/xacro">'
+            '<xacro:include filename="$(find looks)/urdf/part.xacro"/></robot>'
+        )
+        robot = robot.with_suffix(".xacro")
+    robot.write_text(text)
+    found = load_robot(RobotSpec.model_validate({robot.suffix[1:]: str(robot)}))
+    _, seen = next(link for link in found.links if link.name == "upper").collisions
+    assert seen.geometry.path == folder / "meshes" / "part.obj"
+    assert f"the package 'looks' is not found: {folder} is read instead" in found.notes
+
+
+def test_a_package_next_to_a_folder_around_the_robots_file_is_found(tmp_path):
+    looks(tmp_path / "many" / "looks", manifest=False)
+    urdf = tmp_path / "many" / "arm" / "urdf" / "bare.urdf"
+    urdf.parent.mkdir(parents=True)
+    urdf.write_text(URDF.replace(SHAPE, SHAPE + LOOK))
+    assert mesh(tmp_path, urdf) == tmp_path / "many" / "looks" / "meshes" / "part.obj"
+
+
 @pytest.mark.parametrize(
     ("place", "home"),
     [

@@ -34,7 +34,7 @@ class Node:
     def send(self, goal, client=None):
         """Send a goal and wait for its end."""
         sent = (client or self.arm).send(goal)
-        self.wait(lambda: sent.is_over)
+        self.wait(lambda: sent.result is not None)
         return sent
 
     def sleep(self, seconds):

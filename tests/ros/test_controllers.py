@@ -70,6 +70,20 @@ def test_a_stamp_in_the_future_delays_and_one_of_another_clock_does_not():
     assert np.allclose(arm.set_points(np.array([11.0]))[0], 1.0)
 
 
+@pytest.mark.parametrize(("time", "stamp"), [(1e-9, 0.0), (0.0, 0.0), (0.5, 0.5)])
+def test_a_trajectory_that_ends_now_is_its_last_point(time, stamp):
+    arm = controller()
+    arm.begin("g", content((time, [0.3, 0.1], [0, 0]), stamp=stamp), 1.0, REST)
+    assert np.allclose(arm.set_points(np.array([1.01]))[0], [0.3, 0.1])
+
+
+def test_long_names_are_cropped_in_messages():
+    names = ("x" * 10_000, "second")
+    with pytest.raises(GoalRefused) as error:
+        controller().begin("g", content((1.0, [0, 0], []), names=names), 1.0, REST)
+    assert len(str(error.value)) < 200
+
+
 def test_each_mistake_has_its_error_code():
     good = content((1.0, [0, 0], [0, 0]))
     assert refused(**{**good, "joint_names": []}) is Code.INVALID_JOINTS

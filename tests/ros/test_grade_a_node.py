@@ -57,13 +57,22 @@ def test_a_node_that_crashes_ends_the_step_and_shows_what_it_printed(tmp_path, c
         (["a.mcap", "--node", "x"], "give either a recording (BAG) or a command (--node)"),
         (["--node", "student="], "has no command"),
         (["--node", "a", "--node", "b"], "two commands are called 'node'"),
-        (["--node", "x", "--domain", "400"], "domains are 0 to 232"),
+        (["--node", "x", "--domain", "400"], "'400' is no domain; they are 0 to 232"),
         (["--node", "x", "--adapter", "rclpy"], "rclpy cannot be imported"),
     ],
 )
 def test_wrong_usage_is_explained(tmp_path, capsys, arguments, reason):
     assert main(["grade", BOX, *arguments, "--report-dir", str(tmp_path)]) == 2
     assert reason in capsys.readouterr().err
+
+
+def test_a_node_that_crashes_after_its_work_is_mentioned(tmp_path, capsys):
+    file, node = scenario(tmp_path, "- external: {}"), tmp_path / "node.py"
+    node.write_text("print('done'); raise SystemExit(3)")
+    assert main(["grade", str(file), "--node", f"{sys.executable} {node}", "--no-report"]) == 0
+    said = capsys.readouterr().err
+    assert "note: the launched program ended with exit code 3" in said
+    assert "  done" in said
 
 
 def test_a_command_that_cannot_be_started_is_named(tmp_path, capsys):

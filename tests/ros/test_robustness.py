@@ -96,29 +96,6 @@ def test_another_implementation_of_the_protocol_reads_the_joints(tmp_path):
     assert len(message.position) == len(message.velocity) == len(message.name)
 
 
-def test_moveit_s_controller_manager_executes_a_trajectory(tmp_path):
-    """What MoveItSimpleControllerManager does with a controller: it waits for the action server,
-    sends the trajectory without tolerances, awaits the goal's response, then the result; a
-    trajectory that is stopped is canceled and its result awaited."""
-    with bridge(scenario(tmp_path, HOLD)) as (node, _):
-        states = node.listen("/joint_states", "sensor_msgs/msg/JointState")
-        node.wait(lambda: node.arm.is_ready)
-        node.wait(lambda: states)
-        start = list(states[-1].position[:4])
-        goal = node.arm.send(follow(point(0.0, start), point(0.1, END), point(0.3, END)))
-        node.wait(lambda: goal.is_accepted is not None)
-        node.wait(lambda: goal.is_over)
-        assert (goal.status, goal.result.error_code) == (Status.SUCCEEDED, 0)
-        stopped = node.arm.send(follow(point(0.0, END), point(5.0, start)))
-        node.wait(lambda: stopped.is_accepted)
-        node.arm.cancel(stopped)
-        node.wait(lambda: stopped.is_over)
-        assert (stopped.cancel_code, stopped.status) == (0, Status.CANCELED)
-        held = states[-1].position[0]
-        node.sleep(0.3)
-        assert abs(states[-1].position[0] - held) < 0.01
-
-
 def test_a_node_that_comes_later_gets_what_is_latched(tmp_path):
     with bridge(scenario(tmp_path, HOLD)) as (node, _):
         node.ready()

@@ -46,7 +46,7 @@ def test_a_process_that_crashes_is_an_error_of_the_case():
         "from harness.core.errors import HarnessError\n"
         "try: Background(lambda _: os.kill(os.getpid(), 11)).result(unobserved)\n"
         "except HarnessError as error: print(error)"
-    ) == ["the", "process", "that", "draws", "pictures", "ended", "with", "code", "-11"]
+    ) == ["the", "process", "in", "the", "background", "ended", "with", "code", "-11"]
 
 
 def test_a_process_that_is_closed_ends_at_once():

@@ -123,7 +123,7 @@ def test_planner_and_physics_agree_on_random_poses_of_a_body_near_a_bin(tmp_path
 def test_an_unknown_link_of_the_robots_collision_is_reported(tmp_path):
     robot = "{model: open_manipulator_x, collision: {link9: hull}}"
     [problem] = check(tmp_path, "- wait: 1 s", robot=robot).problems
-    assert "'open_manipulator_x' has no link 'link9'; did you mean 'link" in problem.message
+    assert "'open_manipulator_x' has no link 'link9'; did you mean `link" in problem.message
 
 
 WORLD = """\

@@ -1,6 +1,7 @@
 """What a page's requests do: objects, handles, cameras, reach, undo."""
 
 import base64
+import time
 
 import cv2
 import numpy as np
@@ -10,10 +11,12 @@ from harness.core.resources import data_folder
 from harness.core.spatial import SE3
 from harness.studio.document import new_text
 from harness.studio.files import StudioFiles
+from harness.studio.live_camera import PERIOD
 from harness.studio.session import guarded
 
 studio_module = pytest.importorskip("harness.studio.studio")
-ARM = {"model": "open_manipulator_x"}
+ROBOT = "open_manipulator_x"
+ARM = {"model": ROBOT}
 BOX = {"name": "box", "kind": "box", "size": [0.03, 0.03, 0.08], "xyz": [0.2, 0, 0.04]}
 
 
@@ -83,6 +86,76 @@ def test_a_goal_is_recorded_in_the_chosen_frame(studio):
     assert studio.cell.tcp_pose().translation == pytest.approx([0.2, 0, 0.15], abs=2e-3)
 
 
+JUDGED = """\
+scenario: judged
+robot: open_manipulator_x
+steps:
+  - ptp: {joints: {joint1: 0.3}}
+    expect: [{joints: {positions: {joint1: 0.3}}}]
+  - wait: 60 s
+expect:
+  - never: collision
+"""
+
+
+def test_a_verdict_is_shown_as_soon_as_its_step_has_ended(tmp_path):
+    studio, verdicts = opened(tmp_path, JUDGED), []
+    studio.speed = 1.0
+
+    def hear(message, **_):
+        if message["type"] == "verdicts":
+            verdicts.append((studio.busy, message))
+            studio.speed = 0.0
+
+    studio.session.broadcast = hear
+    reply(studio, "run", until="end")
+    busy, first = verdicts[0]
+    assert busy == "wait 60 s", "the second step is still being executed"
+    assert [(each["status"], each["open"]) for each in first["verdicts"]] == [
+        ("passed", False),
+        ("passed", True),
+    ]
+    assert (first["outcome"], first["digest"]) == ("", "")
+    last = studio.verdicts.taken(wait=True)
+    assert [each["open"] for each in last["verdicts"]] == [False, False]
+    assert last["verdicts"][0]["margin"] == first["verdicts"][0]["margin"]
+    assert (last["outcome"], len(last["digest"])) == ("passed", 64)
+
+
+MISTAKES = {
+    "empty": ("", "none"),
+    "not YAML": (f"scenario: x\nrobot: {ROBOT}\nsteps: [\n", "robot"),
+    "no robot": ("scenario: x\nsteps: [{wait: 1 s}]\n", "none"),
+    "an unknown robot": ("scenario: x\nrobot: open_manipulator_y\nsteps: []\n", "none"),
+    "a step": (f"scenario: x\nrobot: {ROBOT}\nsteps: [{{wait: long}}]\n", "robot"),
+    "a world": (f"robot:\n  model: {ROBOT}\nscenario: x\nworld: no\nsteps: []\n", "robot"),
+}
+
+
+@pytest.mark.parametrize("name", MISTAKES)
+def test_a_text_with_mistakes_opens_with_what_can_be_shown(tmp_path, name):
+    text, scene = MISTAKES[name]
+    studio = opened(tmp_path, text)
+    said = studio.document_message()
+    assert (said["text"], said["scene"]) == (text, scene)
+    assert said["problems"]
+    assert "mistakes" in reply(studio, "run", until="end")["error"]
+    if scene == "none":
+        assert "there is no robot yet" in reply(studio, "reset")["error"]
+    good = new_text("by hand", ARM, "empty")
+    said = reply(studio, "edit", text=good)["document"]
+    assert (said["scene"], said["problems"]) == ("whole", [])
+    assert "error" not in reply(studio, "execute", step="wait: 10 ms")
+
+
+def test_a_mistake_in_another_file_is_not_marked_in_the_text(tmp_path):
+    (tmp_path / "w.yaml").write_text("world: w\nobjects: [{name: a, bix: {}}]\n")
+    studio = opened(tmp_path, new_text("by hand", ARM, "w.yaml"))
+    [problem, *_] = studio.document_message()["problems"]
+    assert problem["line"] == 0
+    assert "w.yaml:2" in problem["text"]
+
+
 def test_undo_takes_the_step_out_of_the_text_and_the_state(studio):
     before, start = studio.text, studio.cell.joint_positions()
     reply(studio, "execute", step="ptp: {joints: {joint1: 0.4}}")
@@ -96,8 +169,13 @@ def test_a_camera_shows_the_cell_as_it_is(tmp_path):
     file = data_folder("scenarios") / "cameras/01_gripper_camera.scenario.yaml"
     studio = opened(tmp_path, file.read_text())
     [name, *_] = studio.cell.prepared.program.cameras
-    encoded = base64.b64decode(reply(studio, "camera", name=name)["image"])
-    picture = cv2.imdecode(np.frombuffer(encoded, np.uint8), cv2.IMREAD_COLOR)
-    camera = studio.cell.prepared.program.cameras[name]
-    assert picture.shape == (camera.height, camera.width, 3)
-    assert picture.std() > 5
+    assert reply(studio, "camera", name=name) == {}
+    studio.camera.draw(studio.cell)
+    encoded = base64.b64decode(studio.camera.taken(wait=True)["image"])
+    pixels = cv2.imdecode(np.frombuffer(encoded, np.uint8), cv2.IMREAD_COLOR)
+    assert pixels.shape == (180, 240, 3)
+    assert pixels.std() > 5
+    time.sleep(PERIOD)
+    studio.camera.draw(studio.cell)
+    assert studio.camera.taken(wait=True) is None, "nothing has moved"
+    assert "no camera 'other'" in reply(studio, "camera", name="other")["error"]

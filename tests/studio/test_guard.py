@@ -1,12 +1,11 @@
 """Who may use a studio: strangers, other sites and other hosts are refused."""
 
-import asyncio
 import http.client
 import json
 
 import pytest
-import websockets
 from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
 
 pytest.importorskip("viser")
 
@@ -22,15 +21,12 @@ def status(served, path="/", **headers):
 
 
 def socket_status(served, path="/studio/ws", origin=None, **headers):
-    async def attempt():
-        address = f"ws://127.0.0.1:{served.port}{path}"
-        try:
-            async with websockets.connect(address, origin=origin, additional_headers=headers):
-                return 101
-        except InvalidStatus as refused:
-            return refused.response.status_code
-
-    return asyncio.run(attempt())
+    address = f"ws://127.0.0.1:{served.port}{path}"
+    try:
+        with connect(address, origin=origin, additional_headers=headers):
+            return 101
+    except InvalidStatus as refused:
+        return refused.response.status_code
 
 
 @pytest.fixture(scope="module")
@@ -109,20 +105,16 @@ def test_no_page_can_publish_the_studio_through_a_tunnel(served):
 
 
 def test_a_page_does_not_learn_the_name_with_which_another_controls(served):
-    async def requested():
-        address = f"ws://127.0.0.1:{served.port}/studio/ws"
-        async with websockets.connect(address) as first, websockets.connect(address) as second:
-            await first.send(json.dumps({"page": "secret-of-the-first"}))
-            await first.recv()
-            await second.send(json.dumps({"page": "second"}))
-            await second.send(json.dumps({"do": "control", "word": "request", "number": 1}))
-            await second.send(json.dumps({"do": "reset", "number": 2}))
-            heard = ""
-            while '"number": 2' not in heard:
-                heard += await second.recv()
-            return heard
-
-    heard = asyncio.run(requested())
+    address = f"ws://127.0.0.1:{served.port}/studio/ws"
+    with connect(address) as first, connect(address) as second:
+        first.send(json.dumps({"page": "secret-of-the-first"}))
+        first.recv()
+        second.send(json.dumps({"page": "second"}))
+        second.send(json.dumps({"do": "control", "word": "request", "number": 1}))
+        second.send(json.dumps({"do": "reset", "number": 2}))
+        heard = ""
+        while '"number": 2' not in heard:
+            heard += str(second.recv())
     assert "secret-of-the-first" not in heard
     assert "another page controls the cell" in heard
 

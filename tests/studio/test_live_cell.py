@@ -7,6 +7,7 @@ from harness.core.errors import SpecError
 from harness.session.run_case import run_case
 from harness.session.run_request import RunRequest
 from harness.studio.document import Document
+from harness.studio.judging import judged
 from harness.studio.live_cell import LiveCell
 
 TEXT = """\
@@ -28,7 +29,7 @@ expect:
 
 @pytest.fixture
 def cell(tmp_path):
-    return LiveCell(tmp_path / "by_hand.scenario.yaml", TEXT)
+    return LiveCell(tmp_path / "by_hand.scenario.yaml", Document(TEXT))
 
 
 def full_state(cell):
@@ -39,12 +40,12 @@ def full_state(cell):
 def test_the_digest_of_the_studio_is_that_of_a_run_of_the_saved_file(cell):
     cell.idle(0.2)  # physics that goes on while a person thinks is no part of the run
     cell.go_to(3)
-    judged = cell.judged()
+    found = judged(cell)
     cell.path.write_text(cell.document.text)
     result = run_case(RunRequest(cell.path))
-    assert result.outcome == judged.outcome == "passed"
-    assert judged.digest == result.digest
-    assert [each.margin for each in judged.verdicts] == [each.margin for each in result.verdicts]
+    assert result.outcome == found.outcome == "passed"
+    assert found.digest == result.digest
+    assert [each.margin for each in found.verdicts] == [each.margin for each in result.verdicts]
 
 
 def test_the_nearest_points_of_robot_and_object_are_as_far_apart_as_the_two(cell):
@@ -80,9 +81,9 @@ def test_motions_by_hand_are_undone_before_the_last_step(cell):
 def test_what_was_moved_by_hand_has_no_digest_until_it_is_run(cell):
     cell.jog(cell.joint_positions() + 0.1, 1.0, 0.1)
     cell.run_steps(3)
-    assert cell.judged().digest == ""
+    assert judged(cell).digest == ""
     cell.go_to(3)
-    assert cell.judged().digest
+    assert judged(cell).digest
 
 
 def test_an_edit_keeps_the_steps_before_it(cell):
@@ -108,7 +109,7 @@ def test_a_recorded_step_is_in_the_text_and_was_executed(cell):
     assert text.startswith("# picked by hand")
     cell.go_to(4)
     cell.path.write_text(text)
-    assert cell.judged().digest == run_case(RunRequest(cell.path)).digest
+    assert judged(cell).digest == run_case(RunRequest(cell.path)).digest
 
 
 def test_a_step_that_fails_is_not_recorded_and_changes_nothing(cell):
@@ -137,7 +138,7 @@ def test_planning_moves_nothing(cell):
 
 def test_a_run_opens_in_the_middle_of_a_step_exactly_as_it_was(cell):
     cell.run_steps(3)
-    recorded = cell.judged().run.signals
+    recorded = judged(cell).run.signals
     middle = len(recorded.times) // 3
     cell.run_until(recorded.times[middle])
     assert cell.simulator.sample_count == middle + 1

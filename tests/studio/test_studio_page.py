@@ -8,6 +8,7 @@ import pytest
 from docs.generators.studio_guide import follow, is_shown, steps
 from harness.session.run_case import run_case
 from harness.session.run_request import RunRequest
+from harness.studio.document import new_text
 from tests.reporting.browser import wait_for
 from tests.studio.conftest import pixel_of
 
@@ -28,7 +29,7 @@ editor.execCommand("startAutocomplete");
 class Page:
     """A page of the studio, with what went wrong in it."""
 
-    def __init__(self, context, address, *, has_scene=False):
+    def __init__(self, context, address, *, has_scene=False, is_live=True):
         self.page = context.new_page()
         if not has_scene:  # drawn in software, it takes longer than all the rest
             self.page.route("**/scene/*", lambda route: route.fulfill(body=""))
@@ -36,7 +37,8 @@ class Page:
         self.page.on("console", self._hear)
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.goto(address)
-        self.wait("document.querySelectorAll('.joint').length > 0")
+        if is_live:
+            self.wait("document.querySelectorAll('.joint').length > 0")
 
     def _hear(self, message):
         if message.type == "error" and not re.search(EXPECTED_NOISE, message.text):
@@ -160,7 +162,7 @@ def test_a_mistake_is_marked_at_its_place_with_advice(opened):
     opened.wait("document.querySelectorAll('#problems button').length === 1")
     problem = opened.page.inner_text("#problems")
     assert re.match(r"\d+:\d+: there is no named state of gripper called 'opne'", problem)
-    assert "did you mean 'open'" in problem
+    assert "did you mean `open`" in problem
     [annotation] = opened.page.evaluate("ace.edit('editor').session.getAnnotations()")
     assert "opne'" in annotation["text"]
     opened.page.click("#run-all")
@@ -184,6 +186,10 @@ def test_a_second_page_watches_until_it_is_given_control(browser, opened, served
     context = browser.new_context()
     second = Page(context, served.address)
     second.wait_text("#control-state", "you watch")
+    good = opened.editor()
+    opened.type_scenario(f"{good}# edited by the one that controls\n")
+    second.wait("ace.edit('editor').getValue().includes('# edited')")
+    opened.type_scenario(good)
     second.page.fill('input[aria-label="joint1 number"]', "0.2")
     second.page.press('input[aria-label="joint1 number"]', "Enter")
     second.wait_text("#log", "another page controls the cell")
@@ -204,3 +210,21 @@ def test_a_page_that_comes_back_finds_everything_as_it_was(opened):
     opened.wait("document.getElementById('status').innerText.includes('steps executed')")
     assert opened.editor() == before
     opened.wait("document.getElementById('control').hidden")
+
+
+def test_a_file_with_mistakes_opens_with_its_marks_and_becomes_live(browser, serve):
+    good = new_text("by hand", {"model": "open_manipulator_x"}, "empty")
+    served = serve("steps: [\n")
+    context = browser.new_context()
+    opened = Page(context, served.address, is_live=False)
+    opened.wait_text("#stand-in", "There is no robot yet")
+    opened.wait_text("#problems", "not YAML")
+    opened.type_scenario(good.replace("steps: []", "steps: [{move_to: hom}]"))
+    opened.wait_text("#stand-in", "The robot alone")
+    opened.wait_text("#problems", "did you mean 'home'")
+    opened.wait("document.querySelectorAll('.joint').length > 0")
+    opened.type_scenario(good)
+    opened.wait_text("#status", "0 of 0 steps executed")
+    opened.wait("!document.querySelector('#stand-in').innerText")
+    assert opened.complaints == []
+    context.close()

@@ -131,5 +131,5 @@ def test_a_model_that_fails_names_no_file_and_quotes_its_own_lines(title, tmp_pa
     mistaken = scenario.model_copy(update={"steps": (MoveTo(named_target="hime"),)})
     reported = str(harness.run(mistaken))
     assert "<Scenario model>:" in reported
-    assert "did you mean 'home'" in reported
+    assert "did you mean `home`" in reported
     assert str(tmp_path) not in reported

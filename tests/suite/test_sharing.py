@@ -66,7 +66,7 @@ def digests(results):
     return {case: result["digest"] for case, result in results.items()}
 
 
-def test_sharing_changes_no_digest_and_leaves_nothing_behind(folder, alone, tmp_path):
+def test_sharing_changes_no_digest_and_leaves_no_files(folder, alone, tmp_path):
     shared = run(folder, TMPDIR=str(tmp_path))
     assert list(tmp_path.iterdir()) == []
     assert digests(shared) == digests(alone)

@@ -255,7 +255,7 @@ def test_a_mistake_of_the_file_is_reported_once_not_for_every_sample(varied):
     path = varied(VARIED.replace("wait:", "wiat:"))
     done = harness("run", path, "--no-report", cwd=path.parent)
     assert done.returncode == 2
-    assert done.stdout.count("did you mean 'wait'") <= 1
+    assert done.stdout.count("did you mean `wait`") <= 1
     assert "1 invalid of 1 case" in done.stdout
 
 

@@ -23,7 +23,7 @@ MESSAGES = {
         r"reach: NO_IK_SOLUTION: nearest reachable pose: \(.*\), \d+\.\d mm and \d+\.\d° away",
         r"    with the requested orientation: \(.*\), \d+\.\d mm away",
         r"    with any orientation: \(.*\), \d+\.\d mm away",
-        r"inverse kinematics: not reached, no branch",
+        r"inverse kinematics: skipped, no branch",
         r"what to do: `pose: \{frame: world, xyz: \[.*\], quat_xyzw: \[.*\]\}` is reached",
         r"picture: images/01-too-far-why.jpg \(nearest pose\)",
     ],
@@ -119,7 +119,7 @@ def unexpected(file: Path, folder: Path, step_id: str) -> Path:
 
 def test_every_failure_is_reported_in_the_words_that_a_person_needs(failed):
     file, run, _ = failed
-    steps = [step for step in run.steps if step.status == "expected_error"]
+    steps = [step for step in run.steps if step.status == "expected error"]
     assert steps
     for step in steps:
         text = [step.message, *explanation_lines(step.explanation, step.message)]
@@ -144,7 +144,7 @@ def test_a_motion_that_is_refused_never_moves_the_arm(failed):
     """Refused by planning, verification included: no time passes and no command changes."""
     _, run, _ = failed
     for step in run.steps:
-        if step.status != "expected_error" or step.error_code in ("CONTROL_FAILED", "TIMED_OUT"):
+        if step.status != "expected error" or step.error_code in ("CONTROL_FAILED", "TIMED_OUT"):
             continue
         assert step.trajectory is None
         assert step.end_time == step.start_time

@@ -16,7 +16,7 @@ def receipts(saved):
     return {
         (fault["fault"], fault["target"]): (fault["receipt"], fault["evidence"])
         for step in saved.steps
-        for fault in step.result.get("faults", ())
+        for fault in step.result.plain().get("faults", ())
     }
 
 
@@ -73,7 +73,7 @@ def test_a_fault_that_is_set_back_in_time_had_no_effect(tmp_path):
 """,
         world="lesson_ur",
     )
-    broke, repaired = (step.result["faults"] for step in saved.steps[1:3])
+    broke, repaired = (step.result.plain()["faults"] for step in saved.steps[1:3])
     assert {fault["fault"]: (fault["receipt"], fault["evidence"]) for fault in broke} == {
         "friction": ("no_effect", "nothing pulled at it before it was set again"),
         "gripper_effort": ("no_effect", "the gripper pressed on nothing before it was set again"),

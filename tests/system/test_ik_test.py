@@ -86,7 +86,7 @@ def test_only_the_two_mistakes_part_the_two_files():
         (["mine:ik", *ARM], "no module 'mine'"),
         (["mine", *ARM], "'mine' is not module:function or file.py:function"),
         ([f"{EXAMPLES / 'student_ik.py'}:in_plane", *ARM],
-         "did you mean 'in_the_plane'? functions there: ik, "),
+         "did you mean `in_the_plane`? functions there: ik, "),
         ([f"{EXAMPLES / 'student_ik.py'}:wrapped", *ARM], "for the parameter `angle`"),
         ([f"{EXAMPLES / 'student_ik.py'}:ik", "--robot", "ur3"], "returned 1 x 4 numbers; it must "
          "return 6 joint positions"),

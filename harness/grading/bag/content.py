@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -35,6 +35,17 @@ class RecordedTrack:
     def times(self) -> tuple[IntArray, IntArray]:
         """`logged` and `stamps` as arrays, shape (N,) each."""
         return np.array(self.logged, dtype=np.int64), np.array(self.stamps, dtype=np.int64)
+
+
+def joined(tracks: Sequence[RecordedTrack]) -> RecordedTrack:
+    """The times of several tracks as one, without their numbers where there are several."""
+    if len(tracks) == 1:
+        return tracks[0]
+    times = RecordedTrack(0)
+    for track in tracks:
+        times.logged.extend(track.logged)
+        times.stamps.extend(track.stamps)
+    return times
 
 
 Tracks = dict[tuple[str, ...], RecordedTrack]

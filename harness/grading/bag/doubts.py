@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -15,7 +15,7 @@ from harness.grading.bag.joints import JointRows, joints_of_frames, rows_of_join
 from harness.recording.run import LinkPlacement
 from harness.robot.description import RobotDescription
 
-DoubtKind = Literal["publishers", "tf", "frames", "steps"]
+DoubtKind = Literal["publishers", "tf", "frames", "steps", "velocities"]
 
 FEWEST_JUMPS = 3
 """Jumps there and back from which on a topic has two publishers; one is a wrong message."""
@@ -31,6 +31,11 @@ APART = {"revolute": 0.1, "prismatic": 0.01}
 20 ms at 5 rad/s or 0.5 m/s."""
 FEWEST_APART = 0.02
 """Share of the samples that differ by more, from which on the two contradict each other."""
+
+STRETCH = 0.5
+"""Motions are compared with the integral of the velocities over this time [s]."""
+SHARE_OF_MOTION = 0.2
+"""Share of a motion by which filters and coarse sampling may falsify that integral."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +74,10 @@ def publisher_doubts(
 
 
 def _two_values(time: float) -> str:
-    return f"jumps between two values from t={time:.3f} s on: two programs publish it"
+    return (
+        f"jumps between two values from t={time:.3f} s on: two programs publish it, or its clock"
+        " was set back"
+    )
 
 
 def _first_jump_of_track(track: RecordedTrack, timeline: Timeline) -> float | None:
@@ -127,3 +135,38 @@ def tf_doubts(
             time = float(times[int(np.argmax(far))])
             said = f"/tf and the joint states contradict each other about {joint.name}"
             yield Doubt("tf", f"{said} at {int(far.sum())} samples, first at t={time:.3f} s")
+
+
+def velocity_doubts(
+    description: RobotDescription, arm_joints: Collection[str], times: FloatArray, rows: JointRows
+) -> Iterator[Doubt]:
+    """Joints of the arm that move otherwise than their recorded velocities say.
+
+    So it is where the clock of a recording runs at another speed, where positions repeat while the
+    arm moves, and where joints are exchanged during the recording.
+
+    Args:
+        description: The description of the robot.
+        arm_joints: Names of the arm's joints; fingers report velocities that mean little.
+        times: Times of the samples [s], shape (N,).
+        rows: The measured joints at these times.
+    """
+    for column, joint in enumerate(description.movable_joints):
+        positions, velocities = rows.positions[:, column], rows.velocities[:, column]
+        if joint.name not in arm_joints or not np.nan_to_num(velocities).any():
+            continue
+        kind = "prismatic" if joint.kind == "prismatic" else "revolute"
+        means = (velocities[1:] + velocities[:-1]) / 2
+        turns = np.diff(positions)
+        if joint.kind == "continuous":
+            turns = (turns + np.pi) % (2 * np.pi) - np.pi
+        steps = np.stack([turns, means * np.diff(times)])
+        steps[:, ~np.isfinite(steps).all(axis=0)] = 0.0
+        sums = np.concatenate([np.zeros((2, 1)), np.cumsum(steps, axis=1)], axis=1)
+        moved, integral = sums - sums[:, np.searchsorted(times, times - STRETCH)]
+        allowed = SHARE_OF_MOTION * np.maximum(np.abs(moved), np.abs(integral))
+        wrong = np.abs(moved - integral) > APART[kind] / 2 + allowed
+        if wrong.any():
+            time = float(times[int(np.argmax(wrong))])
+            said = f"{joint.name} moves otherwise than its velocities say, first at t={time:.3f} s"
+            yield Doubt("velocities", said)

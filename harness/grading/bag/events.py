@@ -11,10 +11,14 @@ from harness.core.types import BoolArray, FloatArray
 from harness.grading.bag.clocks import Timeline
 from harness.grading.bag.content import BagContent
 from harness.recording.run import AttachmentRecord, StepRecord, StepStatus
+from harness.recording.step_results import SavedResult
 
 RESOLUTION = 1e-6
 """Tolerance of comparisons of times [s]; stamps are whole nanoseconds."""
-STATUSES: Mapping[str, StepStatus] = {status: status for status in get_args(StepStatus)}
+STATUSES: Mapping[str, StepStatus] = {
+    **{status: status for status in get_args(StepStatus)},
+    "expected_error": "expected error",  # of bags that earlier versions wrote
+}
 Timed = tuple[float, dict[str, Any]]
 StepInterval = tuple[float, float]
 
@@ -41,7 +45,7 @@ def steps_of(
     steps: list[StepRecord] = []
     for number, (begin, event) in enumerate(events):
         if event.get("event") == "step_not_reached":
-            steps.append(_step(event, known, (begin, begin), times, "not_reached"))
+            steps.append(_step(event, known, (begin, begin), times, "not reached"))
         elif event.get("event") == "step_started":
             end, final = _end(event, events[number + 1 :], float(times[-1]))
             status = STATUSES.get(str(final.get("status")), "passed")
@@ -152,5 +156,10 @@ def _step(
         end_index=max(int(np.searchsorted(times, end + RESOLUTION)), start + 1),
         error_code=str(event.get("error_code", "")),
         message=str(event.get("message", "")),
-        result=event["result"] if isinstance(event.get("result"), dict) else {},
+        result=_result(event),
     )
+
+
+def _result(event: Mapping[str, Any]) -> SavedResult:
+    saved: Mapping[str, Any] = event["result"] if isinstance(event.get("result"), dict) else {}
+    return SavedResult(verb=str(event.get("verb", "")), saved=saved)

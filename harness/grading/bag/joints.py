@@ -10,7 +10,7 @@ import numpy as np
 from harness.core.pose_arrays import relative, rotation_vector
 from harness.core.types import FloatArray
 from harness.grading.bag.clocks import Timeline
-from harness.grading.bag.content import BagContent, RecordedTrack, Tracks
+from harness.grading.bag.content import BagContent, RecordedTrack, Tracks, joined
 from harness.grading.bag.sampling import gap_limit, rows_at, with_gaps_filled
 from harness.recording.run import LinkPlacement
 from harness.robot.description import RobotDescription
@@ -28,7 +28,7 @@ class JointRows:
 def reference_track(
     content: BagContent, description: RobotDescription, arm_joints: Collection[str]
 ) -> RecordedTrack | None:
-    """The messages that define the run's samples: those with most of the arm's joints.
+    """The messages that define the run's samples: all with most of the arm's joints, in any order.
 
     Without joint states, they are the transforms of a link that one of these joints moves.
 
@@ -38,12 +38,12 @@ def reference_track(
         arm_joints: Joints of the arm; all movable joints of a gripper without an arm.
     """
     arm = set(arm_joints)
-    known = [
-        (len(arm & set(names)), len(track.logged), names) for names, track in content.joints.items()
-    ]
-    best = max(known, default=(0, 0, ()))
-    if best[0]:
-        return content.joints[best[2]]
+    most = max((len(arm.intersection(names)) for names in content.joints), default=0)
+    if most:
+        best = [names for names in content.joints if len(arm.intersection(names)) == most]
+        longest = max(best, key=lambda names: (len(content.joints[names].logged), names))
+        same = arm.intersection(longest)
+        return joined([content.joints[names] for names in best if same <= set(names)])
     for joint in description.joints:
         if joint.name in arm and (joint.parent, joint.child) in content.edges:
             return content.edges[joint.parent, joint.child]

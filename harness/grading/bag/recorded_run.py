@@ -12,7 +12,7 @@ from harness.core.types import BoolArray, FloatArray
 from harness.core.world import WorldObject
 from harness.grading.bag.clocks import Timeline
 from harness.grading.bag.content import BagContent, BagTopics
-from harness.grading.bag.doubts import Doubt, publisher_doubts, tf_doubts
+from harness.grading.bag.doubts import Doubt, publisher_doubts, tf_doubts, velocity_doubts
 from harness.grading.bag.events import (
     StepInterval,
     Timed,
@@ -135,6 +135,8 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
     ]
     if content.joints:
         doubts += tf_doubts(content, placements, known.description, timeline, times, measured)
+        if not any(doubt.kind == "publishers" for doubt in doubts):  # jumps are no motion
+            doubts += velocity_doubts(known.description, known.robot.arm_joints, times, measured)
     notes = [
         *content.notes,
         *timeline.notes,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from harness.language.files.mistakes import did_you_mean
+from harness.core.suggestion import did_you_mean
 from harness.language.formula.formula import (
     FUNCTIONS,
     SIGNALS,

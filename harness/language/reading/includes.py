@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from harness.core.errors import Problem, SpecError
-from harness.language.files.mistakes import did_you_mean
+from harness.core.suggestion import did_you_mean
 from harness.language.files.source import Entry, Located, Place, Source, walk
 from harness.language.files.yaml_file import LARGEST_TREE, parse_yaml, read_text
 from harness.language.reading.params import PARAMS, escaped, filled

@@ -13,8 +13,8 @@ from pydantic_core import ErrorDetails
 from harness.core.errors import Problem, SpecError
 from harness.core.registry import broken_plugins, registry
 from harness.core.resources import data_folder
+from harness.core.suggestion import did_you_mean
 from harness.language.base import SpecModel
-from harness.language.files.mistakes import did_you_mean
 from harness.language.files.source import Loc, Located, Source, SourceMap
 from harness.language.files.yaml_file import parse_yaml, read_text, require_key
 from harness.language.reading.includes import with_includes

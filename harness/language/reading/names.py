@@ -7,8 +7,9 @@ from typing import NamedTuple
 
 from harness.core.errors import Problem
 from harness.core.registry import broken_plugins
+from harness.core.suggestion import did_you_mean, nearest
 from harness.language.annotations import is_model, keys_of
-from harness.language.files.mistakes import did_you_mean, nearest, value_text
+from harness.language.files.mistakes import value_text
 from harness.language.files.source import Entry, Located, Place
 from harness.language.language import EXPECTATIONS, PREDICATES, UNTIL
 
@@ -21,21 +22,6 @@ TEMPORAL_WORDS = {
 
 ALONE = ("never", "no", "not", "none", "always", "eventually")
 """Those that name no object and no state when they stand in the place of one."""
-
-SYNONYMS = {
-    **dict.fromkeys(("contact", "contacts", "touch", "touching"), "in_contact"),
-    **dict.fromkeys(("collide", "collides", "colliding", "collisions"), "collision"),
-    **dict.fromkeys(("held", "holding"), "grasped"),
-    "inside": "in",
-}
-"""Words that are near no predicate's name, or too near to another's."""
-
-BOUNDS = ("slip", "tracking_error", "effort")
-"""Predicates that demand a small value by themselves: `never: slip` would demand slip."""
-
-OPPOSITES = {"grasped": "released", "released": "grasped", "static": "displaced",
-             "displaced": "static"}  # fmt: skip
-"""Predicate -> the predicate that holds at the end where it does not."""
 
 UNTIL_USAGE = "`- {always: A, until: B}`: A holds until B does"
 
@@ -102,10 +88,10 @@ def _unknown(
     if temporal is not None:
         before, predicate = temporal
         hint = f"write `{before}: {_with_content(predicate, content)}`"
-        if before == "never" and predicate in BOUNDS:
+        if before == "never" and PREDICATES[predicate].is_upper_bound:
             hint = f"write `{predicate}`: it holds while the value is at most its limit"
-        elif before == "never" and predicate in OPPOSITES:
-            other = _with_content(OPPOSITES[predicate], content).strip("{}")
+        elif before == "never" and PREDICATES[predicate].opposite:
+            other = _with_content(PREDICATES[predicate].opposite, content).strip("{}")
             hint += f", which excludes it at every moment, or `{other}`"
         problems.append(place.problem(f"no predicate is called `{word}`", hint))
         return predicate
@@ -129,7 +115,7 @@ def with_temporal_word(word: str) -> tuple[str, str] | None:
             ("_".join(parts[-count:]), parts[:-count]),
         ):
             name = "_".join(rest)
-            predicate = SYNONYMS.get(name) or nearest(name, PREDICATES)
+            predicate = nearest(name, PREDICATES)
             if said in TEMPORAL_WORDS and predicate is not None:
                 return TEMPORAL_WORDS[said], predicate
     return None

@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple, get_args, get_origin
 
 from harness.core.errors import Problem, SpecError
+from harness.core.suggestion import did_you_mean
 from harness.language.annotations import bare, branches, is_model, keys_of
 from harness.language.base import Rpy, SpecModel
 from harness.language.expectation import ExpectationFields, PredicateFields
-from harness.language.files.mistakes import did_you_mean, value_text
+from harness.language.files.mistakes import value_text
 from harness.language.files.source import Entry, Located, Place, Source, located
 from harness.language.files.yaml_file import parse_value
 from harness.language.language import EXPECTATIONS, KEYS_BY_PREDICATE, TEMPORAL, UNTIL

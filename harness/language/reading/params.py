@@ -6,7 +6,8 @@ import re
 from collections.abc import Callable, Mapping
 
 from harness.core.errors import Problem
-from harness.language.files.mistakes import did_you_mean, value_text
+from harness.core.suggestion import did_you_mean
+from harness.language.files.mistakes import value_text
 from harness.language.files.source import Entry, Located, Place
 
 REFERENCE = re.compile(r"\$(?P<escape>\$?)\{(?P<name>[^{}]*)\}")

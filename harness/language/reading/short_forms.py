@@ -14,10 +14,11 @@ from typing import Any, get_args, get_origin
 from pydantic.fields import FieldInfo
 
 from harness.core.errors import Problem
+from harness.core.suggestion import did_you_mean, nearest
 from harness.language.annotations import bare, branches, is_model, keys_of, units_of
 from harness.language.base import SpecModel
 from harness.language.expectation import CHECK, ExpectationFields, PredicateFields
-from harness.language.files.mistakes import did_you_mean, nearest, value_text
+from harness.language.files.mistakes import value_text
 from harness.language.files.source import Entry, Located
 from harness.language.language import (
     EXPECTATIONS,

@@ -10,8 +10,9 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from harness.core.errors import Problem
+from harness.core.suggestion import did_you_mean
 from harness.language.base import SpecModel
-from harness.language.files.mistakes import LONGEST_VALUE, MistakeError, did_you_mean, value_text
+from harness.language.files.mistakes import LONGEST_VALUE, MistakeError, value_text
 from harness.language.files.source import Found, Loc, SourceMap
 
 Wording = Callable[[ErrorDetails, dict[str, Any], str], tuple[str, str]]

@@ -20,7 +20,8 @@ from harness.planning.cartesian.link_motion import LinkMotions
 from harness.planning.cartesian.link_timing import LinkRates
 from harness.planning.cartesian.tracing import STEP_ANGLE, STEP_LENGTH, Trace, trace
 from harness.ports import CartesianPathOptions, Goal, MotionPlan
-from harness.recording.explanation import CartesianPathResult, StraightResult
+from harness.recording.explanation import StraightResult
+from harness.recording.step_results import CartesianPathResult
 
 CORNER_SHARE = 0.45
 """Largest part of the shorter adjacent line that the rounding of a corner may use."""

@@ -27,9 +27,10 @@ from harness.planning.task import PlanningTask
 from harness.planning.timing.limits import TimingError
 from harness.planning.timing.profiles import resting
 from harness.ports import ArcPoint, Goal, MotionPlan, PoseGoal
-from harness.recording.explanation import ArcResult, DistanceResult, StraightResult
+from harness.recording.explanation import ArcResult, StraightResult
 from harness.recording.goal_failures import IkFailure
 from harness.recording.motion_failures import DeviationFailure, DistanceFailure, TraceFailure
+from harness.recording.step_results import DistanceResult
 
 RELATIVE_STEP = 0.002
 """Step of a motion that goes as far as it can [m]."""

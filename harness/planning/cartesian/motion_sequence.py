@@ -17,8 +17,8 @@ from harness.planning.cartesian.link_motion import LinkMotions, arc_to
 from harness.planning.cartesian.link_timing import LinkRates
 from harness.planning.goals.goals import find_goals
 from harness.ports import JointGoal, MotionPlan, SequenceItem
-from harness.recording.explanation import SequenceResult
 from harness.recording.motion_failures import SequenceFailure
+from harness.recording.step_results import SequenceResult
 
 
 def plan_items(motions: LinkMotions, items: Sequence[SequenceItem]) -> MotionPlan:

@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -13,13 +13,11 @@ import pinocchio as pin
 
 from harness.core.geometry import Plane
 from harness.core.types import FloatArray, IntArray
+from harness.planning.collision.compiled import Certify
 from harness.planning.collision.convex_tree import ConvexTree, concatenate, shapes_tree
 from harness.planning.collision.scene import Body, CollisionModel
 from harness.planning.model.robot_model import GroupSpace
 from harness.robot.description import Joint
-
-Certify = Callable[..., tuple[int, int]]
-"""The type of `edge_kernel.certify`."""
 
 ROUNDING = 1e-5
 """Band around a margin that is left undecided, because of Coal's tolerance [m]."""
@@ -32,21 +30,34 @@ MOST_WAITING, SCRATCH = 1024, 16
 """Largest number of pairs of nodes that wait for comparison, and rows of working memory."""
 
 
-@dataclass(frozen=True, eq=False)
+Array = np.ndarray[Any, Any]
+Arrays = tuple[Array, ...]
+
+VARYING = 3
+"""Number of arrays that differ from motion to motion; they are the first ones of the table."""
+
+
 class MotionArrays:
-    """Arrays that check a motion of one group in one scene; `edge_kernel.certify` explains each.
+    """Checks a motion of one group in one scene with the compiled `certify`.
 
     Attributes:
-        rest: The positions of the moving joints where the group's are zero, shape (M,).
-        drive: What the group's positions add to them, shape (M, dof).
+        table: The address of each array and its shape, filled up with ones, in the order in which
+            `certify` names them, shape (arrays, 4).
     """
 
-    rest: FloatArray
-    drive: FloatArray
-    robot: tuple[IntArray | FloatArray, ...]
-    shapes: tuple[IntArray | FloatArray, ...]
-    pairs: tuple[IntArray | FloatArray, ...]
-    memory: tuple[IntArray | FloatArray, ...]
+    def __init__(self, rest: FloatArray, drive: FloatArray, arrays: Arrays) -> None:
+        """Keep what `certify` needs.
+
+        Args:
+            rest: The positions of the moving joints where the group's are zero, shape (M,).
+            drive: What the group's positions add to them, shape (M, dof).
+            arrays: The arrays that are the same for each motion.
+        """
+        self._rest, self._drive = rest, drive
+        self._arrays: list[Array] = [np.ascontiguousarray(array) for array in arrays]
+        self.table = np.ones((VARYING + len(arrays), 4), dtype=np.int64)
+        for row, array in enumerate(self._arrays, start=VARYING):
+            self._enter(row, array)
 
     def certify(
         self, check: Certify, states: FloatArray, count: int, *, straight: bool
@@ -54,7 +65,7 @@ class MotionArrays:
         """Classify the states of a motion.
 
         Args:
-            check: The compiled function `edge_kernel.certify`.
+            check: The compiled function `certify`.
             states: Group positions at each state, shape (count, dof); of a straight motion both its
                 ends, shape (2, dof), the first of which is not one of the states.
             count: The number of states.
@@ -63,17 +74,16 @@ class MotionArrays:
         Returns:
             A blocked state or -1, and the undecided states.
         """
+        values = np.ascontiguousarray(self._rest + states @ self._drive.T)
         queue, found = np.empty((2 * count + 4, 4), dtype=np.int64), np.empty(count, dtype=np.int64)
-        blocked, undecided = check(
-            self.rest + states @ self.drive.T,
-            count,
-            straight,
-            self.robot,
-            self.shapes,
-            self.pairs,
-            (*self.memory[:-1], queue, self.memory[-1], found),
-        )
-        return blocked, found[:undecided]
+        for row, array in enumerate((values, queue, found)):
+            self._enter(row, array)
+        undecided = check(self.table.ctypes.data, count, straight)
+        return (-1, found[:undecided]) if undecided >= 0 else (-1 - undecided, found[:0])
+
+    def _enter(self, row: int, array: Array) -> None:
+        self.table[row, 0] = array.__array_interface__["data"][0]
+        self.table[row, 1 : 1 + array.ndim] = array.shape
 
 
 def motion_arrays(
@@ -86,31 +96,18 @@ def motion_arrays(
     free = np.maximum(margin, 0.0) + ROUNDING
     blocked = np.where(margin >= 0, margin - ROUNDING, -np.inf)
     tree = layout.tree
-    return MotionArrays(
-        rest=space.offset[moving.columns],
-        drive=space.matrix[moving.columns],
-        robot=(
-            moving.parent,
-            moving.chain,
-            moving.body_poses(model.bodies),
-            layout.body_rows,
-            layout.boxes,
-        ),
-        shapes=(
-            tree.spheres,
-            tree.nodes,
-            tree.convexes,
-            tree.sizes,
-            tree.points,
-            tree.edges_at,
-            tree.edges,
-        ),
-        pairs=(np.column_stack([free, blocked]), layout.checks, layout.keys, layout.joints),
-        memory=_working_memory(layout, len(moving.columns)),
+    arrays = (
+        *(moving.parent, moving.chain, moving.body_poses(model.bodies)),
+        *(layout.body_rows, layout.boxes),
+        *(tree.spheres, tree.nodes, tree.convexes, tree.sizes, tree.points),
+        *(tree.edges_at, tree.edges),
+        *(np.column_stack([free, blocked]), layout.checks, layout.keys, layout.joints),
+        *_working_memory(layout, len(moving.columns)),
     )
+    return MotionArrays(space.offset[moving.columns], space.matrix[moving.columns], arrays)
 
 
-def _working_memory(layout: _Layout, width: int) -> tuple[IntArray | FloatArray, ...]:
+def _working_memory(layout: _Layout, width: int) -> Arrays:
     """The memory of the compiled check that does not depend on the length of a motion."""
     bodies, pairs, keys = len(layout.body_rows), len(layout.checks), len(layout.keys)
     floats = ((width,), (width,), (width, 12), (bodies, 12), (bodies, 3), (keys, 2, 9))

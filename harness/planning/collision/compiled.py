@@ -1,20 +1,37 @@
-"""Loads the compiled check of motions when it pays off."""
+"""Loads the compiled check of motions when it pays off, as machine code of an earlier process.
+
+numba compiles the check once, which takes about ten seconds. Its machine code is kept in the user's
+cache directory and loaded by LLVM alone, in a tenth of a second: numba itself takes half a second
+and 60 MB more.
+"""
 
 from __future__ import annotations
 
+import ctypes
+import hashlib
+import platform
 from collections.abc import Callable
 from functools import cache
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal
 
-PAYS_AFTER = 20_000
-"""States that are checked before the compiled check is loaded: at most half a second of work, which
-is what loading takes."""
+from harness.core.user_cache import cached, is_writable, store
+
+PAYS_AFTER = 4_000
+"""States that are checked before the compiled check is loaded: about a tenth of a second of work,
+which is what loading takes."""
 
 COMPILING_PAYS_AFTER = 100_000
-"""The same where nothing is compiled yet, which takes about ten seconds, once."""
+"""The same where nothing is compiled yet."""
 
 When = Literal["always", "when it pays", "never"]
+Certify = Callable[[int, int, bool], int]
+"""The type of `certify` in `harness.planning.collision.kernel`."""
+
+_SOURCES = Path(__file__).with_name("kernel")
+_ARGUMENTS = 3
+_CHECKSUM = hashlib.sha256().digest_size
 
 _when: When = "when it pays"
 _states = 0
@@ -27,8 +44,8 @@ def use_compiled(when: When) -> None:
     _when = when
 
 
-def compiled_check(states: int) -> Callable[..., Any] | None:
-    """`edge_kernel.certify` for a number of states; None while loading it does not pay off.
+def compiled_check(states: int) -> Certify | None:
+    """The compiled `certify` for a number of states; None while loading it does not pay off.
 
     The results are the same, so only the computing time depends on when it is loaded.
     """
@@ -37,26 +54,89 @@ def compiled_check(states: int) -> Callable[..., Any] | None:
         return None
     if _when == "when it pays" and _states < COMPILING_PAYS_AFTER:
         _states += states
-        if _states >= _enough == PAYS_AFTER and not _is_compiled():
+        if _states >= _enough == PAYS_AFTER and stored_code() is None:
             _enough = COMPILING_PAYS_AFTER
         if _states < _enough:
             return None
-    return _load()
+    return _loaded()
 
 
 @cache
-def _load() -> Callable[..., Any] | None:
-    try:
-        from harness.planning.collision.edge_kernel import certify
-    except RuntimeError:  # no writable folder for the cache
-        return None
+def _loaded() -> Certify | None:
+    """The check; None where it would have to be compiled and cannot be stored."""
+    stored = stored_code()
+    if stored is None:
+        if not is_writable():
+            return None
+        stored = _compile()
+        store(code_file(), hashlib.sha256(stored).digest() + stored)
+    name, _, code = stored.partition(b"\0")
+    return _linked(code, name.decode())
+
+
+def stored_code() -> bytes | None:
+    """What `_compile` returned earlier; None where nothing is stored, or it is damaged."""
+    content = cached(code_file()) or b""
+    checksum, code = content[:_CHECKSUM], content[_CHECKSUM:]
+    return code if hashlib.sha256(code).digest() == checksum else None
+
+
+@cache
+def code_file() -> str:
+    """The name of the stored code: everything that it depends on."""
+    from llvmlite import binding as llvm
+
+    key = hashlib.sha256()
+    for path in sorted(_SOURCES.glob("*.py")):
+        key.update(path.read_bytes())
+    processor = (llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten())
+    key.update(
+        repr((version("numba"), version("llvmlite"), platform.machine(), *processor)).encode()
+    )
+    return f"machine_code/{key.hexdigest()}.bin"
+
+
+def _compile() -> bytes:
+    """The name of the function and its object file, with a zero byte between them."""
+    from llvmlite import binding as llvm
+
+    from harness.planning.collision.kernel.certify import certify  # imports numba
+    from harness.planning.collision.kernel.compiling import assembly
+
+    name, text = assembly(certify, _ARGUMENTS)
+    return name.encode() + b"\0" + _machine().emit_object(llvm.parse_assembly(text))
+
+
+def _linked(code: bytes, name: str) -> Certify:
+    """The function of an object file, callable from Python."""
+    from llvmlite import binding as llvm
+
+    engine: Any = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())
+    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+    engine.finalize_object()
+    result, numbers = ctypes.c_int64(), [ctypes.c_int64] * _ARGUMENTS
+    kind = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p, *numbers)
+    function = kind(engine.get_function_address(name))
+
+    def certify(table: int, count: int, straight: bool) -> int:
+        status = function(ctypes.addressof(result), None, table, count, straight)
+        assert status == 0, engine  # whose memory holds the code
+        return result.value
+
     return certify
 
 
-def _is_compiled() -> bool:
-    """Whether a process has compiled the check before."""
-    certify: Any = _load()
-    if certify is None:
-        return False
-    folder = Path(certify._cache.cache_path)  # noqa: SLF001 (numba offers no public way)
-    return any(folder.glob("edge_kernel.certify-*.nbi"))
+def _machine() -> Any:
+    """The processor of this machine as LLVM's target."""
+    from llvmlite import binding as llvm
+
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    return llvm.Target.from_default_triple().create_target_machine(
+        cpu=llvm.get_host_cpu_name(),
+        features=llvm.get_host_cpu_features().flatten(),
+        opt=3,
+        reloc="default",
+        codemodel="jitdefault",
+        jit=True,
+    )

@@ -10,10 +10,8 @@ import numpy as np
 
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Shape, Sphere
 from harness.core.types import FloatArray, IntArray
+from harness.planning.collision.kernel.convex_kinds import CYLINDER, HALF_SPACE, POINTS, POLYTOPE
 from harness.robot.mesh_file import convex_hull, read_triangles
-
-POINTS, POLYTOPE, CYLINDER, HALF_SPACE = range(4)
-"""Kinds of convex sets, as in `edge_kernel`."""
 
 FEW_POINTS = 32
 """Number of points up to which comparing all of them finds the farthest one the fastest."""

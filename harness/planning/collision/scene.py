@@ -295,10 +295,10 @@ class CoalScene:
         )
         return tuple(touch for touch in required if touch.distance <= touch.required)
 
-    def link_corners(self, link: str) -> FloatArray:
-        """Corners of the boxes around a link's shapes; its origin where it has none, (n, 3)."""
+    def corners(self, body: str) -> FloatArray:
+        """Corners of the boxes around a body's shapes; its origin where it has none, (n, 3)."""
         corners = [
-            shape.pose.apply(box_corners(coal_geometry(shape))) for shape in self.shapes_of(link)
+            shape.pose.apply(box_corners(coal_geometry(shape))) for shape in self.shapes_of(body)
         ]
         return np.concatenate(corners) if corners else np.zeros((1, 3))
 

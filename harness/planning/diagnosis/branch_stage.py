@@ -43,7 +43,7 @@ def branches_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) ->
         stage = Stage("inverse kinematics", "failed", text, "NO_IK_SOLUTION")
         return StageFinding(stage, advice=advice)
     if not answer.solutions and not answer.outside_limits:
-        return StageFinding(Stage("inverse kinematics", "not reached", f"no branch ({kind})"))
+        return StageFinding(Stage("inverse kinematics", "skipped", f"no branch ({kind})"))
     free = sum(not branch.touches for branch in study.branches)
     ruled_out = {
         "in collision": len(study.branches) - free,

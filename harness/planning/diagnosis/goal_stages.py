@@ -63,7 +63,7 @@ def _joint_findings(request: StageRequest, positions: FloatArray) -> list[StageF
             request.joints(np.clip(positions, space.lower, space.upper)),
         )
         advice = f"give {first.joint} at {'least' if below else 'most'} {limit}"
-        unknown = Stage("inverse kinematics", "not reached", given)
+        unknown = Stage("inverse kinematics", "skipped", given)
         return [StageFinding(stage, nearest, advice), StageFinding(unknown)]
     reach = StageFinding(Stage("reach", "passed", "every joint is inside its limits"))
     found = request.touches(positions)

@@ -79,12 +79,12 @@ def path_finding(request: StageRequest, target: FloatArray | None) -> StageFindi
     """What blocks the path; `target` are the group positions of the first free solution."""
     failure = request.failure
     if failure.code.startswith("START_STATE"):
-        return StageFinding(Stage("path", "not reached", "there is no start to go from"))
+        return StageFinding(Stage("path", "skipped", "there is no start to go from"))
     if is_timing(request):
         return StageFinding(Stage("path", "passed", "found"))
     traced = failure.details.find(TraceFailure)
     if failure.code in _GOAL_CODES and (traced is None or traced.free_share is None):
-        return StageFinding(Stage("path", "not reached", "there is no goal to go to"))
+        return StageFinding(Stage("path", "skipped", "there is no goal to go to"))
     details, nearest = _blocked(request, target)
     stage = Stage("path", "failed", failure.message, failure.code, tuple(details))
     return StageFinding(stage, nearest, _path_advice(request, nearest))
@@ -94,7 +94,7 @@ def timing_finding(request: StageRequest) -> StageFinding:
     """Whether a path can be timed under the limits."""
     failure = request.failure
     if not is_timing(request):
-        return StageFinding(Stage("time parameterisation", "not reached", "there is no path"))
+        return StageFinding(Stage("time parameterisation", "skipped", "there is no path"))
     advice = "lower the scaling factors in `planning`"
     overload = failure.details.find(OverloadFailure)
     too_short = failure.details.find(DurationFailure)

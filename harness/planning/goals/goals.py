@@ -135,6 +135,11 @@ def _no_solution(
             f"{goal.link} cannot reach {point(target)}: the nearest point it reaches, "
             f"{point(nearest_point.pose.translation)}, is {length_text(too_far)} away"
         )
+    elif nearest.shift + nearest.turn < _REACHED and not study.answer.outside_limits:
+        solver = described(IkSolver.plugin_kind, study.answer.method)
+        message = (
+            f"{solver} finds no solution, but {goal.link} reaches {point(target)} as requested"
+        )
     elif study.answer.outside_limits and nearest.shift + nearest.turn > _REACHED:
         ways = counted_noun(study.answer.outside_limits, "way")
         message = (

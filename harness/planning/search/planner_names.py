@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping
+
+from harness.core.suggestion import did_you_mean
 
 DEFAULT_PLANNER = "auto"
 FAST_PLANNER = "BalancedConnect"
@@ -75,9 +76,7 @@ def resolve_planner_id(name: str) -> str:
     known = by_lower.get(bare.lower())
     usual = ", ".join(_CLASSES)
     if known is None:
-        near = difflib.get_close_matches(bare.lower(), list(by_lower), n=1)
-        hint = f"did you mean '{by_lower[near[0]]}'? " if near else ""
-        raise ValueError(f"unknown planner '{name}'; {hint}planners: {usual}")
+        raise ValueError(f"unknown planner '{name}'; {did_you_mean(bare, _CLASSES, 'planners')}")
     if known in _REFUSED:
         raise ValueError(f"planner '{name}' is refused: {_REFUSED[known]}; planners: {usual}")
     return _CLASSES[known]

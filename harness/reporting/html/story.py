@@ -13,7 +13,7 @@ from harness.recording.run import JointRecord, Run, StepRecord, Verdict, is_nest
 from harness.recording.store import StoredRun
 from harness.reporting.margins import allowance_used
 
-TONES = {"passed": "good", "expected_error": "good", "failed": "bad", "not_reached": "open"}
+TONES = {"passed": "good", "expected error": "good", "failed": "bad", "not reached": "open"}
 
 
 def ordered_steps(run: Run) -> list[StepRecord]:

@@ -16,9 +16,9 @@ from harness.reporting.terminal import verdict_line
 
 STATUS = {
     "passed": "passed",
-    "expected_error": "failed as expected",
+    "expected error": "failed as expected",
     "failed": "failed",
-    "not_reached": "not reached",
+    "not reached": "not reached",
 }
 
 
@@ -135,7 +135,7 @@ def _steps(stored: StoredRun) -> str:
 
     rows = [
         _row(
-            {"failed": "bad", "not_reached": "open"}.get(step.status, "good"),
+            {"failed": "bad", "not reached": "open"}.get(step.status, "good"),
             str(number), "\u2003" * depth_of(step, run) + step.summary, STATUS[step.status],
             _duration(step), str(step.line or ""), step_text(step),
         )
@@ -146,7 +146,7 @@ def _steps(stored: StoredRun) -> str:
 
 def _duration(step: StepRecord) -> str:
     took = step.end_time - step.start_time
-    return f"{took:.2f} s" if step.status != "not_reached" and math.isfinite(took) else ""
+    return f"{took:.2f} s" if step.status != "not reached" and math.isfinite(took) else ""
 
 
 def _findings(stored: StoredRun) -> str:

@@ -38,7 +38,7 @@ def write_page(folder: Path, stored: StoredRun | None = None) -> Path:
 
 def _pictures(folder: Path, stored: StoredRun) -> list[SummaryPicture]:
     """A few of the stills that the folder has: failures, the end, and between them."""
-    executed = [step for step in stored.run.steps if step.status != "not_reached"]
+    executed = [step for step in stored.run.steps if step.status != "not reached"]
     stills = {
         int(file.name.partition("-")[0]) - 1: file
         for file in (folder / "images").glob("[0-9]*-*.jpg")

@@ -78,13 +78,13 @@ def _steps(run: Run) -> list[Event]:
 
     for step in run.steps:
         finish_but(step.path)
-        if step.status == "not_reached":
+        if step.status == "not reached":
             continue
         events.append(_started(step))
         begun.append(step)
     finish_but("")
     end = float(run.signals.times[-1])
-    events += [_not_reached(step, end) for step in run.steps if step.status == "not_reached"]
+    events += [_not_reached(step, end) for step in run.steps if step.status == "not reached"]
     return events
 
 

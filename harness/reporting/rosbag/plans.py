@@ -41,7 +41,7 @@ LONGEST_PUBLISHED = 300
 def planned(run: Run) -> Iterator[Message]:
     """Each motion's trajectory when it begins, as such and as MoveIt shows it."""
     for step in run.steps:
-        if step.trajectory is not None and step.status != "not_reached":
+        if step.trajectory is not None and step.status != "not reached":
             trajectory = _trajectory(step)
             yield Message(step.start_time, PLANNED_TRAJECTORY, trajectory)
             yield Message(step.start_time, DISPLAY_PLANNED_PATH, _display(run, step, trajectory))

@@ -4,28 +4,19 @@ from __future__ import annotations
 
 import hashlib
 import io
-import os
 import platform
-import tempfile
 import zipfile
 from collections.abc import Callable
 from importlib.metadata import version
-from pathlib import Path
 
 import numpy as np
 
 from harness.core.types import FloatArray
+from harness.core.user_cache import cached, store
 from harness.robot.decomposition.convex_parts import Decomposition
 
 METHOD = 1
 """Version of the decomposition; parts of another version are computed again."""
-
-
-def cache_folder() -> Path:
-    """The folder of the parts: `armharness/convex_parts` in XDG's cache directory."""
-    base = os.environ.get("XDG_CACHE_HOME", "")
-    root = Path(base) if Path(base).is_absolute() else Path.home() / ".cache"
-    return root / "armharness" / "convex_parts"
 
 
 def stored_decomposition(
@@ -44,30 +35,31 @@ def stored_decomposition(
     key = hashlib.sha256(content)
     versions = (METHOD, np.__version__, version("scipy"), platform.machine())
     key.update(repr((factors.tolist(), *versions)).encode())
-    path = cache_folder() / f"{key.hexdigest()}.npz"
-    found = _read(path)
+    name = f"convex_parts/{key.hexdigest()}.npz"
+    found = _read(cached(name))
     if found is None:
         from harness.robot.decomposition.decomposition import decompose  # here: imports SciPy
 
         found = decompose(triangles())
-        _write(path, found)
+        store(name, _content(found))
     return found
 
 
-def _read(path: Path) -> Decomposition | None:
+def _read(content: bytes | None) -> Decomposition | None:
     """What is stored; None where nothing is, or it is damaged."""
+    if content is None:
+        return None
     try:
-        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as arrays:
+        with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
             points, ends = arrays["points"], arrays["ends"]
             excess, hull_excess, is_closed = arrays["measures"].tolist()
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+    except (ValueError, KeyError, EOFError, zipfile.BadZipFile):
         return None
     parts = tuple(np.split(points, ends[:-1]))
     return Decomposition(parts, excess, hull_excess, bool(is_closed))
 
 
-def _write(path: Path, found: Decomposition) -> None:
-    """Store under a temporary name, then rename: a reader never sees half a file."""
+def _content(found: Decomposition) -> bytes:
     content = io.BytesIO()
     np.savez(
         content,
@@ -75,13 +67,4 @@ def _write(path: Path, found: Decomposition) -> None:
         ends=np.cumsum([len(part) for part in found.parts]),
         measures=np.array([found.excess, found.hull_excess, float(found.is_closed)]),
     )
-    temporary = ""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(dir=path.parent)
-        with os.fdopen(handle, "wb") as file:
-            file.write(content.getbuffer())
-        Path(temporary).replace(path)
-    except OSError:  # a full or read-only disk: the parts are computed again next time
-        if temporary:
-            Path(temporary).unlink(missing_ok=True)
+    return content.getvalue()

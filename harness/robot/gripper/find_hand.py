@@ -31,7 +31,8 @@ def hand_candidates(
     """Groups that may be the arm's hand, the likeliest first, each with the SRDF that has it.
 
     The groups of the arm's end effectors come first, then other groups whose joints the arm
-    carries, then the movable joints that the arm carries and no group names.
+    carries, then the movable joints that the arm carries and no group names: those that others
+    mimic, then all.
     """
     carried = carried_joints(urdf, arm.joint_names)
     tools = [tool.group for tool in srdf.end_effectors if tool.parent_group in ("", arm.name)]
@@ -47,10 +48,12 @@ def hand_candidates(
     )
     left = carried - {name for hand in named for name in hand.joint_names} - set(srdf.passive)
     driven = tuple(joint.name for joint in urdf.joints if joint.name in left and not joint.mimic)
-    if driven:
-        name = next(each for each in (HAND, f"{arm.name}_{HAND}", "hand_") if each not in groups)
-        added = replace(srdf, groups=(*srdf.groups, SrdfGroup(name, joints=driven)))
-        yield PlanningGroup(name, driven), added
+    followed = {joint.mimic.joint for joint in urdf.joints if joint.mimic}
+    name = next(each for each in (HAND, f"{arm.name}_{HAND}", "hand_") if each not in groups)
+    leaders = tuple(joint for joint in driven if joint in followed)
+    for joints in dict.fromkeys(each for each in (leaders, driven) if each):
+        added = replace(srdf, groups=(*srdf.groups, SrdfGroup(name, joints=joints)))
+        yield PlanningGroup(name, joints), added
 
 
 def carried_joints(urdf: Urdf, arm: Sequence[str]) -> set[str]:

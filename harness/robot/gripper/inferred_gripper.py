@@ -12,9 +12,11 @@ import numpy as np
 
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.robot.collision_shapes import convex_shapes
 from harness.robot.description import Joint, Link, Mimic, PlanningGroup
+from harness.robot.mesh_file import hull_of
 from harness.robot.robot_yaml import FingerSide, GripperFacts
-from harness.robot.solids import box_corners, coal_geometry
+from harness.robot.solids import box_corners, coal_geometry, hull_corners
 from harness.robot.srdf.default_pairs import coal_transform, urdf_poses
 from harness.robot.srdf.srdf import Srdf, link_pair
 from harness.robot.urdf.urdf import Urdf
@@ -27,6 +29,12 @@ GRIP_FORCE = 20.0
 
 LEAST_TRAVEL = 0.002
 """Smallest change of the gap of a hand that can grasp [m]."""
+
+WIDE = 0.99
+"""Share of the largest gap at which a hand counts as open: a jaw can turn on without opening."""
+
+MOST_CORNERS = 24
+"""Largest number of corners on each side of a plane whose edges across it are cut."""
 
 STATES = {"open": ("open", "opened"), "closed": ("close", "closed")}
 
@@ -61,8 +69,8 @@ def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> IntegratedGripper
 
     The two sides are the finger links that move towards each other, or one that moves towards the
     palm. The pad of a side is its link that reaches farthest out; the next one where the gap
-    between those does not change. Gaps are measured between the pads' shapes over the joint's
-    range.
+    between those does not change. Gaps are measured between the pads' convex parts over the joint's
+    range; those of a jaw that turns from its outer half, since at the hinge it always touches.
 
     Raises:
         NoGripperError: Not one joint, not two sides, or a gap that does not change.
@@ -76,7 +84,9 @@ def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> IntegratedGripper
     sides = _sides(hand, [links for _, links in fingers])
     positions = np.linspace(joint.lower, joint.upper, SAMPLES)
     pads, gaps = _pads(hand, sides, positions)
-    widest, narrowest = positions[int(gaps.argmax())], positions[int(gaps.argmin())]
+    narrowest = positions[int(gaps.argmin())]
+    wide = positions[gaps >= WIDE * gaps.max()]
+    widest = wide[int(np.abs(wide - narrowest).argmin())]
     opened = _state(srdf, group.name, joint.name, "open", float(widest))
     closed = _state(srdf, group.name, joint.name, "closed", float(narrowest))
     slope = float(np.abs(np.diff(gaps) / np.diff(positions)).max())
@@ -155,6 +165,7 @@ class _Hand:
         self.urdf, self.joint, self.palm = urdf, joint, palm
         self._links: Mapping[str, Link] = {link.name: link for link in urdf.links}
         self._poses: dict[float, dict[str, SE3]] = {}
+        self._parts: dict[str, list[tuple[Any, SE3]]] = {}
 
     def has_shape(self, link: str) -> bool:
         return bool(self._links[link].collisions)
@@ -171,6 +182,25 @@ class _Hand:
         pose = self.pose(link, position)
         return [(coal_geometry(s), pose @ s.pose) for s in self._links[link].collisions]
 
+    def parts(self, link: str, *, is_jaw: bool) -> list[tuple[Any, SE3]]:
+        """The convex parts of a pad that close on objects, with their T_link_shape."""
+        if link not in self._parts:
+            shapes = convex_shapes(self._links[link].collisions)
+            self._parts[link] = [(coal_geometry(shape), shape.pose) for shape in shapes]
+            hinge = self._hinge(link) if is_jaw else None
+            if hinge is not None:
+                points = [pose.apply(hull_corners(solid)) for solid, pose in self._parts[link]]
+                self._parts[link] = _outer_half(points, *hinge)
+        return self._parts[link]
+
+    def _hinge(self, link: str) -> tuple[FloatArray, FloatArray] | None:
+        """Origin [m] and axis of the hinge on which a jaw turns, link axes; None for the palm."""
+        if self.joint.kind == "prismatic" or link == self.palm:
+            return None
+        lower = self.joint.lower
+        at = self.pose(link, lower).inverse() @ self.pose(self.joint.child, lower)
+        return at.translation, at.rotation @ self.joint.axis
+
     def middle(self, link: str, position: float) -> FloatArray:
         """Mean of the boxes around a link's solids, shape (3,)."""
         return np.mean([np.mean(box, axis=0) for box in self.boxes(link, position)], axis=0)
@@ -184,10 +214,14 @@ class _Hand:
         return found
 
     def gap(self, pads: tuple[str, str], position: float) -> float:
-        """Distance between two links' solids, 0 where they overlap [m]."""
+        """Distance between two links' parts, 0 where they overlap [m]."""
         import coal
 
-        first, second = (self.solids(pad, position) for pad in pads)
+        poses = [self.pose(pad, position) for pad in pads]
+        first, second = (
+            [(solid, pose @ place) for solid, place in self.parts(pad, is_jaw=self.palm in pads)]
+            for pad, pose in zip(pads, poses, strict=True)
+        )
         nearest = np.inf
         for solid, pose in first:
             for other, other_pose in second:
@@ -195,13 +229,44 @@ class _Hand:
                 at, other_at = coal_transform(pose), coal_transform(other_pose)
                 coal.distance(solid, at, other, other_at, coal.DistanceRequest(), result)
                 nearest = min(nearest, float(result.min_distance))
-        return max(nearest, 0.0)
+                if nearest <= 0:
+                    return 0.0
+        return nearest
 
     def center(self, pads: tuple[str, ...], position: float) -> FloatArray:
         """Midpoint between the pads' centres; of a single jaw its own centre, shape (3,)."""
         if self.palm in pads:
             return self.middle(next(pad for pad in pads if pad != self.palm), position)
         return 0.5 * (self.middle(pads[0], position) + self.middle(pads[1], position))
+
+
+def _outer_half(
+    parts: Sequence[FloatArray], hinge: FloatArray, axis: FloatArray
+) -> list[tuple[Any, SE3]]:
+    """What of convex parts (N, 3) is farther from a hinge than half of the farthest corner."""
+    arms = [points - hinge for points in parts]
+    arms = [arm - np.outer(arm @ axis, axis) for arm in arms]
+    farthest = max(np.concatenate(arms), key=np.linalg.norm)
+    reach = float(np.linalg.norm(farthest))
+    cut = [
+        _above(points, arm @ farthest / reach - 0.5 * reach)
+        for points, arm in zip(parts, arms, strict=True)
+    ]
+    return [(hull_of(points), SE3.identity()) for points in cut if len(points) > 3]
+
+
+def _above(points: FloatArray, heights: FloatArray) -> FloatArray:
+    """The corners of what of a convex body is above a plane, from its corners and their heights.
+
+    Where the body has many corners, some stand for all where edges cross the plane.
+    """
+    high, low = (
+        np.flatnonzero(side)[:: 1 + int(side.sum()) // MOST_CORNERS]
+        for side in (heights > 0, heights <= 0)
+    )
+    share = (heights[high][:, None] / (heights[high][:, None] - heights[low]))[..., None]
+    crossed = points[high][:, None] + share * (points[low] - points[high][:, None])
+    return np.concatenate([points[heights > 0], crossed.reshape(-1, 3)])
 
 
 def _sides(hand: _Hand, fingers: Sequence[tuple[str, ...]]) -> tuple[tuple[str, ...], ...]:

@@ -52,7 +52,8 @@ def read_tree(path: Path, packages: PackagePath) -> list[XmlElement]:
     _include(path, packages, (), roots)
     top = roots[0]
     if top.tag != "mujoco":
-        top.refuse(f"the root element is <{top.tag}>, an MJCF's is <mujoco>")
+        hint = "name the file that includes this one" if top.tag == "mujocoinclude" else ""
+        top.refuse(f"the root element is <{top.tag}>, an MJCF's is <mujoco>", hint)
     _refuse_unbounded(roots)
     folder = _mesh_folder(roots, path.parent)
     for root in roots:

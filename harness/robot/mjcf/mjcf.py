@@ -112,9 +112,12 @@ class _Reader:
         for body in range(1, model.nbody):
             name = model.body(body).name or f"body_{body}"
             parent = int(model.body_parentid[body])
-            if parent not in names or self._is_free(body) or model.body_mocapid[body] >= 0:
+            is_mocap = model.body_mocapid[body] >= 0
+            if parent not in names or self._is_free(body) or (is_mocap and not self._carries(body)):
                 dropped.append(name)
                 continue
+            if is_mocap:
+                self.notes.append(f"body '{name}' is a mocap body that carries joints: it is fixed")
             names[body] = name
             between, chain = body_chain(model, self.elements, body, names[parent], name)
             own = body_link(self.spec, model, self.folder, body, name, self.notes)
@@ -133,6 +136,14 @@ class _Reader:
     def _is_free(self, body: int) -> bool:
         first, count = int(self.model.body_jntadr[body]), int(self.model.body_jntnum[body])
         return any(int(self.model.jnt_type[first + k]) in (0, 1) for k in range(count))
+
+    def _carries(self, body: int) -> bool:
+        """Whether a joint is on a body or on one that it carries."""
+        carried = {body}
+        for each in range(body + 1, self.model.nbody):  # parents come first
+            if int(self.model.body_parentid[each]) in carried:
+                carried.add(each)
+        return any(int(each) in carried for each in self.model.jnt_bodyid)
 
     def _sites(self, names: Mapping[int, str], links: list[Link], joints: list[Joint]) -> None:
         """Add sites as frames, except those with the name of a body."""

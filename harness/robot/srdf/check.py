@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
+from harness.core.suggestion import did_you_mean
 from harness.robot.description import Joint, NamedState, PlanningGroup
 from harness.robot.groups import planning_groups
 from harness.robot.srdf.default_group import DEFAULT_GROUP, default_srdf
@@ -104,7 +104,5 @@ def _within(state: NamedState, joints: Mapping[str, Joint], notes: list[str]) ->
 
 
 def _unknown(what: str, kind: str, name: str, known: Iterable[str]) -> tuple[str, str]:
-    listed = ", ".join(sorted(known))
-    near = difflib.get_close_matches(name, list(known), 1)
-    hint = (f"did you mean '{near[0]}'? " if near else "") + f"{kind}s: {listed}"
+    hint = did_you_mean(name, sorted(known), f"{kind}s")
     return f"{what} names the unknown {kind} '{name}'", hint

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from harness.robot.description import Joint
 from harness.robot.srdf.srdf import Srdf, SrdfGroup
+from harness.robot.tree import carriers
 from harness.robot.urdf.urdf import Urdf
 
 DEFAULT_GROUP = "arm"
@@ -70,9 +71,26 @@ def _without_fingers(chain: Sequence[Joint], urdf: Urdf) -> Sequence[Joint]:
             break
         end = number
     movable = [number for number in range(end) if chain[number].is_movable]
-    if len(movable) > LEAST_ARM and _is_jaw(chain[movable[-1]], urdf):
-        end = movable[-1]
+    if len(movable) > LEAST_ARM:
+        last = chain[movable[-1]]
+        if _is_jaw(last, urdf) or _is_next_to_fingers(last, inside, urdf):
+            end = movable[-1]
     return chain[:end]
+
+
+def _is_next_to_fingers(joint: Joint, chain: set[str], urdf: Urdf) -> bool:
+    """Whether a joint hangs on a rigid body on which fingers that follow each other hang too.
+
+    Such a joint is part of the hand, as the wheel that shows how the gripper's motor turns.
+    """
+    carrier = carriers(urdf.joints, urdf.root)
+    joints = {each.name: each for each in urdf.joints}
+    return any(
+        carrier[follower.parent] == carrier[leader.parent] == carrier[joint.parent]
+        for follower in urdf.joints
+        if follower.mimic and not chain & {follower.name, follower.mimic.joint}
+        for leader in [joints[follower.mimic.joint]]
+    )
 
 
 def _is_jaw(joint: Joint, urdf: Urdf) -> bool:

@@ -81,6 +81,7 @@ def parse_urdf(
     if len(links) > MOST_LINKS:
         root.refuse(f"{len(links)} links; at most {MOST_LINKS} are read")
     joints = with_interfaces(resolved_mimics(joints, elements), root, notes)
+    notes += packages.notes
     ordered = in_tree_order(links, joints, source, elements)
     return Urdf(root.get("name"), *ordered, (*_ignored(root.children), *notes), elements, root)
 

@@ -15,6 +15,9 @@ from harness.robot.description import Joint
 LIMIT_SLACK = 1e-4
 """Excess of a position limit that is rounding of a decimal number [rad or m]."""
 
+LONGEST_NAME = 40
+"""Characters of a name in a message."""
+
 OTHER_CLOCK = 1e6
 """Stamps that differ from the simulated time by more are those of another clock [s]."""
 
@@ -128,13 +131,12 @@ def _order(given: Sequence[str], names: Sequence[str]) -> list[int]:
     """Columns of the message for the controller's joints."""
     if not given:
         raise GoalRefused(Code.INVALID_JOINTS, "the trajectory names no joints")
-    unknown = [name for name in given if name not in names]
+    unknown = [_quoted(name) for name in given if name not in names]
     missing = [name for name in names if name not in given]
     if unknown:
         raise GoalRefused(
             Code.INVALID_JOINTS,
-            f"this controller has no joint {', '.join(map(repr, unknown[:6]))}; it has"
-            f" {', '.join(names)}",
+            f"this controller has no joint {', '.join(unknown[:6])}; it has {', '.join(names)}",
         )
     if missing:
         raise GoalRefused(
@@ -143,6 +145,10 @@ def _order(given: Sequence[str], names: Sequence[str]) -> list[int]:
     if len(set(given)) < len(given):
         raise GoalRefused(Code.INVALID_JOINTS, "the trajectory names a joint twice")
     return [list(given).index(name) for name in names]
+
+
+def _quoted(name: str) -> str:
+    return repr(name if len(name) <= LONGEST_NAME else f"{name[:LONGEST_NAME]}...")
 
 
 def _check_times(times: FloatArray) -> None:
@@ -196,7 +202,8 @@ def _tolerances(given: Sequence[Mapping[str, Any]], names: Sequence[str]) -> dic
     for each in given:
         if each["name"] not in names:
             raise GoalRefused(
-                Code.INVALID_JOINTS, f"a tolerance is for '{each['name']}', which is no joint here"
+                Code.INVALID_JOINTS,
+                f"a tolerance is for {_quoted(each['name'])}, which is no joint here",
             )
         values = [float(each[key]) for key in ("position", "velocity")]
         if not np.isfinite(values).all():

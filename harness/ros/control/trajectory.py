@@ -188,6 +188,7 @@ def _spline(goal: TrajectoryGoal, now: float, start: Rows) -> Spline:
     """The spline from the last set point through the points that are not over yet."""
     times = goal.times + (goal.stamp or now)
     left = times > now + TIME_SLACK
+    left[-1] = True
     if not goal.stamp and goal.times[0] == 0:
         left[0] = True  # a point at time 0 is where the trajectory starts
     parts = [each if each is None else each[left]

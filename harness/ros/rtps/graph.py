@@ -9,6 +9,7 @@ from typing import Any
 
 from harness.ros.graph import Reply
 from harness.ros.interfaces import CANCEL, decoded, message, typestore
+from harness.ros.names import Names
 from harness.ros.rtps import wire
 from harness.ros.rtps.participant import Participant
 from harness.ros.rtps.reader import Received
@@ -16,6 +17,9 @@ from harness.ros.rtps.writer import Qos, Writer
 
 SERVICE_DEPTH = 100
 DISCOVERY = "ros_discovery_info"
+CYCLONE = b"\x01\x10"
+"""Vendor at the start of a GUID. Its ROS middleware carries what identifies a request in the
+content: 16 bytes between the encapsulation header and the message, in requests and responses."""
 GID = 16
 """Bytes of a GUID in rmw_dds_common/msg/Gid since Jazzy."""
 
@@ -60,11 +64,26 @@ class _Client:
     def call(self, request: Any, on_response: Callable[[Any], None]) -> None:
         payload = bytes(typestore().serialize_cdr(request, f"{self.kind}_Request"))
         number = self.writer.last + 1
-        inline = wire.parameters(
-            [(wire.PID_RELATED, self.own_reader + wire.sequence_number(number))]
-        )
         self.waiting[number] = on_response
-        self.writer.write(payload, inline)
+        if any(guid.startswith(CYCLONE) for guid in self.writer.readers):
+            self.writer.write(_with_identity(payload, self.own_reader[8:] + _little(number)))
+            return
+        identity = self.own_reader + wire.sequence_number(number)
+        self.writer.write(payload, wire.parameters([(wire.PID_RELATED, identity)]))
+
+    def take(self, response: Any, received: Received) -> None:
+        """Hand a response to the request that it answers."""
+        if received.writer.startswith(CYCLONE):
+            own, number = received.payload[4:12], received.payload[12:20]
+            is_own = own == self.own_reader[8:]
+            key = int.from_bytes(number, "little", signed=True)
+        else:
+            related = _related(received)
+            is_own = related[:16] == self.own_reader
+            key = wire.number_at(related, 16, "<") if is_own else 0
+        waiting = self.waiting.pop(key, None) if is_own else None
+        if waiting is not None:
+            waiting(response)
 
 
 class RtpsGraph:
@@ -121,13 +140,19 @@ class RtpsGraph:
         qos = Qos(depth=SERVICE_DEPTH)
         writer = self._writer(f"rr{name}Reply", dds_type(f"{kind}_Response"), qos)
 
-        def answer(identity: bytes, response: Any) -> None:
+        def answer(received: Received, response: Any) -> None:
             payload = bytes(typestore().serialize_cdr(response, f"{kind}_Response"))
+            if received.writer.startswith(CYCLONE):
+                payload = _with_identity(payload, received.payload[4:20])
+                writer.write(payload, target=received.writer[:12])
+                return
+            client = _related(received)[:16] or received.writer
+            identity = client + wire.sequence_number(received.number)
             related = [(wire.PID_RELATED, identity), (wire.PID_RELATED_OLD, identity)]
-            writer.write(payload, wire.parameters(related))
+            writer.write(payload, wire.parameters(related), target=client[:12])
 
         def take(request: Any, received: Received) -> None:
-            on_request(request, partial(answer, _identity(received)))
+            on_request(request, partial(answer, received))
 
         self._reader(f"rq{name}Request", f"{kind}_Request", qos, take)
 
@@ -135,19 +160,17 @@ class RtpsGraph:
         qos = Qos(depth=SERVICE_DEPTH)
 
         def take(response: Any, received: Received) -> None:
-            related = received.inline.get(wire.PID_RELATED) or received.inline.get(
-                wire.PID_RELATED_OLD
-            )
-            if related and related[:12] == self.participant.prefix:
-                waiting = client.waiting.pop(wire.number_at(related, 16, "<"), None)
-                if waiting is not None and related[12:16] == client.own_reader[12:]:
-                    waiting(response)
+            client.take(response, received)
 
         reader = self._reader(f"rr{name}Reply", f"{kind}_Response", qos, take)
         writer = self._writer(f"rq{name}Request", dds_type(f"{kind}_Request"), qos)
         own = self.participant.guid(reader.entity)
         client = _Client(writer, kind, own, reader.writers.keys())  # pyright: ignore[reportArgumentType]
         return client
+
+    def names(self) -> tuple[Names, Names]:
+        own, others = self.participant.own_topics(), self.participant.known_topics()
+        return _names(*own), _names(*others)
 
     def spin(self, until: float) -> None:
         self.participant.spin(until)
@@ -170,9 +193,14 @@ class RtpsGraph:
     def _reader(
         self, topic: str, kind: str, qos: Qos, take: Callable[[Any, Received], None]
     ) -> Any:
+        is_service = not topic.startswith("rt")
+
         def deliver(received: Received) -> None:
+            payload = received.payload
+            if is_service and received.writer.startswith(CYCLONE):
+                payload = payload[:4] + payload[20:]
             try:
-                content = decoded(received.payload, kind)
+                content = decoded(payload, kind)
             except Exception:  # noqa: BLE001 - bytes of another program; no content of them is certain
                 self.unreadable += 1
                 return
@@ -206,11 +234,23 @@ class RtpsGraph:
         self._discovery.write(bytes(typestore().serialize_cdr(info, kind)))
 
 
-def _identity(received: Received) -> bytes:
-    """What a response refers to: the reader of the responses, or the writer of the request."""
-    number = wire.sequence_number(received.number)
+def _names(*topics: set[str]) -> Names:
+    """Names in ROS of what is written and what is read in DDS; services are left out."""
+    return Names.of(*({name[2:] for name in each if name.startswith("rt/")} for each in topics))
+
+
+def _related(received: Received) -> bytes:
+    """The reader and the number of a request that a sample names; empty where it names none."""
     for key in (wire.PID_RELATED, wire.PID_RELATED_OLD):
-        related = received.inline.get(key, b"")[:16]
-        if len(related) == 16 and any(related[:12]):
-            return related + number
-    return received.writer + number
+        related = received.inline.get(key, b"")
+        if len(related) >= 24 and any(related[:12]):
+            return related[:24]
+    return b""
+
+
+def _with_identity(payload: bytes, identity: bytes) -> bytes:
+    return payload[:4] + identity + payload[4:]
+
+
+def _little(number: int) -> bytes:
+    return number.to_bytes(8, "little", signed=True)

@@ -8,6 +8,7 @@ import select
 import socket
 import struct
 import time
+from collections import deque
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -21,6 +22,8 @@ GROUP = "239.255.0.1"
 LOOPBACK = "127.0.0.1"
 MOST_PARTICIPANTS = 120
 MOST_DOMAINS = 232
+NEIGHBOURS = 32
+"""Participants of this machine that are announced to one by one: some listen to no multicast."""
 ANNOUNCE_EVERY = 1.0
 REMIND_EVERY = 0.1
 LEASE = 100.0
@@ -87,9 +90,12 @@ class Participant:
         self._base = 7400 + 250 * domain
         self._multicast = self._join()
         self._unicast, self.port = self._bind()
+        own, first = _outward(self._addresses), self._base + 10
+        self._neighbours = [(own, first + 2 * number) for number in range(NEIGHBOURS)]
         self._peers: dict[bytes, _Peer] = {}
         self._writers: dict[bytes, Writer] = {}
         self._readers: dict[bytes, Reader] = {}
+        self._arrived: deque[tuple[Callable[[Received], None], Received]] = deque()
         self._entities = 0
         self._next_announcement = self._next_reminder = 0.0
         self._publications = self._builtin_writer(wire.PUBLICATIONS_WRITER)
@@ -113,7 +119,11 @@ class Participant:
     ) -> Reader:
         """A reader of a topic, known to the peers from now on."""
         entity = self._entity(0x04)
-        made = Reader(entity, topic, type_name, qos, self._send, deliver)
+
+        def arrive(received: Received) -> None:
+            self._arrived.append((deliver, received))
+
+        made = Reader(entity, topic, type_name, qos, self._send, arrive)
         self._readers[entity] = made
         self._subscriptions.write(self._endpoint(entity, topic, type_name, qos))
         self._match_known(made)
@@ -123,14 +133,19 @@ class Participant:
         """The GUID of an endpoint of this participant."""
         return self.prefix + entity
 
-    @property
-    def peers(self) -> int:
-        """Number of other participants that are known."""
-        return len(self._peers)
+    def own_topics(self) -> tuple[set[str], set[str]]:
+        """Names in DDS of the topics that are written and read here."""
+        written = {each.topic for each in self._writers.values()}
+        return written, {each.topic for each in self._readers.values()}
 
-    def known_topics(self) -> set[str]:
-        """Names in DDS of the topics that peers write or read."""
-        return {found[0] for peer in self._peers.values() for found in peer.endpoints.values()}
+    def known_topics(self) -> tuple[set[str], set[str]]:
+        """Names in DDS of the topics that peers write and read."""
+        written: set[str] = set()
+        read: set[str] = set()
+        for peer in self._peers.values():
+            for guid, endpoint in peer.endpoints.items():
+                (written if _is_writer(guid) else read).add(endpoint[0])
+        return written, read
 
     # -- time ---------------------------------------------------------------------------------
 
@@ -175,7 +190,8 @@ class Participant:
             for prefix, peer in list(self._peers.items()):
                 if now - peer.seen > peer.lease:
                     self._forget(prefix)
-            for address in ((GROUP, self._base), *{peer.meta for peer in self._peers.values()}):
+            known = {peer.meta for peer in self._peers.values()}
+            for address in {(GROUP, self._base), *self._neighbours, *known}:
                 self._announce(address)
 
     # -- sockets ------------------------------------------------------------------------------
@@ -203,7 +219,7 @@ class Participant:
         for number in range(MOST_PARTICIPANTS):
             port = self._base + 10 + 2 * number
             with suppress(OSError):
-                made.bind((LOOPBACK if self.is_local else "", port))
+                made.bind(("", port))
                 return made, port
         raise NetworkError(f"ROS domain {self.domain} has no free port on this machine")
 
@@ -223,6 +239,9 @@ class Participant:
             if datagram[:4] == b"RTPS" and datagram[8:20] != self.prefix:
                 with suppress(struct.error, IndexError, ValueError):  # garbage is no message
                     self._take(datagram)
+            while self._arrived:
+                deliver, received = self._arrived.popleft()
+                deliver(received)
 
     # -- messages -----------------------------------------------------------------------------
 
@@ -273,15 +292,16 @@ class Participant:
     # -- discovery ----------------------------------------------------------------------------
 
     def _announce(self, address: Address) -> None:
-        here = wire.locator(self._address, self.port)
+        own = dict.fromkeys((_outward(self._addresses), LOOPBACK))
+        here = [wire.locator(each, self.port) for each in own]
         payload = b"\0\3\0\0" + wire.parameters(
             [
                 (wire.PID_VERSION, wire.VERSION),
                 (wire.PID_VENDOR, wire.VENDOR),
                 (wire.PID_PARTICIPANT, self.guid(wire.PARTICIPANT)),
                 (wire.PID_DOMAIN, struct.pack("<I", self.domain)),
-                (wire.PID_META_UNICAST, here),
-                (wire.PID_DEFAULT_UNICAST, here),
+                *((wire.PID_META_UNICAST, each) for each in here),
+                *((wire.PID_DEFAULT_UNICAST, each) for each in here),
                 (wire.PID_LEASE, struct.pack("<iI", int(LEASE), 0)),
                 (wire.PID_BUILTIN, struct.pack("<I", BUILTIN)),
                 (wire.PID_NAME, wire.text(self.name)),
@@ -320,12 +340,14 @@ class Participant:
                 self._readers[reader].match(source + writer, meta, latched)
 
     def _reachable(self, locators: Iterable[bytes]) -> Address | None:
-        """The address under which a peer is reached; on this machine, its port on loopback."""
+        """The address under which a peer is reached, on this machine where it is here.
+
+        Cyclone DDS takes only packets to the address of the interface that it has chosen.
+        """
         found = [address for each in locators if (address := wire.address_of(each)) is not None]
-        here = [port for host, port in found if host in self._addresses]
-        if here:
-            return LOOPBACK, here[0]
-        return found[0] if found and not self.is_local else None
+        here = [address for address in found if address[0] in self._addresses]
+        usable = here or ([] if self.is_local else found)
+        return min(usable, key=lambda each: each[0] != LOOPBACK, default=None)
 
     def _forget(self, prefix: bytes) -> None:
         self._peers.pop(prefix, None)
@@ -348,7 +370,7 @@ class Participant:
         if peer is None or wire.PID_TOPIC not in known or wire.PID_TYPE not in known:
             return
         reliable, latched = known.get(wire.PID_RELIABILITY), known.get(wire.PID_DURABILITY)
-        is_writer = guid[15] & 0x0F in (0x02, 0x03)
+        is_writer = _is_writer(guid)
         qos = Qos(
             is_reliable=struct.unpack_from("<I", reliable[0])[0] == 2 if reliable else is_writer,
             is_latched=bool(latched) and struct.unpack_from("<I", latched[0])[0] >= 1,
@@ -376,10 +398,9 @@ class Participant:
             reader.writers.pop(guid, None)
 
     def _match_known(self, mine: Writer | Reader) -> None:
-        kinds = (0x04, 0x07) if isinstance(mine, Writer) else (0x02, 0x03)
         for peer in self._peers.values():
             for guid, endpoint in peer.endpoints.items():
-                if guid[15] & 0x0F in kinds:
+                if _is_writer(guid) != isinstance(mine, Writer):
                     _match(mine, guid, endpoint)
 
     def _endpoint(self, entity: bytes, topic: str, type_name: str, qos: Qos) -> bytes:
@@ -412,6 +433,11 @@ class Participant:
     def _entity(self, kind: int) -> bytes:
         self._entities += 1
         return self._entities.to_bytes(3, "big") + bytes([kind])
+
+
+def _is_writer(guid: bytes) -> bool:
+    """Whether an endpoint is a writer, with a key or without."""
+    return guid[15] & 0x0F in (0x02, 0x03)
 
 
 def _match(mine: Writer | Reader, guid: bytes, endpoint: tuple[str, str, Qos, Address]) -> None:

@@ -73,7 +73,6 @@ class Reader:
     qos: Qos
     send: Send
     deliver: Callable[[Received], None]
-    user_data: bytes = b""
     writers: dict[bytes, _Writer] = field(default_factory=dict[bytes, _Writer])
 
     def match(self, guid: bytes, address: Address, qos: Qos) -> None:

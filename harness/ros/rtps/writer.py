@@ -48,6 +48,8 @@ class _Kept:
     number: int
     payload: bytes
     inline: bytes
+    target: bytes
+    """Prefix of the participant that it is for; empty for all."""
 
 
 @dataclass
@@ -67,7 +69,6 @@ class Writer:
     type_name: str
     qos: Qos
     send: Send
-    user_data: bytes = b""
     readers: dict[bytes, _Reader] = field(default_factory=dict[bytes, _Reader])
     last: int = 0
     _history: deque[_Kept] = field(default_factory=deque[_Kept])
@@ -76,16 +77,16 @@ class Writer:
     def __post_init__(self) -> None:
         self._history = deque(maxlen=self.qos.depth)
 
-    def write(self, payload: bytes, inline: bytes = b"", reader: bytes | None = None) -> int:
-        """Write a sample, to all readers or to one of them; its sequence number."""
+    def write(self, payload: bytes, inline: bytes = b"", target: bytes = b"") -> int:
+        """Write a sample for all participants or for one of them; its sequence number."""
         self.last += 1
-        kept = _Kept(self.last, payload, inline)
+        kept = _Kept(self.last, _padded(payload), inline, target)
         self._history.append(kept)
-        sent: set[bytes] = set()
-        for guid, proxy in self.readers.items():
-            if guid[:12] not in sent and (reader is None or guid == reader):
-                sent.add(guid[:12])
-                self._send_sample(guid[:12], wire.NO_ENTITY, proxy, kept)
+        for prefix, proxy in {guid[:12]: proxy for guid, proxy in self.readers.items()}.items():
+            if prefix.startswith(target):
+                self._send_sample(prefix, wire.NO_ENTITY, proxy, kept)
+            else:
+                self._send_gap(prefix + wire.NO_ENTITY, proxy, [self.last])
         return self.last
 
     def match(self, guid: bytes, address: Address, qos: Qos) -> None:
@@ -100,7 +101,7 @@ class Writer:
             for kept in self._history:
                 self._send_sample(guid[:12], guid[12:], proxy, kept)
         elif qos.is_reliable and self.last:
-            self._send_gap(guid, proxy, 1)
+            self._send_gap(guid, proxy, [1])
 
     def acknowledge(self, guid: bytes, base: int, missing: list[int]) -> None:
         """A reader has everything before `base`, and lacks some samples."""
@@ -111,12 +112,13 @@ class Writer:
         kept = {each.number: each for each in self._history}
         lost: list[int] = []
         for number in missing:
-            if number in kept and number >= proxy.first:
+            is_kept = number in kept and number >= proxy.first
+            if is_kept and guid.startswith(kept[number].target):
                 self._send_sample(guid[:12], guid[12:], proxy, kept[number], heartbeat=False)
             elif number <= self.last:
                 lost.append(number)
         if lost:
-            self._send_gap(guid, proxy, lost[0])
+            self._send_gap(guid, proxy, lost)
         if missing or base <= self.last:
             self.send(guid[:12], self._heartbeat(guid[12:], proxy), proxy.address)
 
@@ -166,9 +168,20 @@ class Writer:
         body += wire.sequence_number(self.last) + struct.pack("<I", self._count)
         return wire.submessage(wire.HEARTBEAT, body)
 
-    def _send_gap(self, guid: bytes, proxy: _Reader, first: int) -> None:
-        """Say that samples from `first` on, up to the first available one, will not come."""
-        end = max(self._first, proxy.first)
-        if first < end:
-            body = guid[12:] + self.entity + wire.sequence_number(first) + wire.number_set(end, [])
-            self.send(guid[:12], wire.submessage(wire.GAP, body), proxy.address)
+    def _send_gap(self, guid: bytes, proxy: _Reader, lost: list[int]) -> None:
+        """Report samples that will not come: the named ones, and all before the kept ones."""
+        base = max(lost[0], self._first, proxy.first)
+        body = guid[12:] + self.entity + wire.sequence_number(lost[0])
+        body += wire.number_set(base, lost)
+        self.send(guid[:12], wire.submessage(wire.GAP, body), proxy.address)
+
+
+def _padded(payload: bytes) -> bytes:
+    """The payload in whole words, with the count of added bytes where XTypes has it.
+
+    Cyclone DDS drops submessages of other lengths.
+    """
+    missing = -len(payload) % 4
+    if not missing:
+        return payload
+    return payload[:3] + bytes([payload[3] | missing]) + payload[4:] + bytes(missing)

@@ -2,7 +2,7 @@
 
 const listeners = {};
 const waiting = new Map();
-let socket = null, number = 0;
+let socket = null, number = 0, isOver = false;
 
 // A page keeps its name over reloads, so that it comes back as the one that controls.
 export const page = sessionStorage.page ??= crypto.randomUUID();
@@ -20,6 +20,9 @@ export function request(name, keys = {}) {
   });
 }
 
+/** The other side ends: no attempt to come back. */
+export function stop() { isOver = true; }
+
 export function connect() {
   socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/studio/ws`);
   socket.onopen = () => { socket.send(JSON.stringify({ page })); emit("connected", {}); };
@@ -31,6 +34,7 @@ export function connect() {
   socket.onclose = () => {
     for (const resolve of waiting.values()) resolve({ error: "the connection was lost" });
     waiting.clear();
+    if (isOver) return;
     emit("lost", {});
     setTimeout(connect, 1000);
   };

@@ -6,6 +6,7 @@ import { $, element } from "./dom.js";
 /* global ace */
 let editor = null, session = null, timer = 0, setting = false, sent = null, stepLines = [], done = 0;
 const SEVERITY = "error";
+const STAND_IN = { none: "There is no robot yet: correct the marked lines.", robot: "The robot alone, until the marked lines are correct." };
 
 export const text = () => editor.getValue();
 export const line = () => editor.getCursorPosition().row + 1;
@@ -76,6 +77,7 @@ export async function flush() {
 }
 
 function show(message) {
+  $("stand-in").textContent = STAND_IN[message.scene] ?? "";
   stepLines = message.step_lines;
   $("file").classList.toggle("unsaved", !message.is_saved);
   session.setAnnotations(message.problems.map((p) => ({ row: Math.max(0, p.line - 1), column: p.column,
@@ -86,8 +88,8 @@ function show(message) {
     if (p.line) session.addMarker(new Range(p.line - 1, p.column - 1, p.line - 1, p.column - 1 + p.length), "mistake", "text");
   }
   $("problems").replaceChildren(...message.problems.map((p) => element("button", { class: "mistake-line",
-    onclick: () => { editor.gotoLine(p.line, p.column - 1); editor.focus(); } },
-  `${p.line}:${p.column}: ${p.text}${p.hint ? ` (${p.hint})` : ""}`)));
+    onclick: () => { if (p.line) editor.gotoLine(p.line, p.column - 1); editor.focus(); } },
+  `${p.line ? `${p.line}:${p.column}: ` : ""}${p.text}${p.hint ? ` (${p.hint})` : ""}`)));
 }
 
 let hovering = 0;

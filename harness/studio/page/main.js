@@ -3,7 +3,9 @@
 import { request, connect, on, page } from "./connection.js";
 import { $, element, log, numbers, options } from "./dom.js";
 import * as editor from "./editor.js";
+import { showScene } from "./scene.js";
 import { eulerOf } from "./turns.js";
+import "./verdicts.js";
 
 let robot = null, state = null, reach = null, isMine = false, lastWay = -1;
 const sliders = new Map();
@@ -122,15 +124,6 @@ function showGoal(pose) {
   $("frame").value = "world";
 }
 
-on("verdicts", (message) => {
-  const head = element("div", { class: `outcome ${message.outcome}` }, message.digest ? `${message.outcome} · digest ${message.digest.slice(0, 16)}` : `${message.outcome} so far`);
-  head.title = message.digest;
-  head.dataset.digest = message.digest;
-  const margin = (v) => (v.margin === null ? "" : ` (margin ${Number(v.margin.toPrecision(3))} ${v.unit})`);
-  $("verdicts").replaceChildren(head,
-    ...message.steps.map((step) => element("div", { class: `verdict ${step.status.replace(/[ _]/g, "-")}` }, `${step.line}: ${step.summary}: ${step.status.replace("_", " ")}`)),
-    ...message.verdicts.map((v) => element("div", { class: `verdict ${v.status.replace(/[ _]/g, "-")}` }, `${v.line}: ${v.text}: ${v.status}${margin(v)}${v.reason && v.status !== "passed" ? `: ${v.reason}` : ""}`)));
-});
 
 on("note", (message) => log(message.kind, message.text));
 on("lost", () => { document.body.classList.add("lost"); $("status").textContent = "connection lost; it comes back by itself"; });
@@ -170,10 +163,10 @@ click("step-run", () => run($("step-text").value));
 click("control", () => request("control", { word: isMine ? "release" : "request" }));
 click("goal-here", () => { if (state) { showGoal(state.tcp); setGoal(); } });
 click("goal-set", () => setGoal());
-click("camera-look", async () => {
-  const reply = await act("camera", { name: $("camera").value });
-  if (reply.image) $("camera-image").src = `data:image/jpeg;base64,${reply.image}`;
-});
+const look = () => { if (robot?.cameras.length) act("camera", { name: $("camera-box").open ? $("camera").value : "" }); };
+$("camera-box").addEventListener("toggle", look);
+$("camera").addEventListener("change", look);
+on("camera", (message) => { $("camera-image").src = `data:image/jpeg;base64,${message.image}`; });
 $("speed").addEventListener("change", () => act("speed", { value: Number($("speed").value) }));
 $("follow").addEventListener("change", () => act("follow", { on: $("follow").checked }));
 $("share").addEventListener("change", () => act("share", { value: Number($("share").value) }));
@@ -230,14 +223,7 @@ document.addEventListener("keydown", (event) => {
   if (event.key === " " && !event.target.matches("button, summary")) { event.preventDefault(); $("play").click(); }
 });
 
-// viser's own panels have nothing in them: everything but the picture is hidden.
-$("scene").addEventListener("load", () => {
-  const inside = $("scene").contentDocument;
-  inside?.head.append(element("style", {}, "body *:not(:has(canvas)):not(canvas) { display: none !important; }"));
-  inside?.addEventListener("keydown", (event) => document.dispatchEvent(new KeyboardEvent("keydown", event)));
-});
-const dark = matchMedia("(prefers-color-scheme: dark)").matches;
-$("scene").src = `/scene/${page}${dark ? "?darkMode" : ""}`;
+showScene();
 if (location.search) history.replaceState(null, "", location.pathname);
 editor.start();
 connect();

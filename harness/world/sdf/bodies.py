@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from harness.core.errors import SpecError
 from harness.core.spatial import SE3
-from harness.language.files.mistakes import did_you_mean
+from harness.core.suggestion import did_you_mean
 from harness.language.files.xml_file import XmlElement
 from harness.world.notes import Notes
 from harness.world.sdf.scope import OWN, WORLD, Named, SdfScope

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from harness.core.errors import SpecError
 from harness.core.spatial import SE3
-from harness.language.files.mistakes import did_you_mean
+from harness.core.suggestion import did_you_mean
 from harness.language.files.xml_file import XmlElement
 from harness.world.sdf.values import PlacedPose, text_of
 

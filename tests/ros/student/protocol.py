@@ -72,7 +72,8 @@ until(client.server_is_ready)
 said, feedback = {}, []
 said["done"] = result(send(goal(1.0, 0.2, 0.0, 0.0, 0.0), feedback.append))
 said["feedback"] = [len(feedback), list(feedback[0].feedback.joint_names)]
-said["beyond"] = result(send(goal(1.0, 9.0, 0.0, 0.0, 0.0)))
+beyond = send(goal(1.0, 9.0, 0.0, 0.0, 0.0))
+said["beyond"] = [beyond.accepted, *result(beyond)]
 first, second = send(goal(9.0, 0.0, 0.0, 0.0, 0.0)), send(goal(9.0, 0.1, 0.0, 0.0, 0.0))
 said["preempted"] = result(first)
 future = second.cancel_goal_async()

@@ -25,7 +25,7 @@ async function start() {
   const { run } = payload;
   const clock = new Clock(run.duration);
   const bands = run.steps
-    .filter((step) => step.status !== "not_reached" && !step.hasChildren)
+    .filter((step) => step.status !== "not reached" && !step.hasChildren)
     .map((step) => ({ start: step.start, end: step.end, tone: step.band }));
 
   const scene = makeScene(payload);
@@ -85,7 +85,7 @@ async function start() {
 
   function selectStep(index) {
     const step = run.steps[index];
-    if (step.status === "not_reached") return;
+    if (step.status === "not reached") return;
     const isFailure = step.status === "failed";
     chosen = { step: index, time: isFailure ? step.end : Math.min(step.start + 1e-3, step.end) };
     clock.seek(chosen.time);
@@ -118,7 +118,7 @@ async function start() {
   }
 
   function nextStep(direction) {
-    const starts = run.steps.filter(({ status }) => status !== "not_reached").map((step) => step.start);
+    const starts = run.steps.filter(({ status }) => status !== "not reached").map((step) => step.start);
     const others = direction > 0 ? starts.filter((time) => time > clock.time + 2e-3) : starts.filter((time) => time < clock.time - 2e-3);
     if (others.length) clock.seek((direction > 0 ? Math.min(...others) : Math.max(...others)) + 1e-3);
   }
@@ -135,7 +135,7 @@ async function start() {
     const failed = run.steps.findIndex(({ status, hasChildren }) => status === "failed" && !hasChildren);
     if (failed >= 0) selectStep(failed);
     else nextFailure();
-    if (failed >= 0 || (!run.verdicts.length && run.steps.some(({ status }) => status === "expected_error"))) showTab("planner");
+    if (failed >= 0 || (!run.verdicts.length && run.steps.some(({ status }) => status === "expected error"))) showTab("planner");
   }
 
   /** The step that failed at a time that the terminal rounded. */

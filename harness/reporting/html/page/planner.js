@@ -1,7 +1,7 @@
 // The planner's requests and results, step by step.
 
 import { element } from "./dom.js";
-import { amount, degrees, number, seconds, tone } from "./units.js";
+import { amount, degrees, number, seconds, stepTone } from "./units.js";
 
 const SOLUTIONS_SHOWN = 8;
 const LABELS = {
@@ -28,7 +28,7 @@ export function plannerView({ run }, select) {
 function planned(step, index, select) {
   const { ik_solutions: solutions, ik_method: method, stages, advice, nearest, picture, ...rest } = step.explanation;
   return element(
-    `section.${tone(step.status)}`, { "data-step": index },
+    `section.${stepTone(step.status)}`, { "data-step": index },
     element("h3", {}, element("button.link", { type: "button", onclick: () => select(index) }, `${index + 1}. ${step.summary}`)),
     step.message && element("p.why", {}, step.message),
     shortening(step.planner),
@@ -57,7 +57,7 @@ function shortening(planner) {
   return element("div.lengths", {}, row("as found", before), row("shortened", after));
 }
 
-const SIGNS = { passed: "good", failed: "bad", "not reached": "open" };
+const SIGNS = { passed: "good", failed: "bad", skipped: "open" };
 
 /** What became of each stage of planning. */
 function stageList(stages) {

@@ -19,11 +19,11 @@ export function makeSteps({ run }, select) {
       { type: "button", onclick: () => select(index), style: `--depth: ${step.depth}` },
       element("i.sign", { role: "img", "aria-label": state }),
       element("b", {}, isNamed ? step.id : step.summary),
-      element("span.took", {}, step.status === "not_reached" ? "–" : `${(step.end - step.start).toFixed(2)} s`),
+      element("span.took", {}, step.status === "not reached" ? "–" : `${(step.end - step.start).toFixed(2)} s`),
       element("span.what", {}, isNamed ? `${step.summary}  ` : "", element("code", {}, place)),
       failure && element("span.why", {}, step.errorCode && element("b", {}, step.errorCode), ` ${step.message}`),
       ...step.broken.map((text) => element("span.why", {}, text)),
-      step.status === "expected_error" && element("span.what", {}, "failed as the file expects"),
+      step.status === "expected error" && element("span.what", {}, "failed as the file expects"),
     );
   });
   byId("steps").append(...items.map((item) => element("li", {}, item)));

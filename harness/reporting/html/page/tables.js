@@ -1,7 +1,7 @@
 // Source, findings, joints and environment: the plainer tabs.
 
 import { element } from "./dom.js";
-import { number, seconds, tone } from "./units.js";
+import { number, seconds, stepTone, tone } from "./units.js";
 
 /**
  * The scenario file, with the lines of failures in red.
@@ -11,9 +11,13 @@ import { number, seconds, tone } from "./units.js";
 export function sourceView({ run }, select) {
   const bad = new Set();
   const known = new Set();
-  for (const item of [...run.steps, ...run.verdicts]) {
-    if (item.line) known.add(item.line);
-    if (item.line && tone(item.status) === "bad") bad.add(item.line);
+  const toned = [
+    ...run.steps.map(({ line, status }) => [line, stepTone(status)]),
+    ...run.verdicts.map(({ line, status }) => [line, tone(status)]),
+  ];
+  for (const [line, colour] of toned) {
+    if (line) known.add(line);
+    if (line && colour === "bad") bad.add(line);
   }
   const lines = run.source.replace(/\n$/, "").split("\n").map((text, index) => {
     const line = index + 1;

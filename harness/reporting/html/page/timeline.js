@@ -16,7 +16,7 @@ export function makeTimeline({ run }, clock, select) {
   const track = byId("track");
   const share = (time) => (clock.duration > 0 ? (100 * time) / clock.duration : 0);
   run.steps.forEach((step, index) => {
-    if (step.status === "not_reached") return;
+    if (step.status === "not reached") return;
     const isInstant = step.end - step.start <= clock.duration * NARROWEST;
     const band = element(
       `span.band.${step.band}${isInstant ? ".instant" : ""}`,
@@ -55,7 +55,7 @@ export function stepAt(steps, time) {
   let found = -1;
   steps.forEach((step, index) => {
     const isOver = time > step.end && step.end < time - 1e-9;
-    if (step.status === "not_reached" || step.start > time + 1e-9 || isOver) return;
+    if (step.status === "not reached" || step.start > time + 1e-9 || isOver) return;
     const isDeeper = found < 0 || step.depth >= steps[found].depth;
     const hasDuration = step.end > step.start || found < 0 || steps[found].end <= steps[found].start;
     if (isDeeper && (hasDuration || step.end >= time)) found = index;

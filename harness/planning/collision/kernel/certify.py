@@ -1,0 +1,225 @@
+"""Conservative advancement of a motion with exact convex distances."""
+
+# Plain loops over arrays, no objects, no exceptions: numba compiles the functions below.
+# ruff: noqa: ANN001, ANN201
+
+from __future__ import annotations
+
+from harness.planning.collision.kernel.compiling import (
+    compiled,
+    floats_1d,
+    floats_2d,
+    floats_3d,
+    integers_1d,
+    integers_2d,
+)
+from harness.planning.collision.kernel.motion_bound import (
+    body_motion,
+    compose_transform,
+    joint_poses,
+    motion_along,
+    relative_motion,
+    relative_transform,
+)
+from harness.planning.collision.kernel.tree_distance import (
+    BLOCKED,
+    FREE,
+    UNDECIDED,
+    box_gap,
+    compare_trees,
+)
+
+
+@compiled
+def move_to_front(order, check):
+    """Compare a pair before all others from now on: it often blocks the next motion too."""
+    place = 0
+    while order[place] != check:
+        place += 1
+    while place > 0:
+        order[place] = order[place - 1]
+        place -= 1
+    order[0] = check
+
+
+def certify(table, count, straight):
+    """Classify the states of a motion as free, blocked or undecided.
+
+    The last state is checked first, then the whole motion, then its halves: an interval is free for
+    a pair when the distance at its middle state exceeds the motion bound of the interval.
+
+    Args:
+        table: The address of `MotionArrays.table`. Its arrays are: the positions of the moving
+            joints at all states, shape (count, M), or of a straight motion at both its ends, shape
+            (2, M), the first of which is not one of the states; working memory; the undecided
+            states that are found, shape (count,);
+            the moving joint before each moving joint, or -1, shape (M,); each joint's pose on its
+            parent at 0 (12), axis (3), 1 if prismatic, shape (M, 16); the poses of the bodies on
+            their joints or in the world, shape (B, 12); the joint or -1 and the root node of each
+            body, shape (B, 2); the lower and upper corner of its bounding box, shape (B, 6);
+            the arrays of a `ConvexTree` of all bodies, in its order;
+            the distances above which a pair is free and below which it is blocked, shape (K, 2);
+            its two bodies and its key, shape (K, 3); the two bodies of each key (-1: static) and
+            the joints that move them relative to each other, as ranges of the next array, shape
+            (R, 6); moving joints, tip first, shape (J,);
+            and the working memory of `certificates._working_memory`.
+        count: The number of states.
+        straight: Whether the motion is straight.
+
+    Returns:
+        The number of undecided states; -1 - i where the state i is blocked.
+    """
+    values, queue, found = floats_2d(table, 0), integers_2d(table, 1), integers_1d(table, 2)
+    parent, chain = integers_1d(table, 3), floats_2d(table, 4)
+    body_poses, bodies, boxes = floats_2d(table, 5), integers_2d(table, 6), floats_2d(table, 7)
+    spheres, nodes, convexes = floats_2d(table, 8), integers_2d(table, 9), integers_2d(table, 10)
+    sizes, points = floats_2d(table, 11), floats_2d(table, 12)
+    edges_at, edges = integers_1d(table, 13), integers_1d(table, 14)
+    margins, checks = floats_2d(table, 15), integers_2d(table, 16)
+    keys, joints = integers_2d(table, 17), integers_1d(table, 18)
+    here, rates, poses = floats_1d(table, 19), floats_1d(table, 20), floats_2d(table, 21)
+    body_at, middles, shifts = floats_2d(table, 22), floats_2d(table, 23), floats_3d(table, 24)
+    axes, scratch = floats_2d(table, 25), floats_2d(table, 26)
+    body_stamp, key_stamp = integers_1d(table, 27), integers_1d(table, 28)
+    hints, stack, left = integers_1d(table, 29), integers_2d(table, 30), integers_1d(table, 31)
+    sets = (convexes, sizes, points, edges_at, edges, hints)
+    width = values.shape[1]
+    total = checks.shape[0]
+    for body in range(body_stamp.shape[0]):
+        body_stamp[body] = -1
+    for key in range(key_stamp.shape[0]):
+        key_stamp[key] = -1
+    room = total
+    T, motion, way = scratch[0], scratch[14], scratch[15]
+    undecided = 0
+    queue[0, 0], queue[0, 1], queue[0, 2], queue[0, 3] = count - 1, count - 1, 0, total
+    head, tail = 0, 1
+    if count > 1:
+        queue[1, 0], queue[1, 1], queue[1, 2], queue[1, 3] = 0, count - 2, 0, total
+        tail = 2
+    while head < tail:
+        low, high, begin, end = queue[head, 0], queue[head, 1], queue[head, 2], queue[head, 3]
+        stamp = head
+        head += 1
+        middle = (low + high) // 2
+        for m in range(width):
+            if straight:
+                rate = (values[1, m] - values[0, m]) / count
+                here[m] = values[0, m] + rate * (middle + 1)
+                rates[m] = rate * max(high - middle, middle - low)
+            else:
+                here[m] = values[middle, m]
+                widest = 0.0
+                for k in range(low, high + 1):
+                    widest = max(widest, abs(values[k, m] - here[m]))
+                rates[m] = widest
+        joint_poses(here, parent, chain, poses, scratch)
+        kept = room
+        share = room + (end - begin) <= left.shape[0]
+        failed = 0
+        is_open = False
+        for place in range(begin, end):
+            check = left[place]
+            key = checks[check, 2]
+            for side in range(2):
+                body = checks[check, side]
+                if body_stamp[body] != stamp:
+                    if bodies[body, 0] >= 0:
+                        compose_transform(poses[bodies[body, 0]], body_poses[body], body_at[body])
+                    else:
+                        for i in range(12):
+                            body_at[body, i] = body_poses[body, i]
+                    n = bodies[body, 1]
+                    u, v, w = spheres[n, 0], spheres[n, 1], spheres[n, 2]
+                    for i in range(3):
+                        middles[body, i] = (
+                            body_at[body, 3 * i] * u
+                            + body_at[body, 3 * i + 1] * v
+                            + body_at[body, 3 * i + 2] * w
+                            + body_at[body, 9 + i]
+                        )
+                    body_stamp[body] = stamp
+            moved = 0.0
+            if high > low:
+                if key_stamp[key] != stamp:
+                    for side in range(2):
+                        body = keys[key, side]
+                        shifts[key, side, 8] = 0.0
+                        if body >= 0:
+                            body_motion(
+                                rates,
+                                joints,
+                                keys[key, 2 + 2 * side],
+                                keys[key, 3 + 2 * side],
+                                chain,
+                                poses,
+                                middles[body, 0],
+                                middles[body, 1],
+                                middles[body, 2],
+                                spheres[bodies[body, 1], 3],
+                                shifts[key, side],
+                            )
+                    key_stamp[key] = stamp
+                moved = shifts[key, 0, 8] + shifts[key, 1, 8]
+            first, second = checks[check, 0], checks[check, 1]
+            free, blocked = margins[check, 0], margins[check, 1]
+            x = middles[first, 0] - middles[second, 0]
+            y = middles[first, 1] - middles[second, 1]
+            z = middles[first, 2] - middles[second, 2]
+            least = spheres[bodies[first, 1], 3] + spheres[bodies[second, 1], 3] + free + moved
+            if x * x + y * y + z * z > least * least:
+                continue
+            if high > low:
+                relative_motion(shifts[key], keys[key], straight, body_at[second], motion)
+            is_free = False
+            for side in range(2):
+                ball, body = (first, second) if side == 0 else (second, first)
+                gap = box_gap(middles[ball], body_at[body], boxes[body], way)
+                least = gap - spheres[bodies[ball, 1], 3] - free
+                if least > moved:
+                    is_free = True
+                elif least > 0.0:
+                    base = body_at[second]
+                    least -= motion_along(
+                        motion,
+                        base[0] * way[0] + base[3] * way[1] + base[6] * way[2],
+                        base[1] * way[0] + base[4] * way[1] + base[7] * way[2],
+                        base[2] * way[0] + base[5] * way[1] + base[8] * way[2],
+                    )
+                    is_free = least > 0.0
+                if is_free:
+                    break
+            if is_free:
+                continue
+            relative_transform(body_at[second], body_at[first], T)
+            root, other_root = bodies[first, 1], bodies[second, 1]
+            answer = compare_trees(
+                spheres, nodes, sets, root, other_root, T, free, blocked, high > low, motion,
+                axes[check], stack, scratch,
+            )  # fmt: skip
+            if answer == FREE:
+                continue
+            if answer == BLOCKED:
+                move_to_front(left, check)
+                return -1 - middle
+            if share:
+                left[room + failed] = check
+            failed += 1
+            is_open |= answer == UNDECIDED
+        if is_open:
+            found[undecided] = middle
+            undecided += 1
+        if failed == 0 or high == low:
+            continue
+        first, last = begin, end
+        if share:
+            first, last = kept, kept + failed
+            room += failed
+        if middle > low:
+            queue[tail, 0], queue[tail, 1] = low, middle - 1
+            queue[tail, 2], queue[tail, 3] = first, last
+            tail += 1
+        queue[tail, 0], queue[tail, 1] = middle + 1, high
+        queue[tail, 2], queue[tail, 3] = first, last
+        tail += 1
+    return undecided

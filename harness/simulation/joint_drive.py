@@ -1,0 +1,200 @@
+"""Drives the motors as the robot's joint controller says, and the gripper's by its own servo."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from copy import deepcopy
+
+import mujoco
+import numpy as np
+
+from harness.core.errors import StepFailed
+from harness.core.registry import described, raised, registry
+from harness.core.types import FloatArray
+from harness.ports import ControlRequest, ControlResult, JointController
+from harness.simulation.model import PhysicsModel
+from harness.simulation.robot_mjcf import coupling
+from harness.simulation.servo import FeedForward
+from harness.simulation.set_points import SetPoints
+
+
+class JointDrive:
+    """The inputs of the motors for set points of all actuated joints, m in number.
+
+    A motor's effort is `gain * (input - position) - damping * velocity` where its servo has a
+    stiffness, which is the gain; without one it is `input - damping * velocity`.
+
+    Attributes:
+        position_share: 1 for a motor whose servo has a stiffness, else 0, shape (m,).
+        cycle: Physics steps between two calls of the controller; None: it needs no measurement.
+    """
+
+    def __init__(
+        self,
+        physics: PhysicsModel,
+        data: mujoco.MjData,
+        gravity: tuple[float, float, float],
+        timestep: float,
+    ) -> None:
+        description = physics.description
+        self._physics, self._data, self._timestep = physics, data, timestep
+        self._feed_forward = FeedForward(description, physics.servos, gravity)
+        self._coupling = coupling(description)
+        self._offsets = description.with_mimics(np.zeros(len(description.joint_names)))
+        names = [description.joint_names[place] for place in physics.actuated]
+        hand = "" if description.gripper is None else description.gripper.joint
+        self._arm = np.array([i for i, name in enumerate(names) if name != hand], dtype=np.int64)
+        self._hand = np.array([i for i, name in enumerate(names) if name == hand], dtype=np.int64)
+        self._joint_names = tuple(names[index] for index in self._arm)
+        kind = registry(JointController.plugin_kind).find(description.joint_controller)
+        self.controller: JointController = kind()
+        self._stiffness = physics.servos.stiffness.copy()
+        self._damping = physics.servos.damping.copy()
+        self.position_share = np.ones(len(names))
+        period = self.controller.period if len(self._arm) else None
+        self.cycle = None if period is None else max(1, round(period / timestep))
+        if self.cycle is not None:
+            still = np.zeros(len(self._arm))
+            self._set_servos(ControlResult(still))
+
+    def weight(self, positions: FloatArray) -> FloatArray:
+        """Efforts that hold the robot still at positions of every movable joint, shape (m,)."""
+        still = np.zeros((1, len(positions)))
+        return self._feed_forward(positions[None], still, still)[0]
+
+    def inputs(self, points: SetPoints, noise: FloatArray | None = None) -> FloatArray:
+        """Inputs of the motors at set points, shape (N + 1, m).
+
+        Args:
+            points: Set points from now on.
+            noise: The noise of the measured positions now, shape (m,).
+
+        Raises:
+            StepFailed: CONTROL_FAILED; the controller raised an error, or its answer is unusable.
+        """
+        efforts = _Efforts(self._efforts, points)
+        if len(self._arm):
+            answer = self._answer(self._request(points, efforts, noise), len(points))
+            self._set_servos(answer)
+            whole = np.zeros_like(points.positions)
+            whole[:, self._arm] = answer.efforts
+            if len(self._hand):
+                whole[:, self._hand] = efforts.of_set_points()[:, self._hand]
+        else:
+            whole = efforts.of_set_points()
+        gain = np.where(self._stiffness > 0, self._stiffness, 1.0)
+        lead = self._damping / gain
+        return self.position_share * points.positions + lead * points.velocities + whole / gain
+
+    def copy(self) -> JointController:
+        """The controller with the state that it has now."""
+        return deepcopy(self.controller)
+
+    def restore(self, controller: JointController) -> None:
+        """Go on with a copy of a controller; the model's servos have been restored already."""
+        self.controller = deepcopy(controller)
+        model, arm = self._physics.model, self._arm
+        self._stiffness[arm] = -model.actuator_biasprm[arm, 1]
+        self._damping[arm] = -model.actuator_biasprm[arm, 2]
+        self.position_share = np.where(self._stiffness > 0, 1.0, 0.0)
+
+    def _efforts(
+        self, positions: FloatArray, velocities: FloatArray, accelerations: FloatArray
+    ) -> FloatArray:
+        """Efforts of the actuated joints at positions and so on of theirs, shape (N, m)."""
+        return self._feed_forward(
+            positions @ self._coupling.T + self._offsets,
+            velocities @ self._coupling.T,
+            accelerations @ self._coupling.T,
+        )
+
+    def _request(
+        self, points: SetPoints, efforts: _Efforts, noise: FloatArray | None
+    ) -> ControlRequest:
+        arm, physics = self._arm, self._physics
+        measured = self._data.qpos[physics.qpos][physics.actuated]
+        speeds = self._data.qvel[physics.dof][physics.actuated]
+        seen = measured if noise is None else measured + noise
+
+        def inverse_dynamics(*rows: FloatArray) -> FloatArray:
+            whole = [np.zeros((len(each), len(measured))) for each in rows]
+            whole[0][:] = measured
+            for full, given in zip(whole, rows, strict=True):
+                full[:, arm] = given
+            return self._efforts(*whole)[:, arm]
+
+        return ControlRequest(
+            joint_names=self._joint_names,
+            time=float(self._data.time),
+            timestep=self._timestep,
+            positions=seen[arm],
+            velocities=speeds[arm],
+            set_positions=points.positions[:, arm],
+            set_velocities=points.velocities[:, arm],
+            set_accelerations=points.accelerations[:, arm],
+            stiffness=physics.servos.stiffness[arm],
+            damping=physics.servos.damping[arm],
+            effort_limits=physics.servos.effort[arm],
+            feed_forward=lambda: efforts.of_set_points()[:, arm],
+            inverse_dynamics=inverse_dynamics,
+        )
+
+    def _answer(self, request: ControlRequest, rows: int) -> ControlResult:
+        """The answer of the controller, with arrays of the right shapes."""
+        who = described(JointController.plugin_kind, self.controller.name)
+        try:
+            found = self.controller.control(request)
+            answer = _shaped(found, rows, len(request.joint_names))
+        except Exception as error:
+            raise StepFailed("CONTROL_FAILED", f"{who} failed: {raised(error)}") from error
+        if not np.isfinite(request.set_positions).all():
+            return answer
+        for name, values in vars(answer).items():
+            if not np.isfinite(values).all() or (name != "efforts" and (values < 0).any()):
+                message = f"{who} returned {name} that are no finite numbers, or negative"
+                raise StepFailed("CONTROL_FAILED", message)
+        return answer
+
+    def _set_servos(self, answer: ControlResult) -> None:
+        """Give the motors of the arm the stiffness and damping of an answer."""
+        none = np.zeros(len(self._arm))
+        stiffness = none if answer.stiffness is None else answer.stiffness
+        damping = none if answer.damping is None else answer.damping
+        arm = self._arm
+        known = self._stiffness[arm], self._damping[arm]
+        if np.array_equal(known[0], stiffness) and np.array_equal(known[1], damping):
+            return
+        self._stiffness[arm], self._damping[arm] = stiffness, damping
+        self.position_share = np.where(self._stiffness > 0, 1.0, 0.0)
+        model = self._physics.model
+        model.actuator_gainprm[arm, 0] = np.where(stiffness > 0, stiffness, 1.0)
+        model.actuator_biasprm[arm, 1] = -stiffness
+        model.actuator_biasprm[arm, 2] = -damping
+
+
+class _Efforts:
+    """Efforts that set points take, computed once, when they are first requested."""
+
+    def __init__(self, efforts: Callable[..., FloatArray], points: SetPoints) -> None:
+        self._compute, self._points = efforts, points
+        self._known: FloatArray | None = None
+
+    def of_set_points(self) -> FloatArray:
+        """Shape (N + 1, m)."""
+        if self._known is None:
+            points = self._points
+            self._known = self._compute(points.positions, points.velocities, points.accelerations)
+        return self._known
+
+
+def _shaped(answer: ControlResult, rows: int, joints: int) -> ControlResult:
+    """An answer with one row of efforts for each set point."""
+    none = np.zeros(joints)
+    efforts = np.asarray(answer.efforts, dtype=float)
+    return ControlResult(
+        np.broadcast_to(efforts, (rows, joints)),
+        np.broadcast_to(none if answer.stiffness is None else answer.stiffness, (joints,)),
+        np.broadcast_to(none if answer.damping is None else answer.damping, (joints,)),
+    )

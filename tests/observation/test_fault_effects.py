@@ -1,0 +1,146 @@
+"""Whether a fault had an effect, from recordings made by hand: each at both sides of its limit."""
+
+import numpy as np
+import pytest
+
+from harness.observation.fault_effects import with_receipts
+from harness.recording.faults import InjectedFault, faults_of
+from tests.assertions.synthetic_run import BOX, DT, ROBOT, TABLE, at, force, make_run, step
+
+N = 100
+
+
+def receipts(faults, run, more=()):
+    """The faults of the first step with their receipts, and the findings."""
+    first = step("first", 10, 20, "inject", result={"faults": [each.plain() for each in faults]})
+    steps, findings = with_receipts((first, *more), run.signals, ROBOT, (TABLE, BOX))
+    return faults_of(steps[0]), findings
+
+
+def receipt(fault, *, more=(), **signals):
+    [answer], findings = receipts([fault], make_run(N, **signals), more)
+    findings = [each for each in findings if each.step == "first"]
+    assert len(findings) == (answer.receipt == "no_effect")
+    if findings:
+        assert (findings[0].kind, findings[0].step) == ("fault_without_effect", "first")
+        assert findings[0].time == pytest.approx(0.1)
+    return answer
+
+
+def ramp(column, by, start=30, stop=60, level=(0.0, 0.02)):
+    """Two joints of which one moves by an amount over some samples, shape (N, 2)."""
+    rows = np.tile(np.array(level), (N, 1))
+    rows[:, column] += by * np.clip((np.arange(N) - start) / (stop - start), 0, 1)
+    return rows
+
+
+def going(speed, start=12, stop=18):
+    """The box moves along x over some samples."""
+    poses = at(N, (0, 0, 0.02))
+    poses[:, 0] = speed * DT * np.clip(np.arange(N) - start, 0, stop - start)
+    return poses
+
+
+FRICTION = InjectedFault("friction", "box", 1.0, 0.1)
+STALL = InjectedFault("joint_stall", "shoulder", False, True)
+PUSH = InjectedFault("push", "box", (0, 0, 0), (1, 0, 0))
+NOISE = InjectedFault("sensor_noise", "", 0.0, 0.01)
+LATENCY = InjectedFault("command_latency", "", 0.0, 0.1)
+EFFORT = InjectedFault("gripper_effort", "", 1.0, 0.4)
+
+
+def test_a_fault_that_changes_nothing_has_no_effect():
+    answer = receipt(InjectedFault("friction", "box", 0.5, 0.5))
+    assert (answer.receipt, answer.evidence) == ("no_effect", "it was so already")
+
+
+@pytest.mark.parametrize(("speed", "landed"), [(0.0011, True), (0.0009, False)])
+def test_a_push_lands_where_the_object_gains_more_than_a_millimetre_a_second(speed, landed):
+    answer = receipt(PUSH, object_poses={"box": going(speed)})
+    assert (answer.receipt == "landed") is landed
+    outside = receipt(PUSH, object_poses={"box": going(1.0, 25, 40)})
+    assert outside.receipt == "no_effect", "what moves after the push's step was not pushed"
+    before = receipt(PUSH, object_poses={"box": going(0.5, 0, 90)})
+    assert before.receipt == "no_effect", "it moved as fast before"
+    assert "0.25 m/s" in receipt(PUSH, object_poses={"box": going(0.25)}).evidence
+
+
+@pytest.mark.parametrize(("by", "landed"), [(0.00011, True), (0.00009, False)])
+def test_a_stall_lands_where_the_joint_is_commanded_to_move(by, landed):
+    answer = receipt(STALL, joint_commands=ramp(0, by), joint_positions=ramp(0, 0.0))
+    assert (answer.receipt == "landed") is landed
+    answer = receipt(STALL, joint_commands=ramp(0, 0.5), joint_positions=ramp(0, 0.25))
+    assert answer.evidence == "commanded to move by 0.5 rad, it moved by 0.25 rad"
+    sliding = InjectedFault("joint_stall", "finger", False, True)
+    answer = receipt(sliding, joint_commands=ramp(1, 0.01), joint_positions=ramp(1, 0.005))
+    assert answer.evidence == "commanded to move by 0.01 m, it moved by 0.005 m"
+
+
+def test_a_fault_counts_from_the_last_sample_of_its_step_until_it_is_set_again():
+    """The fault's step ends at sample 20, the next one of the same fault begins at sample 40."""
+    again = step(
+        "again", 40, 50, "inject",
+        result={"faults": [InjectedFault("joint_stall", "shoulder", True, False).plain()]},
+    )  # fmt: skip
+    other = step("other", 22, 24, "inject", result={"faults": [FRICTION.plain()]})
+    for start, stop, landed in ((18, 19, False), (19, 20, True), (38, 39, True), (40, 41, False)):
+        commands = ramp(0, 0.5, start, stop)
+        answer = receipt(STALL, more=(other, again), joint_commands=commands)
+        assert (answer.receipt == "landed") is landed, (start, stop)
+    assert answer.evidence == "it was not commanded to move before it was set again"
+    assert receipt(STALL).evidence == "it was not commanded to move afterwards"
+    assert receipt(STALL, joint_commands=ramp(0, 0.5, 98, 99)).receipt == "landed"
+
+
+def test_friction_matters_where_the_hand_grips_or_the_object_slides():
+    gripped = {("left_finger", "box"): force(N, (50, 60))}
+    answer = receipt(FRICTION, contact_forces=gripped)
+    assert answer.evidence == "it was gripped, or slid in contact, for 0.10 s afterwards"
+    early = {("left_finger", "box"): force(N, (5, 15))}
+    assert receipt(FRICTION, contact_forces=early).receipt == "no_effect"
+    table = {("Table", "box"): force(N, (0, N))}
+    assert receipt(FRICTION, contact_forces=table).evidence == "nothing pulled at it afterwards"
+    for speed, landed in ((0.0011, True), (0.0009, False)):
+        sliding = {"box": going(speed, 40, 60)}
+        answer = receipt(FRICTION, contact_forces=table, object_poses=sliding)
+        assert (answer.receipt == "landed") is landed
+        assert receipt(FRICTION, object_poses=sliding).receipt == "no_effect", "it touches nothing"
+    reverse = {("box", "Table"): force(N, (0, N))}
+    answer = receipt(FRICTION, contact_forces=reverse, object_poses={"box": going(0.1, 40, 60)})
+    assert "for 0.20 s" in answer.evidence
+
+
+def test_the_gripper_s_effort_matters_while_fingers_press_something():
+    pressed = {("box", "right_finger"): force(N, (40, 65))}
+    answer = receipt(EFFORT, contact_forces=pressed)
+    assert answer.evidence == "the gripper pressed for 0.25 s with 40% of its effort"
+    idle = receipt(EFFORT, contact_forces={("arm_link", "box"): force(N, (40, 65))})
+    assert idle.evidence == "the gripper pressed on nothing afterwards"
+
+
+def test_noise_and_latency_say_by_how_much_and_zero_sets_them_back():
+    positions = ramp(0, 0.0)
+    positions[50, 0] = -0.04
+    positions[19, 0] = 0.5
+    answer = receipt(NOISE, joint_positions=positions)
+    assert answer.evidence == "joints were up to 0.04 rad off their set points"
+    for fault in (NOISE, LATENCY):
+        back = InjectedFault(fault.fault, "", 0.1, 0.0)
+        assert receipt(back).evidence == "set back"
+    assert receipt(LATENCY).evidence == "no joint was commanded to move afterwards"
+    answer = receipt(LATENCY, joint_commands=ramp(0, 0.3), joint_positions=ramp(0, 0.0))
+    assert answer.evidence == "joints lagged up to 0.3 rad behind their set points"
+    for by, landed in ((0.00011, True), (0.00009, False)):
+        answer = receipt(LATENCY, joint_commands=ramp(0, by))
+        assert (answer.receipt == "landed") is landed
+
+
+def test_steps_without_faults_stay_as_they_are_and_each_fault_has_its_receipt():
+    plain = step("plain", 30, 40)
+    first = step("first", 10, 20, "inject", result={"faults": [STALL.plain(), PUSH.plain()]})
+    run = make_run(N, joint_commands=ramp(0, 0.5))
+    steps, findings = with_receipts((first, plain), run.signals, ROBOT, (TABLE, BOX))
+    assert steps[1] is plain
+    assert [each.receipt for each in faults_of(steps[0])] == ["landed", "no_effect"]
+    [found] = findings
+    assert found.message == f"push of box had no effect: {faults_of(steps[0])[1].evidence}"

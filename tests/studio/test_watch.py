@@ -1,0 +1,106 @@
+"""`harness run --live`: a page shows the cases while they run, and changes nothing of them."""
+
+import re
+import subprocess
+import sys
+import threading
+from dataclasses import replace
+from multiprocessing.connection import Listener
+
+import pytest
+
+from harness.session.run_request import RunRequest
+from harness.suite.cases import run_job
+from tests.studio.test_studio_page import Page
+
+pytest.importorskip("viser")
+from harness.studio.watch import Watch
+
+TEXT = """\
+scenario: watched
+robot: open_manipulator_x
+objects:
+  - {name: box, box: {size: [0.03, 0.03, 0.03]}, pose: {xyz: [0.2, 0, 0.015]}}
+  - name: wall
+    box: {size: [0.1, 0.1, 0.1]}
+    pose: {xyz: [0.5, 0, 0.05]}
+    static: true
+    in: planning
+steps:
+  - ptp: {joints: {joint1: 0.3}}
+    expect: [{joints: {positions: {joint1: 0.3}}}]
+  - wait: 30 s
+"""
+
+
+@pytest.fixture(scope="module")
+def request_(tmp_path_factory):
+    file = tmp_path_factory.mktemp("watch") / "watched.scenario.yaml"
+    file.write_text(TEXT)
+    return RunRequest(file)
+
+
+@pytest.fixture(scope="module")
+def unwatched(request_):
+    return run_job(request_, lambda _: None)
+
+
+def in_thread(request, results):
+    thread = threading.Thread(target=lambda: results.append(run_job(request, lambda _: None)))
+    thread.start()
+    return thread
+
+
+def test_the_page_shows_the_case_while_it_runs(browser, request_, unwatched):
+    results, drawn = [], []
+    context = browser.new_context()
+    with Watch() as watch:
+        opened = Page(context, watch.page, is_live=False)
+        opened.wait_text("#status", "waiting for the first case")
+        view = watch._view  # noqa: SLF001 - what the scene is given
+        move = view.move
+        view.move = lambda positions, objects: (drawn.append(objects), move(positions, objects))
+        thread = in_thread(replace(request_, live=watch.address), results)
+        opened.wait_text("#status", "1 of 2 steps; wait 30 s")
+        opened.wait("parseFloat(document.querySelector('#clock').innerText) > 1")
+        thread.join()
+        opened.wait_text("#verdicts", "joints")
+        opened.wait_text("#status", "watched.scenario.yaml: passed")
+        opened.page.select_option("#case", "1")
+    opened.wait_text("#status", "The run has ended")
+    assert opened.complaints == []
+    context.close()
+    assert len(drawn) > 3
+    assert set(drawn[-1]) >= {"box", "wall"}, "what only the planner knows is shown too"
+    assert results[0].digest == unwatched.digest
+
+
+def test_who_does_not_read_what_is_sent_delays_nothing(request_, unwatched, tmp_path):
+    with Listener(str(tmp_path / "s"), "AF_UNIX") as listener:
+        results = []
+        thread = in_thread(replace(request_, live=listener.address), results)
+        connection = listener.accept()
+        thread.join(60)
+        assert results[0].digest == unwatched.digest
+        connection.close()
+
+
+def test_a_page_that_is_gone_changes_nothing(request_, unwatched, tmp_path):
+    result = run_job(replace(request_, live=str(tmp_path / "gone")), lambda _: None)
+    assert result.digest == unwatched.digest
+
+
+def test_the_command_prints_the_address_and_ends_with_the_run(request_, unwatched):
+    command = [sys.executable, "-m", "harness.cli", "run", request_.file.name, "--live"]
+    command += ["--no-report", "-j", "2", "--repeat", "2"]
+    folder = request_.file.parent
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr.count("\n")) == (0, 1)
+    assert re.match(r"live: http://127.0.0.1:\d+/\n", done.stderr)
+    assert f"2 runs, one digest: {unwatched.digest}" in done.stdout
+
+
+def test_options_that_have_no_poses_here_are_refused(request_):
+    command = [sys.executable, "-m", "harness.cli", "run", str(request_.file), "--live"]
+    done = subprocess.run([*command, "--on", "ray"], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (2, "harness: --live and --on exclude each other\n")
