@@ -236,6 +236,7 @@ def show_results(
 ) -> None:
     """Failures, rates, tables and the last lines."""
     from harness.reporting.sampled import missed
+    from harness.reporting.shared_work import shared_sentence
     from harness.reporting.suite.github import annotations_for_action
     from harness.reporting.terminal import Style, repeats, report_link, summary
 
@@ -258,6 +259,9 @@ def show_results(
         say(suite.files_text)
     if suite.resumed:
         say(f"{suite.resumed} of them were known from before")
+    shared = shared_sentence(suite.results.values())
+    if shared:
+        say(shared)
     written = [result for result in suite.results.values() if result.report_dir]
     if page is not None:
         say(f"reports: {style.link(str(page), page.resolve().as_uri())}")

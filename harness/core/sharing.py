@@ -132,7 +132,7 @@ class Chain:
         self._results.tally.computed[self._kind] += amount
 
     def keep(self, key: str, result: Callable[[], object], amount: int = 1) -> None:
-        """Keep a result that was computed; the chain is over at the first that no other case has."""
+        """Keep a result that was computed; the chain is over at the first of its own."""
         self.note(amount)
         self._keeps = self._keeps or (not self.is_over and self._results.was_seen(key))
         if self._keeps:

@@ -93,3 +93,19 @@ def test_a_sample_has_the_same_digest_in_any_company(folder, alone, words):
 def test_repetitions_share_nothing(folder):
     done = harness("run", "lift.scenario.yaml", "--case", "sample1", "--repeat", "2", cwd=folder)
     assert done.returncode == 0, done.stdout
+
+
+def test_page_journal_and_queries_say_what_was_shared(folder):
+    done = harness("run", "lift.scenario.yaml", "--report-dir", "reports", cwd=folder)
+    sentence = "4 of 5 cases took results from others that had the same inputs"
+    assert sentence in done.stdout
+    page = (folder / "reports" / "index.html").read_text()
+    assert sentence in page
+    assert page.count("from other cases: ") == 4
+    lines = (folder / "reports" / "results.jsonl").read_text().splitlines()
+    shared = [json.loads(line)["result"]["shared"] for line in lines]
+    assert [each["plans"][0] > 0 for each in shared] == [False, True, True, True, True]
+    listed = harness("results", "reports", cwd=folder).stdout
+    assert listed.count(" plans") == 4
+    harness("results", "reports", "--csv", "runs.csv", cwd=folder)
+    assert "% of the physics" in (folder / "runs.csv").read_text()
