@@ -118,7 +118,7 @@ class Span:
     Attributes:
         key: The names of the two bodies.
         samples: Indices of the samples in the run.
-        distances: At most the cutoff [m].
+        distances: The smallest distances [m], at most the cutoff.
         links: The indices of the nearest links, -1 at the cutoff; None where they are not kept.
         moved: The most that any pair of shapes moves since the sample before [m].
     """

@@ -68,7 +68,7 @@ class SmallestDistances:
     """The smallest distance among pairs at N samples.
 
     Attributes:
-        distances: At most the cutoff [m], shape (N,).
+        distances: The smallest distances [m], at most the cutoff, shape (N,).
         pairs: Indices of the nearest pairs, -1 at the cutoff, shape (N,).
         moved: The most that any of the pairs moves since the sample before [m], shape (N,).
         measured: What is known after the last sample.
@@ -140,7 +140,7 @@ class _Search:
     """A search for the nearest of the K pairs that may come nearer than the cutoff.
 
     Attributes:
-        pairs: The pairs.
+        pairs: The pairs of shapes among which it searches.
         travelled: How far each has travelled at every sample [m], shape (N, K).
         known: The distance of each that was last measured [m].
         at: How far each had travelled then [m], shape (K,).

@@ -95,8 +95,8 @@ class CaseResult:
         overlap: Depth of the deepest pair of bodies that overlap at the start [m]; 0: none do.
         redraws: How often the sample was drawn again because objects overlapped.
         values: What varies as it was drawn at last, path -> value; empty when drawn once.
-        shared: By kind of result (`plans`, `physics` in samples ...): how many were taken from
-            other cases, of how many; never judged.
+        shared: The number of results that were taken from other cases, and the number of all, by
+            kind: `plans`, `physics` in samples, `distances` in parts; never judged.
         wall_times: Seconds of each part; never judged.
     """
 
