@@ -29,12 +29,13 @@ class TimedSimulator(MujocoSimulator):
         self._clock = clock
         self.watch: Callable[[], None] | None = None
 
-    def _advance(self, points: SetPoints, controls: FloatArray) -> None:
+    def _step(self, points: SetPoints, controls: FloatArray) -> None:
         if self.watch is None:
-            return super()._advance(points, controls)
-        for begin in range(0, len(points) - 1, SAMPLES_BETWEEN_LOOKS):
-            end = min(begin + SAMPLES_BETWEEN_LOOKS, len(points) - 1)
-            super()._advance(points.part(begin, end), controls[begin : end + 1])
+            return super()._step(points, controls)
+        count = len(points) - 1
+        for begin in range(0, count, SAMPLES_BETWEEN_LOOKS):
+            end = min(begin + SAMPLES_BETWEEN_LOOKS, count)
+            super()._step(points.part(begin, end), controls[begin : end + 1])
             self.watch()
         return None
 

@@ -16,6 +16,7 @@ from harness.ports import Touch
 from harness.session.timed_simulator import TimedSimulator
 from harness.simulation.objects import overlaps
 from harness.simulation.recording import refresh
+from harness.simulation.set_points import SetPoints
 
 CHUNK = 16
 """Samples between two calls of the pace; the results do not depend on it."""
@@ -86,20 +87,16 @@ class LiveSimulator(TimedSimulator):
         refresh(self._model, self._data)
         return overlaps(self.physics, self._data)
 
-    def _advance(
-        self, controls: FloatArray, commands: FloatArray, command_velocities: FloatArray
-    ) -> None:
-        count = len(controls) - 1
+    def _step(self, points: SetPoints, controls: FloatArray) -> None:
+        count = len(points) - 1
         begin = 0
         while begin < count:
             left = count if self.stop_sample is None else self.stop_sample - self.sample_count
             end = min(begin + (count if self.pace is None else CHUNK), count, begin + left)
             if end > begin:
-                super()._advance(
-                    controls[begin : end + 1], commands[begin:end], command_velocities[begin:end]
-                )
+                super()._step(points.part(begin, end), controls[begin : end + 1])
             goes_on = self.pace is None or self.pace(end - begin)
             if end == begin or not goes_on:
-                self.command(commands[max(0, end - 1)])
+                self.command(points.positions[max(1, end)])
                 raise StepFailed("PREEMPTED", "the motion was stopped by hand")
             begin = end

@@ -221,7 +221,7 @@ def test_a_file_with_mistakes_opens_with_its_marks_and_becomes_live(browser, ser
     opened.wait_text("#problems", "not YAML")
     opened.type_scenario(good.replace("steps: []", "steps: [{move_to: hom}]"))
     opened.wait_text("#stand-in", "The robot alone")
-    opened.wait_text("#problems", "did you mean 'home'")
+    opened.wait_text("#problems", "did you mean `home`")
     opened.wait("document.querySelectorAll('.joint').length > 0")
     opened.type_scenario(good)
     opened.wait_text("#status", "0 of 0 steps executed")
