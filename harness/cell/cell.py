@@ -7,6 +7,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+import numpy as np
+
 from harness.cell.program import ProgramStep, step_seed
 from harness.core.camera import Camera
 from harness.core.details import Detail, Details
@@ -92,7 +94,6 @@ class Cell:
     beliefs: dict[str, list[Belief]] = field(default_factory=dict[str, list[Belief]])
     notes: StepNotes = field(default_factory=StepNotes)
     step: ProgramStep | None = None
-    seed: int = 0
     cameras: Mapping[str, Camera] = field(default_factory=dict[str, Camera])
     run_steps: Callable[[Sequence[ProgramStep]], None] = _cannot_nest
     external: ExternalControl | None = None
@@ -153,8 +154,17 @@ class Cell:
         if gripper is not None:
             measured = self.simulator.joint_positions()
             index = self.description.joint_index[gripper.joint]
-            start[index] = measured[index]
+            start[index] = rounded(measured[index], self._pose_resolution)
         return self.description.with_mimics(start)
+
+    def measured_pose(self, name: str) -> SE3:
+        """T_world_object as the physics has it now, to the step's `pose_resolution`."""
+        pose, resolution = self.simulator.object_pose(name), self._pose_resolution
+        return SE3.from_vector(rounded(pose.as_vector(), resolution)) if resolution else pose
+
+    @property
+    def _pose_resolution(self) -> float:
+        return 0.0 if self.step is None else self.step.options.pose_resolution
 
     def frame(self, name: str) -> SE3:
         """T_world_frame of `world`, a link, or an object as the physics has it now."""
@@ -166,7 +176,7 @@ class Cell:
         if presence is None or not presence.is_there:
             raise StepFailed("FRAME_TRANSFORM_FAILURE", f"'{name}' is not in the scene now")
         if presence.obj.in_simulation:
-            return self.simulator.object_pose(name)
+            return self.measured_pose(name)
         return self.scene.object_pose(name, self.planning_start())
 
     def world_pose(self, pose: Pose) -> SE3:
@@ -188,7 +198,7 @@ class Cell:
             if presence is None or name in held or presence.obj.is_static:
                 continue
             if presence.obj.in_simulation:
-                self.scene.move_object(name, self.simulator.object_pose(name))
+                self.scene.move_object(name, self.measured_pose(name))
 
     def add_to_scene(self, obj: WorldObject, pose: SE3) -> None:
         """Let an object appear in the planning scene, the physics, or both, and say since when."""
@@ -294,7 +304,7 @@ class Cell:
         if presence is None or not presence.is_there or not presence.obj.in_planning:
             return
         if record.represents not in self.scene.object_names():
-            pose = self.simulator.object_pose(record.represents)
+            pose = self.measured_pose(record.represents)
             self.scene.add_object(presence.obj, pose)
 
     # -- nested steps -------------------------------------------------------------------------
@@ -303,7 +313,7 @@ class Cell:
         """A step that the current one is made of, with a seed of its own."""
         parent = self.current
         path = f"{parent.path}.{name}"
-        options = replace(parent.options, seed=step_seed(self.seed, path))
+        options = replace(parent.options, seed=step_seed(parent.options.root_seed, path))
         return ProgramStep(f"{parent.id}.{name}", path, spec, summary, parent.line, options)
 
     def run_children(self, children: Sequence[ProgramStep] | None = None) -> None:
@@ -349,6 +359,14 @@ class Cell:
                 TimeoutFailure(plan.trajectory.duration, timeout),
             )
         self.simulator.track(plan.trajectory)
+
+
+def rounded(measured: FloatArray, resolution: float) -> FloatArray:
+    """Measured numbers as the nearest multiples of a resolution; unchanged where that is 0."""
+    if not resolution:
+        return measured
+    steps: FloatArray = np.round(np.asarray(measured) / resolution)
+    return steps * resolution + 0.0  # no negative zero
 
 
 def trajectory_record(trajectory: JointTrajectory) -> dict[str, Any]:

@@ -136,6 +136,12 @@ def for_run(run: argparse.ArgumentParser) -> None:
         " RAY_ADDRESS, 'ray://HOST:PORT' for another cluster; needs the extra `cluster`",
     )
     run.add_argument("--no-report", action="store_true", help="write no report")
+    run.add_argument(
+        "--no-sharing",
+        action="store_true",
+        help="compute plans, physics and distances in every case, even those that are"
+        " the same as in a case before",
+    )
     run.add_argument("--no-page", action="store_true", help="write the report without its page")
     run.add_argument("--bag", action="store_true", help="write a rosbag2 into the report too")
     run.add_argument(

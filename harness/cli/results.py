@@ -116,7 +116,8 @@ def _row(row: dict[str, Any], style: Style) -> str:
     if said is None and row["margin"] is not None:
         unit = "" if row["unit"] == "1" else row["unit"]
         said = f"margin {row['margin']:.4g} {unit}".rstrip()
-    words = filter(None, (name, said, drawn))
+    shared = f"from other cases: {row['shared']}" if row["shared"] else ""
+    words = filter(None, (name, said, drawn, shared))
     return f"{style.mark(row['outcome'] == 'passed')} {'  '.join(words)}"
 
 

@@ -155,6 +155,7 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path], live: str) -> S
         strict=arguments.strict,
         reporters=arguments.reporters,
         nodes=named_commands(arguments.nodes) if arguments.nodes else {},
+        share=not arguments.no_sharing and arguments.repeat == 1,  # repetitions compare each other
         conditions=conditions,
         live=live,
     )
@@ -303,6 +304,8 @@ def show_results(
         say(suite.files_text)
     if suite.resumed:
         say(f"{suite.resumed} of them were known from before")
+    if columns is not None and (shared := columns.shared.sentence()):
+        say(shared)
     if page is not None:
         say(f"reports: {style.link(str(page), page.resolve().as_uri())}")
     elif written := [result for result in suite.results.values() if result.report_dir]:

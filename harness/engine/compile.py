@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from harness.assertions.placed import as_expectation, check_expectation
-from harness.cell.program import Program, ProgramExpectation, ProgramStep, step_seed
+from harness.cell.program import Program, ProgramExpectation, ProgramStep
 from harness.cell.scope import At, Prerequisite, Problems, Scope
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh
@@ -305,7 +305,7 @@ class _Compiler:
             spec=spec,
             summary=spec.title,
             line=line,
-            options=self._options(spec.planning, loc, step_seed(sources.scenario.seed, path)),
+            options=self._options(spec.planning, loc, path),
             children=self._children(spec, loc, path, suffix),
         )
         for index, expectation in enumerate(spec.expect):
@@ -325,7 +325,7 @@ class _Compiler:
             children += self._steps(block.steps, block.loc, block.path, suffix + block.suffix)
         return tuple(children)
 
-    def _options(self, planning: Planning | None, loc: Loc, seed: int) -> PlanningOptions:
+    def _options(self, planning: Planning | None, loc: Loc, path: str) -> PlanningOptions:
         sources = self.sources
         if planning is not None:
             check_planning(
@@ -336,7 +336,12 @@ class _Compiler:
                 sources.scenario.planning,
             )
         return merged_options(
-            sources.scenario.planning, planning, seed, sources.checks_per_second, self._planner_name
+            sources.scenario.planning,
+            planning,
+            sources.scenario.seed,
+            path,
+            sources.checks_per_second,
+            self._planner_name,
         )
 
     def _planner_name(self, pipeline: str, name: str) -> str:

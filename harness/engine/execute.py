@@ -156,7 +156,6 @@ class ProgramExecution:
             planner=planner,
             simulator=simulator,
             later_objects=program.later_objects,
-            seed=program.seed,
             cameras=program.cameras,
             external=external,
         )

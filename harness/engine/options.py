@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from harness.cell.program import step_seed
 from harness.cell.scope import Problems
 from harness.language.files.source import Loc
 from harness.language.planning import Planning
@@ -23,6 +24,7 @@ def merged_options(
     scenario: Planning,
     step: Planning | None,
     seed: int,
+    path: str,
     checks_per_second: int,
     planner_name: Callable[[str, str], str],
 ) -> PlanningOptions:
@@ -31,7 +33,8 @@ def merged_options(
     Args:
         scenario: The key `planning` of the scenario.
         step: The step's, which wins key by key.
-        seed: The seed of the step.
+        seed: The seed of the scenario.
+        path: Place of the step in the expanded file.
         checks_per_second: State checks that a second of `planning_time` buys.
         planner_name: Normalises a pipeline's `planner_id`; empty is the pipeline's default.
     """
@@ -48,6 +51,7 @@ def merged_options(
     if checks is None:
         seconds = said.get("planning_time")
         checks = DEFAULT_STATE_CHECKS if seconds is None else int(seconds * checks_per_second)
+    root_seed = said.get("seed", seed)
     return PlanningOptions(
         pipeline=pipeline,
         planner_id=planner_name(pipeline, said.get("planner_id", "")),
@@ -56,7 +60,9 @@ def merged_options(
         velocity_scaling=said.get("max_velocity_scaling_factor", DEFAULT_SCALING),
         acceleration_scaling=said.get("max_acceleration_scaling_factor", DEFAULT_SCALING),
         padding=said.get("padding", DEFAULT_PADDING),
-        seed=seed,
+        seed=step_seed(root_seed, path),
+        root_seed=root_seed,
+        pose_resolution=said.get("pose_resolution", 0.0),
         parameters=said.get("parameters", {}),
         max_jerk=said.get("max_jerk", float("inf")),
     )

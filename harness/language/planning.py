@@ -93,6 +93,17 @@ class Planning(SpecModel):
         description="The distance kept between every object and the robot with what it holds [m]; "
         "the default is 2 mm.",
     )
+    seed: Annotated[Count, Field(ge=0, le=2**31 - 1)] | None = Field(
+        default=None,
+        description="The seed of the planners in place of the scenario's `seed`. The samples of "
+        "`randomize` take the file's, so that equal planning problems have equal plans.",
+    )
+    pose_resolution: Annotated[Length, Field(gt=0, le=0.001)] | None = Field(
+        default=None,
+        description="Measured poses of objects, and the measured position of the gripper, are "
+        "rounded to multiples of this before motions are planned [m, and the same number in rad]; "
+        "the default is not to round. The samples of `randomize` round to 10 um.",
+    )
     parameters: dict[Name, Number] | None = Field(
         default=None,
         description="Parameters of the planner; those of `ompl` have OMPL's names: `range`, "

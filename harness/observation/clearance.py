@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from harness.core.sharing import shared
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.observation.body_tracks import (
     BodyTrack,
@@ -155,12 +156,41 @@ class CoalClearance:
         attachments: Sequence[AttachmentRecord],
         cutoff: float,
     ) -> MeasuredClearance:
-        """Distances at every given sample."""
-        found = MeasuredClearance(len(motion.times))
+        """Distances at every given sample, from a case that moved alike or measured here."""
         links = LinkPoses(self.description, motion.joint_positions)
         tracks = {
             record.name: object_track(record, attachments, motion, links) for record in objects
         }
+
+        def inputs() -> tuple[object, ...]:
+            bodies = [
+                (record.name, record.is_static, record.shapes, track.rotations, track.translations)
+                for record, track in zip(objects, tracks.values(), strict=True)
+            ]
+            held = [
+                (each.object, each.represents, each.link, each.pose_in_link, during)
+                for each in attachments
+                if (during := _during(each, motion)).any()
+            ]
+            in_physics = sorted(motion.object_poses)
+            return self.description.key, motion.joint_positions, bodies, held, in_physics, cutoff
+
+        return shared(
+            "distances",
+            inputs,
+            lambda: self._measure_all(motion, links, tracks, objects, attachments, cutoff),
+        )
+
+    def _measure_all(
+        self,
+        motion: Motion,
+        links: LinkPoses,
+        tracks: Mapping[str, BodyTrack],
+        objects: Sequence[ObjectRecord],
+        attachments: Sequence[AttachmentRecord],
+        cutoff: float,
+    ) -> MeasuredClearance:
+        found = MeasuredClearance(len(motion.times))
         shapes = {record.name: tracked_shapes(record.name, record.shapes) for record in objects}
         self._robot_to_itself(found, links, cutoff)
         for record in objects:
@@ -217,8 +247,7 @@ class CoalClearance:
         cutoff: float,
     ) -> None:
         """Distances of an attached object: in the physics, and as assumed by the planning scene."""
-        times = motion.times
-        during = (times >= attachment.start_time) & (times <= attachment.end_time)
+        during = _during(attachment, motion)
         believed = carried_track(link_track(links, attachment.link), attachment.pose_in_link)
         held: dict[str, BodyTrack] = {attachment.object: believed}
         for name in (attachment.object, attachment.represents):
@@ -265,9 +294,13 @@ class CoalClearance:
 
 def _held(name: str, attachments: Sequence[AttachmentRecord], motion: Motion) -> BoolArray:
     """Samples in which an object, or the object that represents it, is attached."""
-    times = motion.times
-    held = np.zeros(len(times), dtype=bool)
+    held = np.zeros(len(motion.times), dtype=bool)
     for attachment in attachments:
         if name in (attachment.object, attachment.represents):
-            held |= (times >= attachment.start_time) & (times <= attachment.end_time)
+            held |= _during(attachment, motion)
     return held
+
+
+def _during(attachment: AttachmentRecord, motion: Motion) -> BoolArray:
+    """Samples in which an attachment lasts."""
+    return (motion.times >= attachment.start_time) & (motion.times <= attachment.end_time)

@@ -19,6 +19,7 @@ from harness.planning.free_motion import find_motion
 from harness.planning.goals.goal_choice import choose_goals
 from harness.planning.goals.goals import GoalCandidates, find_goals
 from harness.planning.ik.kinematics import PinocchioKinematics
+from harness.planning.shared_plans import sharing_plans
 from harness.planning.task import PlanningTask, make_task
 from harness.planning.timing.limits import Limits, TimingError
 from harness.planning.timing.profiles import cubic_curve, on_grid, quintic_curve, sample
@@ -57,6 +58,7 @@ class VerifiedPlanner:
         """The robot for which motions are planned."""
         return self.scene.description
 
+    @sharing_plans("plans")
     @explained
     def plan(self, request: MotionRequest) -> MotionPlan:
         """Plan a motion without collision, timed and verified."""
@@ -76,6 +78,7 @@ class VerifiedPlanner:
             case WaypointMotion(goals, path_options):
                 return plan_waypoints(self._links(request), goals, path_options)
 
+    @sharing_plans("goals")
     @explained
     def check_goal(self, request: MotionRequest) -> CheckedGoal:
         """Explain the goal of a free motion without planning to it: each IK solution."""

@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 
 from harness.core.camera import Camera
+from harness.core.exact_key import exact_key
 from harness.core.geometry import Shape
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
@@ -217,6 +218,11 @@ class RobotDescription:
     controllers: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     joint_controller: str = "position_servo"
     notes: tuple[str, ...] = ()
+
+    @cached_property
+    def key(self) -> str:
+        """The same for robots of which everything is the same, the content of meshes included."""
+        return exact_key(self)
 
     @cached_property
     def movable_joints(self) -> tuple[Joint, ...]:

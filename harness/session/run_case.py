@@ -10,6 +10,7 @@ from pathlib import Path
 
 from harness.assertions.judge import judge
 from harness.cell.program import ProgramStep
+from harness.core import sharing
 from harness.core.errors import HarnessError, SpecError
 from harness.engine.execute import ProgramExecution, StepEvent
 from harness.ports.scene import Touch
@@ -45,7 +46,7 @@ def run_case(
         make_session: Makes the session of the programs to which a step hands the robot over.
         start: Prepares the case, with the simulator or a robot in its place.
     """
-    clock = Clock()
+    clock, tally = Clock(), sharing.begin(share=request.share)
     try:
         with clock.part("compile"):
             begun = start(request, clock)
@@ -67,6 +68,7 @@ def run_case(
             if refusal and judged.outcome != "passed":
                 judged = replace(judged, outcome="error")
             result = _result(request, prepared, judged, overlaps, draw, refusal)
+            result = replace(result, shared=tally.counts())
             progress.judged(result)
             if request.report_dir is None or (request.only_failed and result.outcome == "passed"):
                 return result

@@ -5,12 +5,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import mujoco
 import numpy as np
 
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, IntArray
 from harness.simulation.model import PhysicsModel
 
 ROWS = 4096
@@ -30,6 +31,27 @@ BYTES = 52
 
 BodyPair = tuple[str, str]
 Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedContacts:
+    """Contacts of consecutive samples.
+
+    Attributes:
+        counts: How many each sample has, shape (N,).
+        geoms: The two geoms of each contact, shape (C, 2).
+        forces: Normal forces [N], shape (C,).
+        normals: Directions from the first geom to the second, shape (C, 3).
+        points: Where they are [m], shape (C, 3).
+        frictions: Friction forces [N], shape (C, 3).
+    """
+
+    counts: IntArray
+    geoms: Array
+    forces: FloatArray
+    normals: Array
+    points: Array
+    frictions: Array
 
 
 class ContactRecord:
@@ -77,6 +99,37 @@ class ContactRecord:
         if not self._unresolved.keep(contact, data.efc_force):
             self._resolve(begin)
             self._unresolved.keep(contact, data.efc_force)
+
+    def geoms(self, first: int, last: int) -> Array:
+        """The two geoms of each contact in samples first to last - 1, shape (C, 2)."""
+        return self._geoms[self._begin(first) : self._begin(last)]
+
+    def part(self, first: int, last: int) -> RecordedContacts:
+        """The contacts of samples first to last - 1."""
+        self._resolve(self.count)
+        begin, end = self._begin(first), self._begin(last)
+        counts = np.diff(self._end[first:last], prepend=begin)
+        return RecordedContacts(counts, *(values[begin:end] for values in self._values))
+
+    def take(self, first: int, part: RecordedContacts) -> None:
+        """Go on from a sample with contacts of another run."""
+        begin = self.count
+        self._resolve(begin)
+        self._end[first : first + len(part.counts)] = begin + np.cumsum(part.counts)
+        self.count = self._resolved = end = begin + len(part.forces)
+        while end > len(self._forces):
+            self._grow()
+        taken = (part.geoms, part.forces, part.normals, part.points, part.frictions)
+        for values, more in zip(self._values, taken, strict=True):
+            values[begin:end] = more
+
+    @property
+    def _values(self) -> tuple[Array, ...]:
+        return self._geoms, self._forces, self._normals, self._points, self._frictions
+
+    def _begin(self, row: int) -> int:
+        """The first contact of a sample."""
+        return int(self._end[row - 1]) if row else 0
 
     def _grow(self) -> None:
         for name in ("_geoms", "_forces", "_normals", "_points", "_frictions"):
@@ -181,7 +234,7 @@ class ContactRecord:
         ends = self._end[first:last]
         row = 0
         while row < len(ends):
-            begin = int(self._end[first + row - 1]) if first + row else 0
+            begin = self._begin(first + row)
             stop = max(row + 1, int(np.searchsorted(ends, begin + BLOCK, side="right")))
             for numbers, contacts in self._sorted(begin, int(ends[stop - 1])):
                 yield numbers, np.searchsorted(ends, contacts, side="right"), contacts

@@ -5,16 +5,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 
 from harness.core.errors import SimulationDiverged, StepFailed
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, IntArray
 from harness.ports.simulation import LONGEST_RUN
 from harness.recording.execution_failures import LengthFailure
 from harness.recording.run import Signals
-from harness.simulation.contact_record import BYTES, ROWS, BodyPair, ContactRecord, doubled
+from harness.simulation.contact_record import (
+    BYTES,
+    ROWS,
+    BodyPair,
+    ContactRecord,
+    RecordedContacts,
+    doubled,
+)
 from harness.simulation.model import PhysicsModel
 
 MOST_BYTES = 2**30
@@ -29,6 +37,23 @@ _DIVERGED = (
     mujoco.mjtWarning.mjWARN_BADQACC,
     mujoco.mjtWarning.mjWARN_BADCTRL,
 )
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedPart:
+    """Consecutive samples; the sensors and contacts of the last one are left out.
+
+    Attributes:
+        positions: MuJoCo's positions, shape (N, nq).
+        velocities: MuJoCo's velocities, shape (N, nv).
+        sensors: Sensor data, shape (N - 1, nsensordata).
+        contacts: The contacts of the same N - 1 samples.
+    """
+
+    positions: FloatArray
+    velocities: FloatArray
+    sensors: FloatArray
+    contacts: RecordedContacts
 
 
 class Recording:
@@ -96,6 +121,36 @@ class Recording:
         self.count = first + steps
         self._refuse_divergence(first)
         self._record_forces_of_last_row()
+
+    def part(self, first: int) -> RecordedPart:
+        """The samples from one on."""
+        end = self.count
+        return RecordedPart(
+            self._qpos[first:end],
+            self._qvel[first:end],
+            self._sensors[first : end - 1],
+            self._contacts.part(first, end - 1),
+        )
+
+    def take(
+        self, part: RecordedPart, commands: FloatArray, command_velocities: FloatArray
+    ) -> None:
+        """Go on with samples of another run; the physics stands at the last one of them."""
+        first, end = self.count, self.count + len(part.positions)
+        self._reserve(end)
+        self._commands[first:end], self._command_velocities[first:end] = (
+            commands,
+            command_velocities,
+        )
+        self._qpos[first:end], self._qvel[first:end] = part.positions, part.velocities
+        self._sensors[first : end - 1] = part.sensors
+        self._contacts.take(first, part.contacts)
+        self.count = end
+        self._record_forces_of_last_row()
+
+    def touching_geoms(self, first: int, last: int) -> IntArray:
+        """Pairs of geoms that touch in samples first to last - 1, in order, shape (K, 2)."""
+        return np.unique(self._contacts.geoms(first, last), axis=0)
 
     def refuse_beyond(self, steps: int) -> None:
         """Check that a number of further samples can be recorded.

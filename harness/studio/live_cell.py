@@ -88,7 +88,6 @@ class LiveCell:
         self._has_same_links = prepared.observed_links == observed
         self.execution.program = prepared.program
         self.cell.later_objects = prepared.program.later_objects
-        self.cell.seed = prepared.program.seed
         if equal < self.steps_done:
             self.restore(equal)
         return False

@@ -26,7 +26,7 @@ from harness.recording.plain import to_plain
 from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
 from harness.suite.cases import run_isolated
-from harness.suite.leftovers import is_alive
+from harness.suite.leftovers import remove_abandoned
 from harness.suite.stream import result_of
 from harness.suite.warm import WarmServer
 
@@ -230,7 +230,7 @@ def _place(files: Files) -> _Place:
     if _places and _places[0].key != files.key:
         _close_places()
     if not _places:
-        _remove_leftovers()
+        remove_abandoned(PREFIX)
         atexit.register(_close_places)
         _places.append(_Place(files))
     return _places[0]
@@ -239,14 +239,6 @@ def _place(files: Files) -> _Place:
 def _close_places() -> None:
     while _places:
         _places.pop().close()
-
-
-def _remove_leftovers() -> None:
-    """Remove the folders of processes that were killed."""
-    for folder in Path(tempfile.gettempdir()).glob(f"{PREFIX}*"):
-        pid = folder.name.removeprefix(PREFIX).partition("-")[0]
-        if pid.isdigit() and not is_alive(int(pid)):
-            shutil.rmtree(folder, ignore_errors=True)
 
 
 def _packed(result: CaseResult) -> bytes:

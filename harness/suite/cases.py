@@ -15,7 +15,7 @@ from harness.core.errors import SpecError
 from harness.reporting.result import CaseResult, ProgressEvent
 from harness.session.run_request import RunRequest
 from harness.suite.environment import prepare_process
-from harness.suite.leftovers import clean_leftovers
+from harness.suite.leftovers import clean_leftovers, remove_abandoned
 from harness.suite.warm import Ended, Heard, WarmServer
 
 HARD_CAP_SECONDS = 600.0
@@ -70,6 +70,14 @@ def read_ahead(words: Collection[str]) -> None:
     read_bundled(words)
 
 
+def share_results() -> None:
+    """Let the cases that this process forks share results."""
+    from harness.core.sharing import PREFIX, open_folder  # numpy: the caller's start need not wait
+
+    remove_abandoned(PREFIX)
+    open_folder()
+
+
 def run_here(
     jobs: Sequence[RunRequest],
     *,
@@ -121,6 +129,8 @@ def run_isolated(
     running: dict[int, _Running] = {}
     if function is run_job:
         server.prepare(read_ahead, _words(jobs))
+        if len({job.file for job in jobs}) < len(jobs):
+            server.prepare(share_results)
     try:
         while waiting or running:
             while waiting and len(running) < workers:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import shutil
+import tempfile
 from pathlib import Path
 
 _TEMPORARY = re.compile(r"\.(?P<name>.+)\.(?P<kind>writing|old)\.(?P<pid>\d+)\.\d+")
@@ -55,6 +56,18 @@ def _clean(parent: Path, only: str | None = None) -> None:
         if match["kind"] == "old" and older.is_dir() and not folder.exists():
             older.rename(folder)
         shutil.rmtree(sibling, ignore_errors=True)
+
+
+def remove_abandoned(prefix: str) -> None:
+    """Remove temporary folders, named by a prefix and a process number, of processes that are gone.
+
+    Args:
+        prefix: What stands before the number.
+    """
+    for folder in Path(tempfile.gettempdir()).glob(f"{prefix}*"):
+        pid = folder.name.removeprefix(prefix).partition("-")[0]
+        if pid.isdigit() and not is_alive(int(pid)):
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def is_alive(pid: int) -> bool:

@@ -21,6 +21,8 @@ from harness.core.quantity import share_of, split_quantity
 from harness.core.variation import MOST_CASES, MOST_SAMPLES, Parametrize, count_of
 
 DEFAULT_SAMPLES = 20
+POSE_RESOLUTION = "1.0e-05"
+"""Resolution [m] of measured poses in samples: objects at rest differ less with other friction."""
 LONGEST_NAME = 60
 SMALLEST_SHARE = 1e-12
 """Smallest tail share of a normal distribution whose quantile is still finite."""
@@ -65,6 +67,7 @@ class Variation:
         stop_early: Whether a sequential test may end the sampling.
         seed: The seed of the file.
         redraw_overlaps: Whether a sample is drawn again while objects overlap at the start.
+        planning: What the file says of its planning parameters.
     """
 
     parametrize: Parametrize | None = None
@@ -75,6 +78,7 @@ class Variation:
     stop_early: bool = True
     seed: int = 0
     redraw_overlaps: bool = False
+    planning: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
     @classmethod
     def of(cls, values: Mapping[str, Any]) -> Variation:
@@ -102,6 +106,7 @@ class Variation:
             stop_early=bool(rate.get("stop_early", True)),
             seed=int(values.get("seed") or 0),
             redraw_overlaps=values.get("redraw_overlaps") is True,
+            planning=dict(values.get("planning") or {}),
         )
         if not count_of(variation.parametrize):
             raise ValueError("no case")
@@ -153,12 +158,27 @@ class Variation:
         drawn = {path: _drawn(each, rng) for path, each in self.randomize.items()}
         return Case(
             name=_sample_name(case, index),
-            overrides={**case.overrides, **as_yaml(drawn), "seed": str(seed)},
+            overrides={
+                **self._same_planning(base),
+                **case.overrides,
+                **as_yaml(drawn),
+                "seed": str(seed),
+            },
             values={**case.values, **drawn},
             group=case.name,
             sample=index,
             redraw=Redraw(self, case, index, base) if self.redraw_overlaps and not draw else None,
         )
+
+    def _same_planning(self, base: int) -> dict[str, str]:
+        """Overrides with which samples plan the same where only the physics varies.
+
+        Samples of a file that draws nothing differ in their seeds alone, which must count then.
+        """
+        if not self.randomize:
+            return {}
+        same = {"seed": str(base), "pose_resolution": POSE_RESOLUTION}
+        return {f"planning.{key}": value for key, value in same.items() if key not in self.planning}
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,8 @@ RUN_MODULES = (
     "harness.observation.looks_differ",
     "harness.cameras.stills",
     "harness.reporting.html.write",
+    "numpy.ma",
+    "numpy.random",
     "pinocchio",
     "coal",
     "ompl.base",

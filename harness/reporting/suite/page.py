@@ -16,6 +16,7 @@ from harness.reporting.html.content_policy import content_policy
 from harness.reporting.margins import allowance_used
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate, missed, rate_text, short_value
+from harness.reporting.shared_work import shared_words
 from harness.reporting.suite.campaign import campaign_html
 from harness.reporting.suite.columns import Columns
 from harness.reporting.suite.history import Key
@@ -66,7 +67,7 @@ def suite_html(
         outcomes=_outcomes(columns),
         causes=_causes(columns),
         rates=_rates(record.rates),
-        campaign=campaign_html(columns, record.cases, folder),
+        campaign=_shared(columns) + campaign_html(columns, record.cases, folder),
         table=_varied(columns),
         unlisted=_unlisted(total - len(rows)),
         rows="\n".join(rows),
@@ -175,13 +176,26 @@ def _row(
         f' data-name="{escape(result.title.lower())}" data-time="{result.sim_time:.3f}"'
         f' data-words="{escape(f"{words} {said}".lower())}">'
         f'<td><i class="sign {result.outcome}"></i><span class="quiet">{result.outcome}</span></td>'
-        f'<td>{title}{tags}<div class="quiet">{escape(result.file)}{_drawn(case)}</div>'
+        f'<td>{title}{tags}<div class="quiet">{escape(result.file)}{_drawn(case)}'
+        f"{_taken(result)}</div>"
         f'<div class="why">{escape(said)}</div></td>'
         f"<td>{_margin(nearest)}</td>"
         f'{line}<td class="number">{result.sim_time:.1f} s</td>'
         f'<td class="number">{result.seed}</td>'
         f'<td class="number">{escape(result.digest[:12])}</td></tr>'
     )
+
+
+def _shared(columns: Columns) -> str:
+    """What the cases took from each other; empty where they took nothing."""
+    sentence = columns.shared.sentence()
+    return f'<p class="quiet">{escape(sentence)}</p>' if sentence else ""
+
+
+def _taken(result: CaseResult) -> str:
+    """What a case took from others."""
+    words = shared_words(result.shared)
+    return f" · from other cases: {escape(words)}" if words else ""
 
 
 def _drawn(case: SuiteCase) -> str:

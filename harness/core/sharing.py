@@ -1,0 +1,209 @@
+"""Results that the cases of one command share: each is computed once for the same inputs.
+
+A process that forks the cases opens a folder; its children keep results there, by keys that hold
+every byte of the inputs (`exact_key`), and take them from there. A result that is taken is the
+result that would be computed, so that sharing changes no digest. Without a folder, everything is
+computed.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import shutil
+import tempfile
+from collections import Counter
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, TypeVar
+
+from harness.core.exact_key import NoKeyError, exact_key
+
+PREFIX = "harness-shared-"
+"""How the names of folders begin; the number of the process that owns it follows."""
+
+MOST_BYTES = 128 * 2**20
+"""Size of the results that are kept; the least recently used ones make room."""
+
+MOST_RESULTS = 4096
+"""Number of results that are kept."""
+
+LOOK_EVERY = 64
+"""Results that a process keeps until it looks again whether there is room."""
+
+T = TypeVar("T")
+
+
+@dataclass
+class Tally:
+    """How many results of each kind a case took from others, and how many it computed."""
+
+    taken: Counter[str] = field(default_factory=Counter[str])
+    computed: Counter[str] = field(default_factory=Counter[str])
+
+    def counts(self) -> dict[str, tuple[int, int]]:
+        """By kind: how many were taken, of how many."""
+        kinds = sorted({*self.taken, *self.computed})
+        return {kind: (self.taken[kind], self.taken[kind] + self.computed[kind]) for kind in kinds}
+
+
+class SharedResults:
+    """Results in a folder, by key.
+
+    Attributes:
+        folder: The folder, which only this user can read.
+        tally: What was taken and what was computed since `begin`.
+    """
+
+    def __init__(self, folder: Path, most_bytes: int = MOST_BYTES) -> None:
+        self.folder = folder
+        self.tally = Tally()
+        self._folder = str(folder)
+        self._most_bytes = most_bytes
+        self._kept = 0
+
+    def find(self, key: str) -> Any:
+        """The result of a key; None where there is none."""
+        path = f"{self._folder}/{key}"
+        try:
+            with open(path, "rb") as file:  # noqa: PTH123 - thousands of times in a case
+                found = pickle.load(file)
+            os.utime(path)
+        except (OSError, EOFError, pickle.UnpicklingError):
+            return None
+        return found
+
+    def keep(self, key: str, result: object) -> None:
+        """Keep a result, if there is room on the disk."""
+        part = self.folder / f".{key}.{os.getpid()}"
+        try:
+            part.write_bytes(pickle.dumps(result, pickle.HIGHEST_PROTOCOL))
+            part.replace(self.folder / key)
+            if self._kept % LOOK_EVERY == 0:
+                self._make_room()
+            self._kept += 1
+        except OSError:
+            part.unlink(missing_ok=True)
+
+    def was_seen(self, key: str) -> bool:
+        """Whether a case has computed the result of a key before; from now on it has."""
+        path = self.folder / f"seen-{key}"
+        if path.exists():
+            return True
+        with suppress(OSError):
+            path.touch()
+        return False
+
+    def _make_room(self) -> None:
+        with os.scandir(self.folder) as entries:
+            found = [(each.stat(), Path(each.path)) for each in entries]
+        found.sort(key=lambda each: -each[0].st_mtime_ns)
+        size = 0
+        for number, (stat, path) in enumerate(found):
+            size += stat.st_size
+            if size > self._most_bytes or number >= MOST_RESULTS:
+                path.unlink(missing_ok=True)
+
+
+class Chain:
+    """Results of one case that follow from each other, such as the parts of a motion.
+
+    A chain is kept from a result on that a second case computes, so that results which are
+    different in every case are not.
+    """
+
+    def __init__(self, results: SharedResults, kind: str) -> None:
+        self._results = results
+        self._kind = kind
+        self._keeps = False
+        self.is_over = False
+
+    def find(self, key: str, amount: int = 1) -> Any:
+        """The result of a key, which counts as so many; None where there is none."""
+        found = None if self.is_over else self._results.find(key)
+        if found is not None:
+            self._results.tally.taken[self._kind] += amount
+        return found
+
+    def note(self, amount: int = 1) -> None:
+        """Count what was computed and is not kept."""
+        self._results.tally.computed[self._kind] += amount
+
+    def keep(self, key: str, result: Callable[[], object], amount: int = 1) -> None:
+        """Keep a result that was computed; the chain is over at the first of its own."""
+        self.note(amount)
+        self._keeps = self._keeps or (not self.is_over and self._results.was_seen(key))
+        if self._keeps:
+            self._results.keep(key, result())
+        else:
+            self.is_over = True
+
+
+_shared: SharedResults | None = None
+
+
+def open_folder() -> Path:
+    """Let this process, and those that it forks from now on, share results in a folder."""
+    global _shared
+    if _shared is None:
+        _shared = SharedResults(Path(tempfile.mkdtemp(prefix=f"{PREFIX}{os.getpid()}-")))
+    return _shared.folder
+
+
+def close_folder() -> None:
+    """Remove the folder."""
+    global _shared
+    if _shared is not None:
+        shutil.rmtree(_shared.folder, ignore_errors=True)
+        _shared = None
+
+
+def begin(*, share: bool = True) -> Tally:
+    """Begin a case in this process, which takes nothing from others unless it may share.
+
+    Returns:
+        What the case takes and computes from here on; nothing where nothing is shared.
+    """
+    global _shared
+    tally = Tally()
+    if not share:
+        _shared = None
+    if _shared is not None:
+        _shared.tally = tally
+    return tally
+
+
+def is_sharing() -> bool:
+    """Whether this process shares results with others."""
+    return _shared is not None
+
+
+def chain(kind: str) -> Chain | None:
+    """A chain of results of a kind; None where nothing is shared."""
+    return None if _shared is None else Chain(_shared, kind)
+
+
+def shared(kind: str, inputs: Callable[[], tuple[object, ...]], compute: Callable[[], T]) -> T:
+    """The result of a computation, from a case that had the same inputs or computed here.
+
+    Args:
+        kind: What the result is; a part of its key.
+        inputs: Everything that the result follows from; called only where results are shared.
+        compute: A pure function of the inputs, whose result can be pickled.
+    """
+    if _shared is None:
+        return compute()
+    try:
+        key = exact_key(kind, *inputs())
+    except NoKeyError:
+        return compute()
+    found = _shared.find(key)
+    if found is not None:
+        _shared.tally.taken[kind] += 1
+        return found
+    result = compute()
+    _shared.tally.computed[kind] += 1
+    _shared.keep(key, result)
+    return result

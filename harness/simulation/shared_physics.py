@@ -1,0 +1,112 @@
+"""Stretches of a simulation that cases share as long as nothing that differs has had an effect.
+
+MuJoCo's next state follows from its model, its integration state and the controls. The key of a
+stretch holds all of them bit by bit, but for the friction of surfaces: of these only the ones that
+touched can have had an effect, and a stretch is taken only by a case in which they are the same.
+"""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from harness.core.exact_key import exact_key
+from harness.core.sharing import chain
+from harness.core.types import FloatArray, IntArray
+from harness.simulation.recording import RecordedPart, Recording
+from harness.simulation.snapshot import CHANGED_IN_PLACE, STATE
+
+SURFACES = ("geom_friction", "geom_priority", "pair_friction")
+"""Arrays of the model that only contacts read."""
+
+
+SHORTEST = 8
+"""Steps of a stretch that is worth looking up."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Stretch:
+    """What was recorded in a stretch, and the state at its end."""
+
+    recorded: RecordedPart
+    state: FloatArray
+
+
+class SharedPhysics:
+    """Advances a recording, with stretches that another case has computed where there are any."""
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, recording: Recording) -> None:
+        self._model, self._data, self._recording = model, data, recording
+        self._chain = chain("physics")
+        self._key = "" if self._chain is None else _model_key(model)
+        pairs = zip(model.pair_geom1.tolist(), model.pair_geom2.tolist(), strict=True)
+        self._explicit: dict[tuple[int, int], int] = {}
+        for number, (first, second) in enumerate(pairs):
+            self._explicit[first, second] = self._explicit[second, first] = number
+
+    def advance(
+        self, controls: FloatArray, commands: FloatArray, command_velocities: FloatArray
+    ) -> None:
+        """Step once for each row of `controls` except the last, as `Recording.advance` does."""
+        recording, steps = self._recording, len(controls) - 1
+        if self._chain is None or self._chain.is_over or steps < SHORTEST:
+            recording.advance(controls, commands, command_velocities)
+            if self._chain is not None:
+                self._chain.note(max(0, steps))
+            return
+        first = recording.count
+        key = exact_key(self._key, self._changed(), self._state(), controls)
+        known: Sequence[IntArray] = self._chain.find(key, 0) or ()
+        for touching in known:
+            stretch = self._chain.find(self._with_surfaces(key, touching), steps)
+            if stretch is not None:
+                mujoco.mj_setState(self._model, self._data, stretch.state, STATE)
+                recording.take(stretch.recorded, commands, command_velocities)
+                return
+        recording.advance(controls, commands, command_velocities)
+        touching = recording.touching_geoms(first - 1, first + steps - 1)
+        whole_key = self._with_surfaces(key, touching)
+        self._chain.keep(whole_key, lambda: _Stretch(recording.part(first), self._state()), steps)
+        if not any(np.array_equal(touching, each) for each in known):
+            self._chain.keep(key, lambda: (*known, touching), 0)
+
+    def _state(self) -> FloatArray:
+        state = np.empty(mujoco.mj_stateSize(self._model, STATE))
+        mujoco.mj_getState(self._model, self._data, state, STATE)
+        return state
+
+    def _changed(self) -> list[object]:
+        """The arrays of the model that change during a run, but for the surfaces."""
+        names = (name for name in CHANGED_IN_PLACE if name not in SURFACES)
+        return [getattr(self._model, name) for name in names]
+
+    def _with_surfaces(self, key: str, touching: IntArray) -> str:
+        """The key of a stretch in which these pairs of geoms, shape (K, 2), touched.
+
+        Of two surfaces the one with the higher priority decides, or both where it is equal; an
+        explicit pair has its own friction.
+        """
+        model = self._model
+        order = np.sign(np.diff(model.geom_priority[touching], axis=1))  # 1: the second decides
+        frictions = model.geom_friction[touching]  # (K, 2, 3)
+        frictions[:, 0][order[:, 0] > 0] = 0.0
+        frictions[:, 1][order[:, 0] < 0] = 0.0
+        pairs = [self._explicit.get((first, second), -1) for first, second in touching.tolist()]
+        explicit = model.pair_friction[[pair for pair in pairs if pair >= 0]]
+        return exact_key(key, touching, order, frictions, np.array(pairs), explicit)
+
+
+def _model_key(model: mujoco.MjModel) -> str:
+    """Key of everything in a model that no run changes."""
+    bare = copy.copy(model)
+    for name in CHANGED_IN_PLACE:
+        getattr(bare, name)[...] = 0
+    content = np.zeros(mujoco.mj_sizeModel(bare), dtype=np.uint8)
+    mujoco.mj_saveModel(bare, None, content)
+    return exact_key(content)
