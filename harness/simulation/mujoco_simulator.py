@@ -80,7 +80,8 @@ class MujocoSimulator:
             frames: Links whose poses are recorded in addition to the TCP's.
 
         Raises:
-            ModelRefused: MuJoCo cannot simulate one of the bodies.
+            ModelRefused: MuJoCo cannot simulate one of the bodies, or the joint controller fails
+                at the start.
         """
         self.physics = build_model(
             description, world_objects, present, gravity=gravity, timestep=timestep, frames=frames
@@ -94,7 +95,7 @@ class MujocoSimulator:
         self._offsets = description.with_mimics(np.zeros(len(description.joint_names)))
         self._drive = JointDrive(self.physics, self._data, gravity, timestep)
         self._command = description.start_positions()[self.physics.actuated]
-        self._control = self._controls(self._still(self._command))[0]
+        self._control = self._first_control()
         self._data.ctrl[:] = self._control
         self._grip: tuple[int, float] | None = None  # actuator, effort limit
         self.faults = MujocoFaults(self, self.physics, self._data)
@@ -106,6 +107,15 @@ class MujocoSimulator:
         self._shared = SharedPhysics(self._model, self._data, self._recording)
         self._objects = Objects(self.physics, self._data, self._recording, frozenset(present))
         self._gripper = None if description.gripper is None else GripperDrive(self, self._recording)
+
+    def _first_control(self) -> FloatArray:
+        """Inputs of the motors at the start."""
+        try:
+            return self._controls(self._still(self._command))[0]
+        except StepFailed as failed:
+            refresh(self._model, self._data)
+            self._refuse_unusable_start()  # the cause, if forces at the start are infinite
+            raise ModelRefused("", failed.message) from failed
 
     def _refuse_unusable_start(self) -> None:
         """Check that MuJoCo can step from the start state."""

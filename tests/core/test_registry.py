@@ -10,7 +10,7 @@ PLUGIN = """
 import harness
 
 class Tool:
-    plugin_kind = "controller"
+    plugin_kind = "robot"
 
     @classmethod
     def plugin_name(cls):
@@ -53,7 +53,7 @@ def output_of(folder, code, **environment):
 def test_names_of_installed_packages_come_with_their_package(tmp_path):
     install(tmp_path, "remarks-for-arms", "remarks", PLUGIN.format(name="remark"))
     install(tmp_path, "one-class", "single:Remark", PLUGIN.format(name="other"))
-    code = "r = registry('controller'); print([(n, r.package_of(n), r[n].__name__) for n in r])"
+    code = "r = registry('robot'); print([(n, r.package_of(n), r[n].__name__) for n in r])"
     assert output_of(tmp_path, code) == [
         "[('other', 'one-class', 'Remark'), ('remark', 'remarks-for-arms', 'Remark')]"
     ]
@@ -65,12 +65,14 @@ def test_a_name_of_two_packages_is_refused_with_both(tmp_path):
     code = """
     for attempt in range(2):
         try:
-            "remark" in registry("controller")
+            "remark" in registry("robot")
         except PluginError as error:
             print(error)
     """
     said = output_of(tmp_path, code)
-    message = "plug-in second: two packages provide the controller `remark`: `first` and `second`"
+    message = (
+        "plug-in second: two packages provide the robot collection `remark`: `first` and `second`"
+    )
     assert [line for line in said if line.startswith("plug-in")] == [message, message]
 
 
@@ -79,12 +81,12 @@ def test_a_package_that_cannot_be_imported_is_named_where_a_name_is_missing(tmp_
     install(tmp_path, "broken-for-arms", "broken", "import no_such_module\n")
     code = """
     try:
-        registry("controller").find("remarkk")
+        registry("robot").find("remarkk")
     except LookupError as error:
         print(error.args[0])
     """
     assert output_of(tmp_path, code) == [
-        "there is no controller 'remarkk'; did you mean `remark`? known: remark; the plug-ins of"
+        "there is no robot collection 'remarkk'; did you mean `remark`? known: remark; the plug-ins of"
         " the package `broken-for-arms` cannot be loaded: ModuleNotFoundError: No module named"
         " 'no_such_module'"
     ]
@@ -94,10 +96,10 @@ def test_a_package_that_cannot_be_imported_is_named_where_a_name_is_missing(tmp_
 def test_a_named_module_is_loaded_here_and_in_later_processes(tmp_path, by_path):
     (tmp_path / "remarks.py").write_text(PLUGIN.format(name="remark"), encoding="utf-8")
     module = str(tmp_path / "remarks.py") if by_path else "remarks"
-    code = f"load_plugin({module!r}); print(dict(registry('controller')), os.environ[VARIABLE])"
+    code = f"load_plugin({module!r}); print(dict(registry('robot')), os.environ[VARIABLE])"
     (said,) = output_of(tmp_path, code)
     assert said.startswith("{'remark': <class 'remarks.Remark'>}")
-    code = "print(registry('controller').package_of('remark'))"
+    code = "print(registry('robot').package_of('remark'))"
     assert output_of(tmp_path, code, HARNESS_PLUGINS=module) == ["remarks"]
 
 

@@ -79,3 +79,15 @@ def test_a_controller_that_breaks_fails_the_step(scenario, answer, reason):
     )  # fmt: skip
     assert "CONTROL_FAILED: the joint controller `mine` of the package `mine`" in out
     assert reason in out
+
+
+@pytest.mark.parametrize("command", ["run", "check"])
+def test_a_controller_that_fails_at_the_start_is_a_mistake_of_the_file(scenario, command):
+    source = WRONG.replace("    period = 0.01\n", "").format(answer="1 / 0")
+    (scenario / "mine.py").write_text(source, encoding="utf-8")
+    out = harness(
+        scenario, command, "move.scenario.yaml", "--plugin", "mine.py",
+        "--set", "robot.joint_controller=mine", code=2,
+    )  # fmt: skip
+    assert "move.scenario.yaml:2:8: the joint controller `mine` of the package `mine`" in out
+    assert "ZeroDivisionError" in out
