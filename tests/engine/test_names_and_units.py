@@ -85,5 +85,6 @@ def test_goals_of_joints_too(goal, is_right, tmp_path):
     ],
 )
 def test_no_angle_between_two_directions_is_beyond_half_a_turn(expected, is_possible, tmp_path):
-    rest = f"objects: [{CUBE % 'cube'}, {(CUBE % 'bin').replace('0.3', '0.5')}]\nexpect:\n  - {expected}\n"
+    container = (CUBE % "bin").replace("0.3", "0.5")
+    rest = f"objects: [{CUBE % 'cube'}, {container}]\nexpect:\n  - {expected}\n"
     assert (messages(tmp_path, rest=rest) == []) == is_possible
