@@ -17,10 +17,16 @@ def find_file(name: str, key: str, base_dir: Path, given: Sequence[Path]) -> Pat
         RobotError: It does not exist.
     """
     if name.startswith("package://"):
+        packages = PackagePath.of_file(base_dir / "scenario", given)
         try:
-            return PackagePath.of_file(base_dir / "scenario", given).file(name, base_dir)
+            path = packages.file(name, base_dir)
         except NotFoundError as error:
             raise RobotOptionError(key, str(error)) from error
+        for package in packages.assumed:  # a guess is for files of others, not for the scenario
+            raise RobotOptionError(
+                key, f"the package '{package}' is not found; without a package it would be {path}"
+            )
+        return path
     path = base_dir / Path(name).expanduser()
     if not path.is_file():
         near = difflib.get_close_matches(path.name, _names(path.parent), 1)

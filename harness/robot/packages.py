@@ -46,12 +46,13 @@ class PackagePath:
     Attributes:
         home: The folder of the robot's package, or of its file if there is no package.xml.
         given: Folders of the scenario, then of the environment.
+        assumed: The folders that were read instead of packages that are nowhere, by their names.
     """
 
     home: Path
     given: tuple[Path, ...] = ()
     _found: dict[str, Path] = field(default_factory=dict[str, Path], repr=False, compare=False)
-    _assumed: dict[str, Path] = field(default_factory=dict[str, Path], repr=False, compare=False)
+    assumed: dict[str, Path] = field(default_factory=dict[str, Path], repr=False, compare=False)
 
     @classmethod
     def of_file(cls, path: Path, given: Sequence[Path] = ()) -> PackagePath:
@@ -67,7 +68,7 @@ class PackagePath:
         """What was assumed about packages that are nowhere."""
         return tuple(
             f"the package '{name}' is not found: {folder} is read instead"
-            for name, folder in self._assumed.items()
+            for name, folder in self.assumed.items()
         )
 
     def package(self, name: str, inside: str = "") -> Path:
@@ -89,7 +90,7 @@ class PackagePath:
             if found is None:
                 found = next((each for each in self._above() if _may_be(each, inside)), None)
                 if found is not None:
-                    self._assumed[name] = found.resolve()
+                    self.assumed[name] = found.resolve()
             if found is None:
                 raise NotFoundError(
                     f"the package '{name}' is not found; give the folder that holds it with "

@@ -87,8 +87,8 @@ def test_a_package_that_cannot_be_imported_is_named_where_a_name_is_missing(tmp_
     """
     assert output_of(tmp_path, code) == [
         "there is no robot collection 'remarkk'; did you mean `remark`? known: remark; the"
-        " plug-ins of the package `broken-for-arms` cannot be loaded: ModuleNotFoundError: No module named"
-        " 'no_such_module'"
+        " plug-ins of the package `broken-for-arms` cannot be loaded: ModuleNotFoundError: No"
+        " module named 'no_such_module'"
     ]
 
 

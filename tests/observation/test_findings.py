@@ -11,7 +11,7 @@ from harness.core.spatial import SE3
 from harness.observation.beliefs import believed_poses
 from harness.observation.findings import findings_of, overlap_findings
 from harness.observation.looks_differ import looks_differ
-from harness.ports import Touch
+from harness.ports.scene import Touch
 from tests.assertions.synthetic_run import BOX, heights, step
 
 

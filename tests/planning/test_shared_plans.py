@@ -8,7 +8,9 @@ import pytest
 from harness.core import sharing
 from harness.core.errors import PlanningFailed
 from harness.core.geometry import Box, Friction, Shape
-from harness.ports import FreeMotion, JointGoal, MotionRequest, PlanningOptions
+from harness.ports.goals import JointGoal
+from harness.ports.motion_planning import MotionRequest, PlanningOptions
+from harness.ports.motions import FreeMotion
 from tests.planning.lesson import ARM, Cell, at, grasp_goal, thing, ur
 
 POST = thing("post", at(0.3, 0.35, 1.2), Shape(Box((0.05, 0.05, 0.3))))
