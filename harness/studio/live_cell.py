@@ -263,7 +263,7 @@ class LiveCell:
         was_by_hand = self.is_by_hand
         is_new = self.load(before.with_step(text, count))
         if is_new:
-            self._repeat(count)
+            self.repeat(count)
         elif was_by_hand:
             self.history[-1] = replace(self.history[-1], is_run=False)
         after = self.document.text
@@ -272,11 +272,11 @@ class LiveCell:
         if record.status == "failed":
             self.restore(count)
             if self.load(before):
-                self._repeat(count)
+                self.repeat(count)
             return before.text, record
         return after, record
 
-    def _repeat(self, count: int) -> None:
+    def repeat(self, count: int) -> None:
         """Execute the first steps as fast as possible."""
         pace, self.pace = self.pace, None
         try:

@@ -202,8 +202,12 @@ class Studio(GoalActions):
         """Put expectations at the last step executed."""
         self._refuse_mistakes()
         texts = [str(text) for text in message["texts"]]
-        step = self.cell.steps_done - 1
-        self._take_text(self.cell.document.with_expectations(texts, step).text)
+        count = self.cell.steps_done
+        self._take_text(self.cell.document.with_expectations(texts, count - 1).text)
+        if self.cell.steps_done < count:  # what they observe needs another record from the start
+            self.cell.repeat(count)
+            self.show_cell()
+            self.session.broadcast(robot_message(self.cell))
         self.verdicts.begin(self.cell, is_last=True)
         return {}
 

@@ -223,3 +223,12 @@ def test_a_camera_shows_the_cell_as_it_is(tmp_path):
     studio.camera.draw(studio.cell)
     assert studio.camera.taken(wait=True) is None, "nothing has moved"
     assert "no camera 'other'" in reply(studio, "camera", name="other")["error"]
+
+
+def test_expectations_that_observe_more_keep_the_steps_before_them(studio):
+    reply(studio, "execute", verb="move_to", joints=[20, 0, 0, 0], unit="deg")
+    links, positions = studio.cell.prepared.observed_links, studio.cell.joint_positions()
+    assert reply(studio, "expect", texts=["tcp_pose: {link: link3, pose: {}}"]) == {}
+    assert studio.cell.prepared.observed_links != links
+    assert studio.cell.steps_done == 1
+    assert studio.cell.joint_positions() == pytest.approx(positions, abs=1e-9)
