@@ -48,7 +48,7 @@ def test_the_flagship_keeps_every_promise_of_the_lesson(flagship):
     assert result.outcome == "passed"
     assert len(result.verdicts) >= 25
     assert all(verdict.margin > 0 for verdict in result.verdicts if verdict.unit == "m")
-    fingers = {record.id: record.result for record in run.steps}["step_12"]
+    fingers = {record.id: record.result for record in run.steps}["step_12"].plain()
     assert fingers["stalled"]
     assert fingers["position"] == pytest.approx(0.576, abs=0.004)  # pads on the 60 mm cylinder
 
