@@ -204,7 +204,7 @@ def _parser() -> argparse.ArgumentParser:
     options.for_new(command("new", "write a commented scenario that passes"))
     options.for_export(command("export", "write a saved run as a rosbag2, and its robot as a URDF"))
     options.for_import(command("import", "convert files of other programs", module="importing"))
-    options.for_robot(command("robot", "look a robot over, or draw it"))
+    options.for_robot(command("robot", "check a robot, or draw it"))
     options.for_ik_test(
         command("ik-test", "test a function that solves inverse kinematics", module="ik_test")
     )

@@ -59,14 +59,14 @@ def _format_options(command: argparse.ArgumentParser) -> None:
 
 
 def for_run(run: argparse.ArgumentParser) -> None:
-    """Of `harness run`."""
+    """Add the options of `harness run`."""
     _file_options(run)
     run.add_argument(
         "-k",
         metavar="EXPR",
         dest="expression",
         default="",
-        help="only scenarios whose path, title or tags match: 'pick and not ur5e'",
+        help="run only scenarios whose path, title or tags match: 'pick and not ur5e'",
     )
     run.add_argument(
         "-j",
@@ -81,7 +81,7 @@ def for_run(run: argparse.ArgumentParser) -> None:
         metavar="N",
         type=whole_number,
         default=1,
-        help="run each N times and say whether all digests are the same",
+        help="run each case N times and report whether all digests are equal",
     )
     run.add_argument(
         "--case",
@@ -89,21 +89,27 @@ def for_run(run: argparse.ArgumentParser) -> None:
         dest="cases",
         action="append",
         default=[],
-        help="only the case of this name, or of names that match: 'ur5e-*'",
+        help="run only the case of this name, or the cases whose names match a pattern: 'ur5e-*'",
     )
     run.add_argument(
-        "--samples", metavar="N", type=whole_number, default=None, help="in place of the file's"
+        "--samples",
+        metavar="N",
+        type=whole_number,
+        default=None,
+        help="draw this many samples, instead of the number in the file",
     )
     run.add_argument(
         "--keep",
         choices=("all", "failed"),
         default="",
-        help="whose reports are written (default: all; of samples those that failed)",
+        help="write the reports of all cases, or only of those that failed (default: all; of"
+        " samples,"
+        " those that failed)",
     )
     run.add_argument(
         "--resume",
         action="store_true",
-        help="go on where the same command was interrupted, without computing again",
+        help="continue where the same command was interrupted, and keep the results that exist",
     )
     run.add_argument(
         "--strict",
@@ -111,7 +117,10 @@ def for_run(run: argparse.ArgumentParser) -> None:
         help=STRICT,
     )
     run.add_argument(
-        "--report-dir", metavar="DIR", default="reports", help="where reports go (default: reports)"
+        "--report-dir",
+        metavar="DIR",
+        default="reports",
+        help="write reports into this folder (default: reports)",
     )
     run.add_argument(
         "--shard",
@@ -156,7 +165,8 @@ def for_run(run: argparse.ArgumentParser) -> None:
         "--history",
         metavar="DIR",
         default=None,
-        help="a folder of earlier results.json files, whose margins the suite's page shows",
+        help="show the margins of the earlier results.json files in this folder on the suite's"
+        " page",
     )
     _format_options(run)
     run.add_argument(
@@ -164,67 +174,78 @@ def for_run(run: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         type=seconds,
         default=None,
-        help="wall time after which a scenario ends as an error (default: 600)",
+        help="end a scenario as an error after this wall time (default: 600)",
     )
     run.add_argument("--node", metavar="[NAME=]COMMAND", dest="nodes", action="append", default=[],
-                     help="a command that the step `external` may start; repeatable")  # fmt: skip
+                     help="allow the step `external` to start this command;"
+                          " repeatable")  # fmt: skip
     run.add_argument("--robot", choices=("simulated", "ros2"), default="simulated",
-                     help="ros2: plan here, and let the controllers of a ROS 2 robot execute;"
-                     " prints the plan and waits for a confirmation")  # fmt: skip
-    run.add_argument("--yes", action="store_true", help="with --robot ros2: confirm in advance")
+                     help="with ros2, plan here and let the controllers of a ROS 2 robot"
+                          " execute, after"
+                     " the plan is printed and confirmed")  # fmt: skip
+    run.add_argument(
+        "--yes", action="store_true", help="with --robot ros2: confirm the plan in advance"
+    )
     run.add_argument("--velocity-scaling", metavar="SHARE", type=share, default=1.0,
-                     help="with --robot ros2: share of the planned speed (default: 1)")  # fmt: skip
+                     help="with --robot ros2: scale the planned speed by this share (default:"
+                          " 1)")  # fmt: skip
     _domain_options(run)
     run.add_argument("--live", action="store_true",
                      help="show the cases on a page of this machine while they run; needs the extra"
                      " `studio`")  # fmt: skip
     run.add_argument("--in-process", action="store_true",
-                     help="no process for each scenario: for debuggers")  # fmt: skip
+                     help="run all cases in this process, for a debugger")  # fmt: skip
 
 
 def for_search(search: argparse.ArgumentParser) -> None:
-    """Of `harness search`."""
+    """Add the options of `harness search`."""
     add = search.add_argument
     add("file", metavar="FILE", help="a scenario file with `randomize`, or a bundled name")
     _value_options(search)
     add("--seed", metavar="N", type=int, default=None,
-        help="seed of every run and of the search, in place of the file's")  # fmt: skip
-    add("--case", metavar="NAME", default="", help="the parametrised case, where there are several")
+        help="use this seed for every run and for the search, instead of the file's")  # fmt: skip
+    add(
+        "--case",
+        metavar="NAME",
+        default="",
+        help="search this parametrised case, where the file has several",
+    )
     add("--runs", metavar="N", type=whole_number, default=None,
-        help="runs of the search, without those that shrink a failure"
+        help="make N runs, not counting those that shrink a failure"
              " (default: the file's `search`, or 100)")  # fmt: skip
     add("--start", metavar="N", type=whole_number, default=None,
-        help="how many of them are low-discrepancy samples, which show the rate"
+        help="begin with N low-discrepancy samples, which estimate the failure rate"
              " (default: the file's, or 32)")  # fmt: skip
     add("--batch", metavar="N", type=batch_size, default=None,
-        help="runs that the optimiser proposes together"
+        help="let the optimiser propose N runs at a time"
              " (default: the file's, or 4 + 3 ln(number of parameters))")  # fmt: skip
     add("--minimise", metavar="NAME", default=None,
-        help="name of the expectation whose margin is minimised"
+        help="minimise the margin of this expectation"
              " (default: the file's, or the worst margin)")  # fmt: skip
     add("-j", metavar="N", dest="workers", type=whole_number, default=1,
         help="make N runs side by side")  # fmt: skip
     add("--resume", action="store_true",
-        help="go on where the same command was interrupted, without computing again")  # fmt: skip
+        help="continue where the same command was interrupted, and keep the results that"
+             " exist")  # fmt: skip
     add("--hard-cap", metavar="SECONDS", type=seconds, default=None,
-        help="wall time after which a run ends as an error (default: 600)")  # fmt: skip
+        help="end a run as an error after this wall time (default: 600)")  # fmt: skip
     add("--report-dir", metavar="DIR", default="reports",
-        help="files go to DIR/search (default: reports)")  # fmt: skip
-    add("--json", action="store_true", help="one JSON document on stdout")
+        help="write files into DIR/search (default: reports)")  # fmt: skip
+    add("--json", action="store_true", help="print one JSON document on standard output")
 
 
 def for_results(results: argparse.ArgumentParser) -> None:
-    """Of `harness results`."""
+    """Add the options of `harness results`."""
     add = results.add_argument
-    add("folder", metavar="DIR", help="report folder of many runs")
+    add("folder", metavar="DIR", help="the report folder of a suite")
     add("--outcome", choices=("passed", "failed", "invalid", "error"), default="",
-        help="only runs with this outcome")  # fmt: skip
+        help="select runs with this outcome")  # fmt: skip
     add("--tag", metavar="TAG", dest="tags", action="append", default=[],
-        help="only runs whose file has this tag; repeatable")  # fmt: skip
+        help="select runs whose file has this tag; repeatable")  # fmt: skip
     add("--cause", metavar="TEXT", default="",
-        help="only failures whose cause has this text in it")  # fmt: skip
+        help="select failures whose cause contains this text")  # fmt: skip
     add("--where", metavar="NAME<VALUE", dest="conditions", action="append", default=[],
-        help="only runs in which this holds for a parameter, or for `margin`, `share`, `seed` or"
+        help="select runs in which this holds for a parameter, or for `margin`, `share`, `seed` or"
              " `sim_time`; repeatable: --where 'friction<0.4' --where 'margin<1 mm'")  # fmt: skip
     add("--limit", metavar="N", type=whole_number, default=None,
         help="print at most N runs (default: 20)")  # fmt: skip
@@ -233,43 +254,44 @@ def for_results(results: argparse.ArgumentParser) -> None:
              " a lower success rate")  # fmt: skip
     add("--csv", metavar="FILE", default="", help="write the selected runs as CSV")
     add("--parquet", metavar="FILE", default="",
-        help="write them as Parquet; needs the extra `parquet`")  # fmt: skip
-    add("--json", action="store_true", help="one JSON document on stdout")
+        help="write the selected runs as Parquet; needs the extra `parquet`")  # fmt: skip
+    add("--json", action="store_true", help="print one JSON document on standard output")
 
 
 def for_merge(merge: argparse.ArgumentParser) -> None:
-    """Of `harness merge`."""
+    """Add the options of `harness merge`."""
     merge.add_argument(
-        "folders", metavar="DIR", nargs="+", help="report folder of `harness run --shard`"
+        "folders", metavar="DIR", nargs="+", help="a report folder of `harness run --shard`"
     )
     merge.add_argument(
         "--report-dir",
         metavar="DIR",
         default="reports",
-        help="where the results go (default: reports)",
+        help="write the results into this folder (default: reports)",
     )
     merge.add_argument(
         "--history",
         metavar="DIR",
         default=None,
-        help="a folder of earlier results.json files, whose margins the suite's page shows",
+        help="show the margins of the earlier results.json files in this folder on the suite's"
+        " page",
     )
     _format_options(merge)
 
 
 def for_check(check: argparse.ArgumentParser) -> None:
-    """Of `harness check`."""
+    """Add the options of `harness check`."""
     _file_options(check)
     _format_options(check)
 
 
 def for_explain(explain: argparse.ArgumentParser) -> None:
-    """Of `harness explain`."""
+    """Add the options of `harness explain`."""
     _file_options(explain)
 
 
 def for_bench(bench: argparse.ArgumentParser) -> None:
-    """Of `harness bench`."""
+    """Add the options of `harness bench`."""
     _paths(bench)
     bench.add_argument(
         "--planners",
@@ -286,56 +308,70 @@ def for_bench(bench: argparse.ArgumentParser) -> None:
         help="plan with seeds 1 to N (default: 5)",
     )
     bench.add_argument(
-        "--report-dir", metavar="DIR", default="reports", help="files go to DIR/bench"
+        "--report-dir",
+        metavar="DIR",
+        default="reports",
+        help="write files into DIR/bench (default: reports)",
     )
     bench.add_argument("--no-report", action="store_true", help="write no files")
-    bench.add_argument("--json", action="store_true", help="one JSON document on stdout")
+    bench.add_argument(
+        "--json", action="store_true", help="print one JSON document on standard output"
+    )
 
 
 def for_list(listing: argparse.ArgumentParser) -> None:
-    """Of `harness list`."""
+    """Add the options of `harness list`."""
     listing.add_argument("kind", choices=LISTS)
     _plugin_option(listing)
 
 
 def for_view(view: argparse.ArgumentParser) -> None:
-    """Of `harness view`."""
+    """Add the options of `harness view`."""
     view.add_argument("run", metavar="RUN", help="the run's report folder, or a file in it;"
-                      " '#t=10.1' after it opens that moment")  # fmt: skip
-    view.add_argument("--rebuild", action="store_true", help="write the page anew")
-    view.add_argument("--no-open", action="store_true", help="only say where the page is")
+                      " append '#t=10.1' to open that moment")  # fmt: skip
+    view.add_argument(
+        "--rebuild", action="store_true", help="write the page again from the saved run"
+    )
+    view.add_argument(
+        "--no-open", action="store_true", help="print the path of the page and open no browser"
+    )
 
 
 def for_judge(judge: argparse.ArgumentParser) -> None:
-    """Of `harness judge`."""
+    """Add the options of `harness judge`."""
     judge.add_argument("folder", metavar="RUN", help="the run's report folder")
     judge.add_argument("--with", metavar="FILE", dest="with_file",
-                       help="by the expectations of this scenario")  # fmt: skip
+                       help="judge by the expectations of this scenario instead")  # fmt: skip
     _plugin_option(judge)
     judge.add_argument("--contacts", action="store_true",
-                       help="list who touched whom: first time, duration, peak force")  # fmt: skip
+                       help="list all contacts: bodies, first time, duration, peak"
+                            " force")  # fmt: skip
     judge.add_argument("--strict", action="store_true", help=STRICT)
-    judge.add_argument("--json", action="store_true", help="one JSON document on stdout")
+    judge.add_argument(
+        "--json", action="store_true", help="print one JSON document on standard output"
+    )
 
 
 def for_grade(grade: argparse.ArgumentParser) -> None:
-    """Of `harness grade`."""
+    """Add the options of `harness grade`."""
     grade.add_argument("scenario", metavar="SCENARIO", help="a scenario file, or a bundled name")
     _plugin_option(grade)
     grade.add_argument("bag", metavar="BAG", nargs="?", default="",
                        help="a rosbag2 folder, .mcap or .db3 file; or give --node")  # fmt: skip
     _node_options(grade)
     grade.add_argument("--timeout", metavar="SECONDS", type=seconds, default=60.0,
-                       help="simulated time of the nodes where no step is `external`"
+                       help="give the nodes this simulated time where no step is `external`"
                        " (default: 60)")  # fmt: skip
     grade.add_argument("--joint-states", metavar="TOPIC", default="/joint_states",
-                       help="where the joints are (default: /joint_states)")  # fmt: skip
+                       help="read the joint positions from this topic (default:"
+                            " /joint_states)")  # fmt: skip
     grade.add_argument("--objects", metavar="TOPIC", action="append", default=[],
-                       help="a topic with poses of objects by name: TFMessage, as Gazebo's bridge"
+                       help="read poses of objects by name from this topic: TFMessage, as"
+                            " Gazebo's bridge"
                        " sends them, or ModelStates")  # fmt: skip
     grade.add_argument("--object", metavar="NAME=TOPIC", dest="object_poses", action="append",
                        type=object_topic, default=[],
-                       help="the topic with the pose of one object")  # fmt: skip
+                       help="read the pose of one object from this topic")  # fmt: skip
     grade.add_argument("--set", metavar="PATH=VALUE", dest="overrides", action="append",
                        type=override_argument, default=[],
                        help="change a value of the file")  # fmt: skip
@@ -344,11 +380,13 @@ def for_grade(grade: argparse.ArgumentParser) -> None:
                        help="award points in spite of a doubt about the recording: "
                        + ", ".join(DOUBTS))  # fmt: skip
     _package_option(grade)
-    grade.add_argument("--json", action="store_true", help="one JSON document on stdout")
+    grade.add_argument(
+        "--json", action="store_true", help="print one JSON document on standard output"
+    )
 
 
 def for_bridge(bridge: argparse.ArgumentParser) -> None:
-    """Of `harness bridge`."""
+    """Add the options of `harness bridge`."""
     bridge.add_argument("scenario", metavar="SCENARIO", help="a scenario file, or a bundled name")
     _node_options(bridge)
     bridge.add_argument("--duration", metavar="SECONDS", type=seconds, default=None,
@@ -363,64 +401,75 @@ def for_bridge(bridge: argparse.ArgumentParser) -> None:
 
 
 def for_replay(replay: argparse.ArgumentParser) -> None:
-    """Of `harness replay`."""
+    """Add the options of `harness replay`."""
     replay.add_argument("run", metavar="RUN", help="the run's report folder")
     replay.add_argument("--report-dir", metavar="DIR", default="",
                         help="write the replayed run into this folder")  # fmt: skip
-    replay.add_argument("--json", action="store_true", help="one JSON document on stdout")
+    replay.add_argument(
+        "--json", action="store_true", help="print one JSON document on standard output"
+    )
     _plugin_option(replay)
     replay.set_defaults(command="replay")
 
 
 def _node_options(command: argparse.ArgumentParser) -> None:
-    """Of commands that serve a robot to ROS 2 nodes."""
+    """Add the options of commands that serve a robot to ROS 2 nodes."""
     add = command.add_argument
     add("--node", metavar="[NAME=]COMMAND", dest="nodes", action="append", default=[],
-        help="a command that the scenario may start: 'python student.py'; repeatable")  # fmt: skip
+        help="allow the scenario to start this command: 'python student.py';"
+             " repeatable")  # fmt: skip
     _domain_options(command)
     add("--pace", metavar="FACTOR", type=factor, default=1.0,
-        help="simulated seconds in a wall second (default: 1)")  # fmt: skip
-    add("--seed", metavar="N", type=int, default=None, help="in place of the file's")
+        help="advance this many simulated seconds in one second of wall time (default:"
+             " 1)")  # fmt: skip
+    add("--seed", metavar="N", type=int, default=None, help="use this seed instead of the file's")
     add("--report-dir", metavar="DIR", default="reports",
-        help="where reports go (default: reports)")  # fmt: skip
+        help="write reports into this folder (default: reports)")  # fmt: skip
     add("--no-report", action="store_true", help="write no report")
 
 
 def _domain_options(command: argparse.ArgumentParser) -> None:
-    """Of commands that join a ROS domain."""
+    """Add the options of commands that join a ROS domain."""
     add = command.add_argument
     add("--domain", metavar="N", type=int, default=None,
-        help="ROS domain (default: ROS_DOMAIN_ID or 0; of --node a free one)")  # fmt: skip
-    add("--network", action="store_true", help="talk to nodes of other machines too")
+        help="join this ROS domain (default: ROS_DOMAIN_ID or 0; with --node, a free"
+             " one)")  # fmt: skip
+    add("--network", action="store_true", help="communicate with nodes on other machines too")
     add("--adapter", choices=("rtps", "rclpy"), default="rtps",
-        help="who speaks ROS 2: the program itself, or the rclpy that is installed")  # fmt: skip
+        help="communicate through the built-in RTPS, or through an installed rclpy")  # fmt: skip
 
 
 def for_compare(compare: argparse.ArgumentParser) -> None:
-    """Of `harness compare`."""
-    compare.add_argument("first", metavar="RUN", help="a run's report folder")
-    compare.add_argument("second", metavar="RUN", help="another")
-    compare.add_argument("--json", action="store_true", help="one JSON document on stdout")
+    """Add the options of `harness compare`."""
+    compare.add_argument("first", metavar="RUN", help="the report folder of a run")
+    compare.add_argument("second", metavar="RUN", help="the report folder of another run")
+    compare.add_argument(
+        "--json", action="store_true", help="print one JSON document on standard output"
+    )
 
 
 def for_new(new: argparse.ArgumentParser) -> None:
-    """Of `harness new`."""
-    new.add_argument("file", metavar="FILE", help="for example first.scenario.yaml")
+    """Add the options of `harness new`."""
+    new.add_argument(
+        "file", metavar="FILE", help="the scenario file to write, for example first.scenario.yaml"
+    )
     new.add_argument("--robot", metavar="ROBOT", default="", help=ROBOT)
     add_robot_options(new)
 
 
 def for_export(export: argparse.ArgumentParser) -> None:
-    """Of `harness export`."""
+    """Add the options of `harness export`."""
     export.add_argument("run", metavar="RUN", help="the run's report folder")
     export.add_argument("--bag", metavar="DIR", help="write a rosbag2 into this new folder")
     export.add_argument("--urdf", metavar="FILE", help="write the robot's URDF")
     export.add_argument("--storage", choices=BAGS, default="mcap",
-                        help="of the bag (default: mcap, compressed)")  # fmt: skip
+                        help="store the bag in this format (default: mcap,"
+                             " compressed)")  # fmt: skip
     export.add_argument("--rate", metavar="HZ", type=rate, default=100.0,
-                        help="of joints, frames and clock (default: 100)")  # fmt: skip
+                        help="write joints, frames and clock at this rate (default:"
+                             " 100)")  # fmt: skip
     export.add_argument("--raw-images", action="store_true",
-                        help="the cameras' pictures uncompressed too")  # fmt: skip
+                        help="write the cameras' pictures uncompressed too")  # fmt: skip
     export.add_argument("--meshes", choices=("package", "file"), default="package",
                         help="how the URDF names mesh files: as package://, or where they are"
                         " on this machine")  # fmt: skip
@@ -428,17 +477,18 @@ def for_export(export: argparse.ArgumentParser) -> None:
 
 
 def for_import(importing: argparse.ArgumentParser) -> None:
-    """Of `harness import`."""
-    importing.add_argument("kind", choices=IMPORTS, help="what FILE is")
+    """Add the options of `harness import`."""
+    importing.add_argument("kind", choices=IMPORTS, help="the format of FILE")
     importing.add_argument("files", metavar="FILE", nargs="+",
                            help="an SDF world, a MoveIt .scene or an SRDF; for `moveit`, any number"
                            " of PlanningScene and MotionPlanRequest files in YAML")  # fmt: skip
     importing.add_argument("-o", "--output", metavar="FILE",
-                           help="what to write (default: FILE's name with .yaml; of an SRDF"
+                           help="write to this path (default: FILE's name with .yaml; of an SRDF"
                            " a folder of FILE's name; for `moveit` the folder `scenarios`"
                            " next to the first FILE)")  # fmt: skip
     importing.add_argument("--model-path", metavar="DIR", action="append", default=[],
-                           help="look models up here before GZ_SIM_RESOURCE_PATH")  # fmt: skip
+                           help="look models up in this folder before"
+                                " GZ_SIM_RESOURCE_PATH")  # fmt: skip
     importing.add_argument("--force", action="store_true", help="overwrite what is there")
     importing.add_argument("--robot", metavar="FILE", default="",
                            help="the robot of an SRDF or of MoveIt's files: a URDF, xacro or"
@@ -447,7 +497,7 @@ def for_import(importing: argparse.ArgumentParser) -> None:
 
 
 def for_ik_test(test: argparse.ArgumentParser) -> None:
-    """Of `harness ik-test`."""
+    """Add the options of `harness ik-test`."""
     add = test.add_argument
     add(
         "solver",
@@ -458,74 +508,106 @@ def for_ik_test(test: argparse.ArgumentParser) -> None:
     _plugin_option(test)
     add("--robot", metavar="ROBOT", required=True, help=ROBOT)
     add_robot_options(test)
-    add("--link", metavar="LINK", default="", help="that is placed (default: the TCP)")
-    add("--branches", action="store_true", help="it claims to find every way to a target")
+    add(
+        "--link",
+        metavar="LINK",
+        default="",
+        help="place this link at the targets (default: the TCP)",
+    )
+    add(
+        "--branches",
+        action="store_true",
+        help="the function claims to return every solution for a target",
+    )
     add("--examples", metavar="N", type=whole_number, default=100,
-        help="cases of each property (default: 100)")  # fmt: skip
-    add("--seed", metavar="N", type=int, default=0, help="of the cases (default: 0)")
+        help="try N cases of each property (default: 100)")  # fmt: skip
+    add(
+        "--seed",
+        metavar="N",
+        type=int,
+        default=0,
+        help="draw the cases with this seed (default: 0)",
+    )
     add("--position-tolerance", metavar="M", type=metres, default=1e-4,
-        help="of answers [m] (default: 0.0001)")  # fmt: skip
+        help="accept answers within this distance of the target [m] (default: 0.0001)")  # fmt: skip
     add("--orientation-tolerance", metavar="RAD", type=radians, default=1e-3,
-        help="of answers [rad] (default: 0.001)")  # fmt: skip
+        help="accept answers within this angle of the target [rad] (default: 0.001)")  # fmt: skip
     add("--call-limit", metavar="SECONDS", type=seconds, default=5.0,
-        help="wall time after which a call hangs (default: 5)")  # fmt: skip
+        help="count a call as hanging after this wall time (default: 5)")  # fmt: skip
     add("--report-dir", metavar="DIR", default="reports",
-        help="where reports go (default: reports)")  # fmt: skip
-    add("--no-report", action="store_true", help="no report and no pictures")
-    add("--json", action="store_true", help="one JSON document on stdout")
+        help="write reports into this folder (default: reports)")  # fmt: skip
+    add("--no-report", action="store_true", help="write no report and no pictures")
+    add("--json", action="store_true", help="print one JSON document on standard output")
 
 
 def for_robot(robot: argparse.ArgumentParser) -> None:
-    """Of `harness robot`."""
+    """Add the options of `harness robot`."""
     actions = robot.add_subparsers(dest="action", metavar="ACTION", required=True)
     check = actions.add_parser(
         "check",
-        help="limits, masses, kinematics, self-collisions, reach",
-        description="Look a robot over; exit code 1 when something is wrong.",
+        help="check limits, masses, kinematics, self-collisions and reach",
+        description="Check a robot; the exit code is 1 when something is wrong.",
     )
-    show = actions.add_parser("show", help="draw it", description="Draw a robot.")
+    show = actions.add_parser("show", help="draw the robot", description="Draw a robot.")
     for action in (check, show):
         action.add_argument("robot", metavar="ROBOT", help=f"{ROBOT}; or a scenario")
         add_robot_options(action)
         action.add_argument("--state", metavar="NAME", default="",
-                            help="for the picture: a named state (default: the start)")  # fmt: skip
-        action.add_argument("--image", metavar="FILE", default="", help="a picture, PNG or JPEG")
+                            help="draw the robot in this named state (default: the"
+                                 " start)")  # fmt: skip
+        action.add_argument(
+            "--image", metavar="FILE", default="", help="write the picture to this PNG or JPEG file"
+        )
     check.add_argument("--samples", metavar="N", type=whole_number, default=None,
-                       help="random configurations (default: 2000; for an SRDF 10000)")  # fmt: skip
-    check.add_argument("--seed", metavar="N", type=int, default=0, help="of them (default: 0)")
+                       help="check N random configurations (default: 2000; for an SRDF"
+                            " 10000)")  # fmt: skip
+    check.add_argument(
+        "--seed", metavar="N", type=int, default=0, help="draw them with this seed (default: 0)"
+    )
     check.add_argument("--write-srdf", metavar="FILE", default="",
-                       help="write an SRDF with the pairs that need not be checked")  # fmt: skip
+                       help="write an SRDF that disables the pairs that need no collision"
+                            " check")  # fmt: skip
     check.add_argument("--force", action="store_true", help="overwrite that file")
-    check.add_argument("--json", action="store_true", help="one JSON document on stdout")
+    check.add_argument(
+        "--json", action="store_true", help="print one JSON document on standard output"
+    )
 
 
 def for_studio(studio: argparse.ArgumentParser) -> None:
-    """Of `harness studio`."""
+    """Add the options of `harness studio`."""
     add = studio.add_argument
     add("target", metavar="ROBOT|SCENARIO|RUN", nargs="?", default="open_manipulator_x",
         help=f"{ROBOT}; a scenario; a run's folder (default: open_manipulator_x)")  # fmt: skip
     add("--at", metavar="SECONDS", type=seconds, default=None,
-        help="of a run's folder: the time to go on from by hand (default: 0)")  # fmt: skip
-    add("--world", metavar="WORLD", default="", help="a bundled world or its file, for a robot")
-    add("--gripper", metavar="NAME", default="", help="a bundled gripper to be mounted on a robot")
+        help="with a run: continue by hand from this time (default: 0)")  # fmt: skip
+    add(
+        "--world",
+        metavar="WORLD",
+        default="",
+        help="put the robot into this bundled world or world file",
+    )
+    add("--gripper", metavar="NAME", default="", help="mount this bundled gripper on the robot")
     add("--port", metavar="N", type=port_number, default=8011,
-        help="the port; 0 for any that is free (default: 8011)")  # fmt: skip
+        help="serve the page on this port; 0 selects a free one (default: 8011)")  # fmt: skip
     add("--host", metavar="ADDRESS", default="",
-        help="listen there, not on this machine alone; the address then has a token")  # fmt: skip
-    add("--no-open", action="store_true", help="print the address, open no browser")
+        help="listen on this address instead of loopback; the URL then contains a"
+             " token")  # fmt: skip
+    add("--no-open", action="store_true", help="print the address and open no browser")
     _plugin_option(studio)
 
 
 def for_schema(schema: argparse.ArgumentParser) -> None:
-    """Of `harness schema`."""
-    schema.add_argument("--write", metavar="FILE", help="write it to a file instead")
+    """Add the options of `harness schema`."""
+    schema.add_argument(
+        "--write", metavar="FILE", help="write the schema to this file instead of standard output"
+    )
     _plugin_option(schema)
 
 
 def _file_options(command: argparse.ArgumentParser) -> None:
     _paths(command)
     command.add_argument("--seed", metavar="N", type=int, default=None,
-                         help="in place of the file's")  # fmt: skip
+                         help="use this seed instead of the file's")  # fmt: skip
 
 
 def _paths(command: argparse.ArgumentParser) -> None:
@@ -539,7 +621,7 @@ def _paths(command: argparse.ArgumentParser) -> None:
 
 
 def _value_options(command: argparse.ArgumentParser) -> None:
-    """Of every command that prepares scenarios: values, packages and plug-ins."""
+    """Add the options of every command that prepares scenarios: values, packages and plug-ins."""
     command.add_argument(
         "--set",
         metavar="PATH=VALUE",
@@ -554,7 +636,7 @@ def _value_options(command: argparse.ArgumentParser) -> None:
 
 
 def _plugin_option(command: argparse.ArgumentParser) -> None:
-    """Of every command that reads scenario files."""
+    """Add the options of every command that reads scenario files."""
     command.add_argument(
         "--plugin",
         metavar="MODULE",
@@ -573,5 +655,5 @@ def _package_option(command: argparse.ArgumentParser) -> None:
         action="append",
         type=folder,
         default=[],
-        help="where package:// is looked up and meshes may be read",
+        help="look package:// up in this folder, and allow meshes to be read there",
     )

@@ -15,15 +15,20 @@ def add_robot_options(command: argparse.ArgumentParser, *, has_srdf: bool = True
     """Add what goes with a robot's file; `has_srdf` says whether `--srdf` is among it."""
     add = command.add_argument
     if has_srdf:
-        add("--srdf", metavar="FILE", default="", help="groups, states, allowed pairs")
+        add(
+            "--srdf",
+            metavar="FILE",
+            default="",
+            help="read groups, states and allowed pairs from this SRDF",
+        )
     add("--package-path", metavar="DIR", action="append", default=[],
-        help="where package:// is looked up and meshes may be read")  # fmt: skip
+        help="look package:// up in this folder, and allow meshes to be read there")  # fmt: skip
     add("--gripper", metavar="NAME", default="",
-        help="a bundled one to be mounted, or the SRDF group of the arm's own")  # fmt: skip
+        help="mount this bundled gripper, or name the SRDF group of the arm's own one")  # fmt: skip
     add("--args", metavar="NAME=VALUE", action="append", type=_argument, default=[],
-        help="of a xacro file")  # fmt: skip
-    add("--group", metavar="NAME", default="", help="the arm's SRDF group")
-    add("--tcp-link", metavar="LINK", default="", help="the link at the tool's centre")
+        help="set an argument of a xacro file")  # fmt: skip
+    add("--group", metavar="NAME", default="", help="the SRDF group of the arm")
+    add("--tcp-link", metavar="LINK", default="", help="the link at the tool centre point")
 
 
 def source_of(arguments: argparse.Namespace) -> RobotSource:
