@@ -65,8 +65,17 @@ def with_estimated_masses(urdf: Urdf, source: str) -> Urdf:
 
 
 def _with_mass(link: Link) -> Link:
-    shapes = convex_shapes(link.collisions) or link.visuals
-    return replace(link, inertial=solid_inertial(shapes, DENSITY))
+    solids = [solid for shape in link.collisions for solid in _solids(shape)]
+    return replace(link, inertial=solid_inertial(solids or link.visuals, DENSITY))
+
+
+def _solids(shape: Shape) -> Sequence[Shape]:
+    """A shape's convex parts, or its hull where parts overlap so much that they are larger."""
+    parts = convex_shapes([shape])
+    if not isinstance(shape.geometry, Mesh):
+        return parts
+    volumes = [hull_solid(part.geometry)[0] for part in parts if isinstance(part.geometry, Mesh)]
+    return parts if sum(volumes) < hull_solid(shape.geometry)[0] else [shape]
 
 
 def solid_inertial(shapes: Sequence[Shape], density: float) -> Inertial:

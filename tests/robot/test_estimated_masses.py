@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
 from harness.core.errors import SpecError
 from tests.engine.front_door import run
@@ -97,3 +98,14 @@ def test_an_arm_without_masses_moves(tmp_path):
         """,
     )
     assert result.outcome == "passed", [step.message for step in result.steps]
+
+
+def test_parts_that_overlap_weigh_no_more_than_the_hull(tmp_path):
+    """Triangles without an inside, across a cube of 10 cm, as in some vendors' files."""
+    rng = np.random.default_rng(1)
+    vertices = rng.uniform(-0.05, 0.05, (900, 3))
+    write_obj(tmp_path / "soup.obj", vertices, np.arange(900).reshape(-1, 3))
+    mesh = '<collision><geometry><mesh filename="soup.obj"/></geometry></collision>'
+    write_arm(tmp_path, BARE.replace(SHAPE, mesh))
+    hull = ConvexHull(vertices).volume
+    assert link(load_arm(tmp_path), "upper").inertial.mass == pytest.approx(1000 * hull, rel=1e-3)
