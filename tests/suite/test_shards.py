@@ -293,6 +293,6 @@ def test_commands_to_run_again_have_the_options_of_the_parts(tmp_path):
     (tmp_path / "grid.scenario.yaml").write_text(GRID)
     harness("run", ".", "--shard", "1/1", "--strict", "--reporter", "rosbag", cwd=tmp_path)
     merged = harness("merge", "reports", "--report-dir", "all", cwd=tmp_path)
-    [again] = re.findall(r"again: (.*)", merged.stdout)
+    [again] = re.findall(r"again:  (.*)", merged.stdout)
     assert "--strict" in again
     assert "--reporter rosbag" in again

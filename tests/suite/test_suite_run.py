@@ -193,7 +193,7 @@ def test_what_is_known_is_not_computed_again_and_what_changed_is(varied):
     assert "2 of them were known from before" in done.stdout
     again = results(path, "--no-page", "--resume", cwd=path.parent)
     assert again["cases"] == [
-        {**case, "wall_times": other["wall_times"]}
+        {**case, "wall_times": other["wall_times"], "shared": other["shared"]}
         for case, other in zip(first["cases"], again["cases"], strict=True)
     ]
     path.write_text(GRID.replace("0.15 s}", "0.16 s}"))
