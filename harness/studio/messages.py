@@ -16,7 +16,8 @@ from harness.reporting.result import StepLine
 from harness.studio.judging import Judged
 from harness.studio.language_help import Names
 from harness.studio.live_cell import LiveCell
-from harness.studio.step_texts import MOTIONS, object_form
+from harness.studio.object_texts import object_form
+from harness.studio.step_texts import MOTIONS
 
 Message = dict[str, Any]
 

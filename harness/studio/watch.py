@@ -171,11 +171,10 @@ class Watch:
                 self._session.broadcast(_verdicts(shown.result))
 
     def _show(self, shown: WatchedCase) -> None:
-        view, before = self._view, self._shown
+        view = self._view
         assert view is not None
-        if shown is not before:
-            if before is None or before.case.description != shown.case.description:
-                view.show_cell(shown.case.robot())
+        if shown is not self._shown:
+            view.show_robot(shown.case.robot())
             view.show_objects(shown.case.objects)
             self._shown, self._drawn = shown, None
         if shown.frame is not None and shown.frame is not self._drawn:
