@@ -5,6 +5,8 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import Any
 
+import numpy as np
+from rosbags.interfaces import Nodetype
 from rosbags.serde.errors import SerdeError
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
@@ -79,28 +81,19 @@ def _typestore() -> Typestore:
 _STORE = _typestore()
 
 
-def typestore() -> Typestore:
-    """Every type that the bridge writes or reads."""
-    return _STORE
-
-
 def message(kind: str, /, **fields: Any) -> Any:
     """A message of a type; fields that are left out are zero or empty."""
-    store = typestore()
-    definitions = store.fielddefs[kind][1]
+    definitions = _STORE.fielddefs[kind][1]
     values = {
         name: fields.pop(name) if name in fields else _default(definition)
         for name, definition in definitions
     }
     if fields:
         raise TypeError(f"{kind} has no field {', '.join(fields)}")
-    return store.types[kind](**values)
+    return _STORE.types[kind](**values)
 
 
 def _default(kind: Any) -> Any:
-    import numpy as np
-    from rosbags.interfaces import Nodetype
-
     node, detail = kind
     if node == Nodetype.NAME:
         return message(detail)
@@ -113,6 +106,11 @@ def _default(kind: Any) -> Any:
     if element[0] == Nodetype.BASE and element[1][0] != "string":
         return np.zeros(size or 0, dtype=np.dtype(element[1][0].replace("octet", "uint8")))
     return [_default(element) for _ in range(size or 0)]
+
+
+def encoded(content: Any, kind: str) -> bytes:
+    """A message as it is sent."""
+    return bytes(_STORE.serialize_cdr(content, kind))
 
 
 def decoded(payload: bytes, kind: str) -> Any:
@@ -130,16 +128,20 @@ def decoded(payload: bytes, kind: str) -> Any:
         raise
 
 
-def stamp(seconds: float) -> Any:
+def prepare(kind: str) -> None:
+    """Let rosbags write the code of a type now, which takes some milliseconds."""
+    _STORE.deserialize_cdr(_STORE.serialize_cdr(message(kind), kind), kind)
+
+
+def stamp(seconds: float, kind: str = "Time") -> Any:
     """A simulated time as a stamp; the clock of the bridge begins at 0, as that of Gazebo."""
     whole, rest = divmod(round(seconds * 1e9), 10**9)
-    return message("builtin_interfaces/msg/Time", sec=whole, nanosec=rest)
+    return message(f"builtin_interfaces/msg/{kind}", sec=whole, nanosec=rest)
 
 
 def span(seconds: float) -> Any:
     """A length of time as a Duration."""
-    whole, rest = divmod(round(seconds * 1e9), 10**9)
-    return message("builtin_interfaces/msg/Duration", sec=whole, nanosec=rest)
+    return stamp(seconds, "Duration")
 
 
 def seconds(moment: Any) -> float:

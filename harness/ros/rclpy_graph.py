@@ -12,7 +12,7 @@ from typing import Any
 
 from harness.core.errors import Problem, SpecError
 from harness.ros.graph import Publisher, Reply, ServiceClient
-from harness.ros.interfaces import CANCEL, decoded, typestore
+from harness.ros.interfaces import CANCEL, decoded, encoded
 from harness.ros.names import Names
 
 _PARTS = ("SendGoal", "GetResult")
@@ -27,7 +27,7 @@ class _Codec:
     serialization: Any
 
     def to_ros(self, content: Any) -> Any:
-        data = bytes(typestore().serialize_cdr(content, self.kind))
+        data = encoded(content, self.kind)
         return self.serialization.deserialize_message(data, self.ros_type)
 
     def from_ros(self, content: Any) -> Any:

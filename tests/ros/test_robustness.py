@@ -13,7 +13,7 @@ import rosless
 
 from harness.ros.action_server import Status
 from harness.ros.rtps import wire
-from harness.ros.rtps.writer import Qos
+from harness.ros.rtps.discovery import Qos
 from tests.ros.bridging import bridge, scenario
 from tests.ros.nodes import ARM, Node, follow, point
 
@@ -39,8 +39,8 @@ def test_garbage_on_the_ports_and_topics_is_ignored(tmp_path):
             Qos(),
         )
         node.ready()
-        node.wait(lambda: trajectory.readers)
-        [address] = {reader.address for reader in trajectory.readers.values()}
+        node.wait(lambda: trajectory.matched)
+        [address] = {reader.address for reader in trajectory.matched.values()}
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
             for size in range(0, 400, 2):
                 head = wire.header(node.graph.participant.prefix) if size % 4 else b""
