@@ -154,11 +154,9 @@ class RtpsGraph:
         self, topic: str, kind: str, qos: Qos, take: Callable[[Any, Sample], None]
     ) -> Reader:
         def deliver(sample: Sample) -> None:
-            try:
-                content = decoded(_message_of(sample, topic), kind)
-            except Exception:  # noqa: BLE001 - bytes of another program; no content of them is certain
-                return
-            take(content, sample)
+            content = decoded(_message_of(sample, topic), kind)
+            if content is not None:
+                take(content, sample)
 
         prepare(kind)
         made = self.participant.reader(topic, dds_type(kind), qos, deliver)
