@@ -12,9 +12,6 @@ from rosbags.typesys.store import Typestore
 
 FOLLOW = "control_msgs/action/FollowJointTrajectory"
 GRIPPER = "control_msgs/action/GripperCommand"
-PADDING = 32
-"""Bytes that may follow a message: rclpy's serialisation leaves some."""
-
 TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
 CANCEL = "action_msgs/action/CancelGoal"
 """The service action_msgs/srv/CancelGoal; rosbags takes no messages of the folder `srv`."""
@@ -113,10 +110,17 @@ def encoded(content: Any, kind: str) -> bytes:
 
 
 def decoded(payload: bytes, kind: str) -> Any:
-    """The message of a serialised one; None where the bytes of another program are no such one."""
-    for cut in range(0, PADDING, 4):
-        with suppress(Exception):  # no kind of error is certain
-            return _STORE.deserialize_cdr(payload[: len(payload) - cut], kind)
+    """The message of a serialised one; None where the bytes of another program are no such one.
+
+    Bytes after the message do not count: rclpy's serialisation leaves some for each list element.
+    """
+    definition = _STORE.get_msgdef(kind)
+    readers = {
+        b"\0\0": definition.deserialize_cdr_be,
+        b"\0\1": definition.deserialize_cdr_le,
+    }
+    with suppress(Exception):  # no kind of error is certain
+        return readers[payload[:2]](payload[4:], 0, definition.cls, _STORE)[0]
     return None
 
 
