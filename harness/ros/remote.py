@@ -50,6 +50,9 @@ UNRECORDED = (
 PATIENCE = 10.0
 """Wall time in which servers must be found, and joint states must come [s]."""
 
+SILENCE = 3.0
+"""Wall time without joint states after which a robot in motion counts as lost [s]."""
+
 REASON = 1.0
 """Wall time in which the result of a rejected goal, which may give the reason, must come [s]."""
 
@@ -300,6 +303,11 @@ class RemoteArm:
                 self._graph.spin(wall.monotonic() + GRID)
                 if client is self._arm:
                     self._refuse_stray(goal)
+                if self._states.silence > SILENCE:
+                    _unreachable(
+                        f"/joint_states has stopped for {SILENCE:g} s; cancellation was requested,"
+                        " but the goal may go on: see that the robot stands, and restart its driver"
+                    )
                 if wall.monotonic() > limit:
                     _unreachable(f"{client.name} does not end its goal")
         except BaseException:
