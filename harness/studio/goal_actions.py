@@ -13,11 +13,11 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.studio.files import StudioFiles
 from harness.studio.live_studio import LiveStudio
-from harness.studio.messages import Message, failure_message
+from harness.studio.messages import failure_message
 from harness.studio.previews import preview
 from harness.studio.reach import Reach, ReachStudy
 from harness.studio.scene_view import GHOST, PLANNED, REFUSED, Ghost, Handle
-from harness.studio.session import RefusedError
+from harness.studio.session import Message, RefusedError
 from harness.studio.step_texts import MOTIONS, joint_keys, pose_keys, step_text
 
 MOST_GHOSTS = 4

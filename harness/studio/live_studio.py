@@ -24,15 +24,14 @@ from harness.studio.live_camera import LiveCamera
 from harness.studio.live_cell import LiveCell
 from harness.studio.live_verdicts import LiveVerdicts
 from harness.studio.messages import (
-    NO_VERDICTS,
-    Message,
     cell_message,
     problem_message,
     robot_message,
 )
 from harness.studio.reach import Reach, ReachStudy
 from harness.studio.scene_view import Handle, SceneView
-from harness.studio.session import FRAME, RefusedError, Session
+from harness.studio.session import FRAME, Message, RefusedError, Session
+from harness.studio.verdict_messages import NO_VERDICTS
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 0.0)
 """Simulated seconds in a second of wall time; 0 is as fast as possible."""

@@ -90,8 +90,8 @@ def resized(
 
     Args:
         spec: The object as the scenario has it.
-        form: Its fields.
-        pose: T_world_object.
+        form: The fields of the object on the page.
+        pose: The pose T_world_object of the object.
         corner: The new place of the corner in the world, shape (3,).
     """
     kind, axes = form["kind"], list(AXES[form["kind"]])

@@ -12,7 +12,6 @@ from harness.studio.files import StudioFiles
 from harness.studio.goal_actions import GoalActions
 from harness.studio.language_help import complete, hover
 from harness.studio.messages import (
-    Message,
     failure_message,
     names_of,
     robot_message,
@@ -26,7 +25,7 @@ from harness.studio.object_texts import (
     resized,
 )
 from harness.studio.proposals import holding, proposals
-from harness.studio.session import RefusedError
+from harness.studio.session import Message, RefusedError
 
 
 class Studio(GoalActions):
