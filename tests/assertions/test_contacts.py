@@ -165,9 +165,13 @@ def test_what_moves_by_more_than_both_are_thick_may_have_passed_through(other, d
 def test_a_step_that_puts_objects_somewhere_makes_no_jump_of_theirs_a_missed_contact():
     poses = at(N)
     poses[20:, 1] = 0.5
-    for verb, first, last, is_missed in (("move_object", 20, 25, False), ("move_to", 15, 25, True),
-        ("move_object", 10, 19, False), ("move_object", 10, 18, True), ("move_object", 21, 25, True),
-    ):  # fmt: skip
+    for verb, first, last, is_missed in (
+        ("move_object", 20, 25, False),
+        ("move_to", 15, 25, True),
+        ("move_object", 10, 19, False),
+        ("move_object", 10, 18, True),
+        ("move_object", 21, 25, True),
+    ):
         steps = (step("put", first, last, verb),)
         run = make_run(N, object_poses={"box": poses}, steps=steps)
         assert bool(skipped_contacts(run, [("box", "palm")])) == is_missed, (verb, first, last)
