@@ -157,7 +157,7 @@ class Workshop:
 
 
 def _limit_processor_time(seconds: int) -> None:
-    # Beyond the first limit SIGXCPU ends the process, and is told apart from any other end.
+    # Beyond the first limit SIGXCPU ends the process, which no other end is mistaken for.
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 10))
 
 
