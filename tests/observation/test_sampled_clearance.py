@@ -29,9 +29,7 @@ def test_every_fifth_millisecond_is_measured_and_what_surrounds_a_change():
     assert knots(MILLISECONDS, (TABLE,), ()).tolist() == sorted({*EVERY_FIFTH, 1, 2, 99})
     assert knots(MILLISECONDS[:98], (), ()).tolist() == [*range(0, 96, 5), 97]
     come = replace(BOX, present=((0.033, 0.5),))
-    assert knots(MILLISECONDS, (come,), ()).tolist() == sorted(
-        {*EVERY_FIFTH, 31, 32, 33, 34, 99}
-    )
+    assert knots(MILLISECONDS, (come,), ()).tolist() == sorted({*EVERY_FIFTH, 31, 32, 33, 34, 99})
     held = replace(attachment("box", 0, 0), start_time=0.001, end_time=0.051)
     around = {*range(4), *range(49, 54)}
     assert knots(MILLISECONDS, (), (held,)).tolist() == sorted({*EVERY_FIFTH, *around})
