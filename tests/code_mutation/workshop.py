@@ -40,6 +40,8 @@ TESTS = (
     "tests/planning/test_efforts.py",
     "tests/planning/test_verification.py",
     "tests/planning/test_path_constraints.py",
+    "tests/planning/test_held_constraints.py",
+    "tests/planning/test_verified_numbers.py",
     "tests/planning/test_linear_motion.py",
     "tests/robot/test_mimic_couplings.py",
     "tests/system/test_findings.py",
