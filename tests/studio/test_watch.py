@@ -89,7 +89,7 @@ def test_who_does_not_read_what_is_sent_delays_nothing(request_, unwatched, tmp_
         results = []
         thread = in_thread(replace(request_, live=listener.address), results)
         connection = listener.accept()
-        thread.join(60)
+        thread.join()
         assert results[0].digest == unwatched.digest
         connection.close()
 
