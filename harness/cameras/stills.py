@@ -62,11 +62,7 @@ def draw_stills(
     Objects that only the planning scene has are translucent.
 
     Args:
-        description: The robot, with its visuals.
-        world_objects: All objects of the scenario.
-        run: The run with its recorded signals.
         backend: `auto`, `egl`, `osmesa` or `rays`.
-        activity: Called for each picture.
     """
     steps = [step for step in run.steps if step.status != "not reached"]
     if not steps or not len(run.signals.times):

@@ -274,9 +274,6 @@ def show_results(
     """Failures, rates, tables and the last lines.
 
     Args:
-        arguments: Those of the command.
-        suite: The suite with its results.
-        seconds: The wall time of the command.
         page: The page of the suite; None where there is none.
         columns: What varies in the cases; None where this is not known yet.
     """

@@ -24,6 +24,7 @@ from harness.studio.live_camera import LiveCamera
 from harness.studio.live_cell import LiveCell
 from harness.studio.live_verdicts import LiveVerdicts
 from harness.studio.messages import (
+    NO_VERDICTS,
     Message,
     cell_message,
     problem_message,
@@ -107,7 +108,7 @@ class LiveStudio(ABC):
         Returns:
             Whether the cell was built, or built again.
         """
-        self.text, self.problems = text, []
+        self._set_text(text)
         try:
             is_new = self._compile(text)
         except SpecError as error:
@@ -123,6 +124,17 @@ class LiveStudio(ABC):
             return False
         self.is_alone = True
         return is_new
+
+    def _set_text(self, text: str) -> None:
+        self.text, self.problems = text, []
+        if text != self.verdicts.text:
+            self.forget_verdicts()
+
+    def forget_verdicts(self) -> None:
+        """Take the verdicts away from every page: they are of another text or another state."""
+        if self.verdicts.text:
+            self.verdicts.forget()
+            self.session.broadcast(NO_VERDICTS)
 
     def keep_unsaved(self, text: str) -> None:
         """Keep a copy of the text; where that is not possible, say so once."""
@@ -237,7 +249,7 @@ class LiveStudio(ABC):
             self.say("failed", f"{record.summary}: {record.error_code}: {record.message}")
 
     def working(self, what: str, action: Callable[[], None]) -> None:
-        """Do something that takes simulated time."""
+        """Do something that takes simulated time, and judge where it leaves the scenario."""
         self.busy, self.target = what, None
         self.stopping.clear()
         self._due = time.monotonic()
@@ -248,6 +260,8 @@ class LiveStudio(ABC):
             self.busy = ""
             self.study = None
             self._last_tick = time.monotonic()
+        if self.cell.document.step_count and not self.cell.is_by_hand:
+            self.verdicts.begin(self.cell, is_last=True)
         self.clear_preview()
         if self.view is not None:
             self.view.move_handle(self.cell.tcp_pose())
@@ -277,9 +291,7 @@ class LiveStudio(ABC):
             messages = [robot_message(self.cell), *messages, self.state_message()]
         if self.notice:
             messages.append({"type": "note", "kind": "warning", "text": self.notice})
-        if self.verdicts.message is not None:
-            messages.append(self.verdicts.message)
-        return messages
+        return [*messages, self.verdicts.message]
 
     def document_message(self) -> Message:
         return {
@@ -384,7 +396,7 @@ class LiveStudio(ABC):
 
     def after_jump(self) -> None:
         self.study = None
-        self.verdicts.forget()
+        self.forget_verdicts()
         self.clear_preview()
         if self.view is not None:
             self.view.move_handle(self.cell.tcp_pose())

@@ -23,6 +23,14 @@ Message = dict[str, Any]
 MOST_CONTACTS = 8
 """Contacts that are listed, strongest first."""
 
+NO_VERDICTS: Message = {
+    "type": "verdicts",
+    "outcome": "",
+    "digest": "",
+    "steps": [],
+    "verdicts": [],
+}
+
 
 def robot_message(cell: LiveCell) -> Message:
     """What does not change while the cell is the same."""

@@ -122,7 +122,6 @@ class Studio(GoalActions):
         """Take the editor's text; its mistakes are returned with their places."""
         text = str(message["text"])
         if self.take_text(text):
-            self.verdicts.forget()
             self.show_cell()
             self.session.broadcast(robot_message(self.cell))
         if text != self.saved:
@@ -164,8 +163,9 @@ class Studio(GoalActions):
             else:
                 cell.go_to(count)
 
+        if until != "next":
+            self.forget_verdicts()
         self.working("running", action)
-        self.verdicts.begin(cell, is_last=True)
         failed = next((r for r in cell.execution.records if r.status == "failed"), None)
         return {} if failed is None else failure_message(failed)
 
@@ -220,7 +220,7 @@ class Studio(GoalActions):
         path = self.files.save(str(message.get("name") or self.files.path.name), self.text)
         self.saved = self.text
         self.session.broadcast(self.document_message())
-        return {"file": path.name, "digest": self.verdicts.digest_of(self.text)}
+        return {"file": path.name, "digest": self.verdicts.message["digest"]}
 
     def _refuse_mistakes(self) -> None:
         if self.problems or self.text != self.cell.document.text:
@@ -231,10 +231,9 @@ class Studio(GoalActions):
         document = Document(text, str(self.files.path))
         self.files.refuse_outside(document)
         is_new = self.cell.load(document)
-        self.text, self.problems = text, []
+        self._set_text(text)
         self.keep_unsaved(text)
         if is_new:
-            self.verdicts.forget()
             self.show_cell()
         self.session.broadcast(robot_message(self.cell))
         self.session.broadcast(self.document_message())

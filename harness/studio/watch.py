@@ -17,7 +17,7 @@ from harness.core.printable import printable
 from harness.reporting.result import CaseResult, ProgressEvent
 from harness.session.live_stream import LiveCase, LiveFrame
 from harness.studio.guard import LOOPBACK, Guard
-from harness.studio.messages import Message, step_message, verdict_message
+from harness.studio.messages import NO_VERDICTS, Message, step_message, verdict_message
 from harness.studio.scene_view import SceneView
 from harness.studio.server import page_assets, start_server
 from harness.studio.session import FRAME, RefusedError, Session
@@ -214,7 +214,7 @@ class Watch:
 def _verdicts(result: CaseResult | None) -> Message:
     """The steps and verdicts of a case that was judged; nothing while it runs."""
     if result is None:
-        return {"type": "verdicts", "outcome": "", "digest": "", "steps": [], "verdicts": []}
+        return NO_VERDICTS
     return {
         "type": "verdicts",
         "outcome": result.outcome,

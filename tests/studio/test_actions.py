@@ -100,12 +100,18 @@ expect:
 
 def test_a_verdict_is_shown_as_soon_as_its_step_has_ended(tmp_path):
     studio, verdicts = opened(tmp_path, JUDGED), []
-    studio.speed = 1.0
 
     def hear(message, **_):
         if message["type"] == "verdicts":
             verdicts.append((studio.busy, message))
-            studio.speed = 0.0
+            studio.is_playing = True
+
+    def hold_second_step(event, step, record):
+        if (event, step.summary) == ("step_started", "wait 60 s") and not verdicts:
+            studio.is_playing = False  # the physics waits for the verdict
+        on_step(event, step, record)
+
+    on_step, studio.cell.on_step = studio.cell.on_step, hold_second_step
 
     studio.session.broadcast = hear
     reply(studio, "run", until="end")
@@ -120,6 +126,29 @@ def test_a_verdict_is_shown_as_soon_as_its_step_has_ended(tmp_path):
     assert [each["open"] for each in last["verdicts"]] == [False, False]
     assert last["verdicts"][0]["margin"] == first["verdicts"][0]["margin"]
     assert (last["outcome"], len(last["digest"])) == ("passed", 64)
+
+
+def test_a_digest_is_shown_of_the_text_and_the_run_on_the_page_alone(tmp_path):
+    text = JUDGED.replace("wait: 60 s", "wait: 1 s")
+    studio, digests = opened(tmp_path, text), []
+
+    def hear(message, **_):
+        if message["type"] == "verdicts":
+            digests.append((studio.busy, studio.text, message["digest"]))
+
+    studio.session.broadcast = hear
+    reply(studio, "run", until="end")
+    while not studio.verdicts._work._work.has_message():  # noqa: SLF001 - judged, but not shown
+        time.sleep(0.01)
+    reply(studio, "run", until="end")
+    assert studio.verdicts.taken(wait=True)["digest"]
+    reply(studio, "run", until="end")
+    assert digests[-1][2] == "", "the old digest is taken away before the next run"
+    assert studio.verdicts.taken(wait=True)["digest"]
+    reply(studio, "edit", text=f"{text}# another text\n")
+    assert digests[-1][2] == ""
+    assert studio._greeting()[-1]["digest"] == ""  # noqa: SLF001 - what a page that comes back sees
+    assert not [each for each in digests if each[0] and each[2]], "none while a step is executed"
 
 
 MISTAKES = {
