@@ -138,7 +138,7 @@ class Chain:
         Args:
             key: The key that others look for.
             known: Returns what they find.
-            amount: What was computed.
+            amount: What the result that was computed counts.
             variant: Key of what a result follows from besides.
         """
         self.note(amount)

@@ -39,7 +39,7 @@ class _Stretch:
     Attributes:
         touching: The pairs of geoms that touched, shape (K, 2).
         surfaces: Key of their friction.
-        recorded: The samples.
+        recorded: The samples that it consists of.
         state: MuJoCo's state at the end.
     """
 
