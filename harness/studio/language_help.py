@@ -48,7 +48,7 @@ GRIPPER_TARGET = "gripper_target"
 """In names: the `named_target` of a step that moves the gripper."""
 
 
-def _named(path: Path, names: Names) -> Sequence[str]:
+def named_at(path: Path, names: Names) -> Sequence[str]:
     """Names that may stand at a path."""
     keys = [key for key in path if key != ITEM]
     field = keys[-1] if keys else ""
@@ -135,7 +135,7 @@ def complete(text: str, line: int, column: int, names: Names) -> list[Option]:
         options += [Option(str(word), "value", "") for word in words]
     if is_value or not options:
         kind = "value" if is_value else "key"
-        options += [Option(name, kind, "") for name in _named(path, names)]
+        options += [Option(name, kind, "") for name in named_at(path, names)]
     return list({option.text: option for option in options}.values())
 
 
