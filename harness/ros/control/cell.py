@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from harness.core.types import FloatArray, IntArray
+from harness.core.types import FloatArray
 from harness.language.scenario import Ros2Names
 from harness.recording.commands import CommandKind, CommandRecord
 from harness.robot.description import RobotDescription
@@ -44,14 +44,6 @@ class Servos(Protocol):
     def measured(self, first: int) -> tuple[FloatArray, FloatArray]: ...
     def efforts(self) -> FloatArray: ...
     def limit_gripper(self, effort: float) -> None: ...
-
-
-@dataclass(frozen=True, eq=False)
-class _Seat:
-    """Where a controller's joints are: among the actuated ones, and in the description."""
-
-    columns: IntArray
-    places: IntArray
 
 
 @dataclass(frozen=True)
@@ -110,13 +102,9 @@ class ExternalCell:
         self._controllers = tuple(each for each in controllers if each is not None)
         place, actuated = description.joint_index, servos.actuated_joints
         self._actuated = np.array([place[name] for name in actuated], dtype=np.int64)
-        self._seats = {
-            each: _Seat(
-                np.array([actuated.index(name) for name in each.joint_names], dtype=np.int64),
-                np.array([place[name] for name in each.joint_names], dtype=np.int64),
-            )
-            for each in self._controllers
-        }
+        for each in self._controllers:
+            each.columns = np.array([actuated.index(name) for name in each.joint_names])
+            each.places = np.array([place[name] for name in each.joint_names])
         self.hold_commanded(
             description.start_positions() if servos.sample_count == 1 else servos.joint_positions()
         )
@@ -171,9 +159,9 @@ class ExternalCell:
         """Let a controller follow a goal; what its joints followed before ends."""
         if controller is None:
             raise GoalRefused(Code.INVALID_GOAL, "the robot has no gripper")
-        seat, previous = self._seats[controller], controller.goal
-        start = self._last[:, :, seat.columns]
-        measured = self._servos.joint_positions()[seat.places]
+        previous = controller.goal
+        start = self._last[:, :, controller.columns]
+        measured = self._servos.joint_positions()[controller.places]
         controller.begin(goal, content, self.time, start, measured)
         self._interrupt(controller, previous, Code.INVALID_GOAL, PREEMPTED)
         for other in self._controllers:
@@ -195,8 +183,7 @@ class ExternalCell:
         for controller in self._controllers:
             if controller.goal == goal:
                 controller.stop()
-                seat = self._seats[controller]
-                self._hold(controller, self._servos.joint_positions()[seat.places])
+                self._hold(controller, self._servos.joint_positions()[controller.places])
                 self._interrupt(controller, goal, Code.SUCCESSFUL, "canceled")
                 return
         raise GoalRefused(Code.INVALID_GOAL, "no such goal is active")
@@ -238,17 +225,16 @@ class ExternalCell:
 
     def _window(self, controller: AnyController, times: FloatArray, rows: Rows) -> Window:
         """Desired and measured motion of a controller's joints at the last samples."""
-        seat = self._seats[controller]
         measured = np.array(self._servos.measured(self._servos.sample_count - len(times)))
-        efforts = self._servos.efforts()[seat.columns]
-        return Window(times, rows[:, :, seat.columns], measured[:, :, seat.places], efforts)
+        columns, places = controller.columns, controller.places
+        efforts = self._servos.efforts()[columns]
+        return Window(times, rows[:, :, columns], measured[:, :, places], efforts)
 
     def _hold(self, controller: AnyController, positions: FloatArray) -> None:
         """Command the joints of a controller to rest at some positions."""
-        columns = self._seats[controller].columns
         self._last = self._last.copy()
-        self._last[:, -1, columns] = 0.0
-        self._last[0, -1, columns] = positions
+        self._last[:, -1, controller.columns] = 0.0
+        self._last[0, -1, controller.columns] = positions
 
     def _set_points(self, times: FloatArray) -> Rows:
         """Set points of all actuated joints at some times."""
@@ -257,5 +243,5 @@ class ExternalCell:
         for controller in self._controllers:
             rows = controller.set_points(times)
             if rows is not None:
-                whole[:, :, self._seats[controller].columns] = rows
+                whole[:, :, controller.columns] = rows
         return whole

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, IntArray
 from harness.robot.description import Joint
 from harness.ros.control.goals import Code
 from harness.ros.control.spline import Rows
@@ -54,7 +54,15 @@ F = TypeVar("F", bound=Followed)
 
 
 class Controller(ABC, Generic[F]):
-    """Moves some joints towards one goal at a time; a new goal replaces the old one."""
+    """Moves some joints towards one goal at a time; a new goal replaces the old one.
+
+    Attributes:
+        columns: Where its joints are among the actuated ones.
+        places: Where they are in the description.
+    """
+
+    columns: IntArray
+    places: IntArray
 
     def __init__(self, name: str, joints: Sequence[Joint]) -> None:
         self._active: F | None = None
