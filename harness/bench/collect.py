@@ -30,8 +30,6 @@ class Motion:
     Attributes:
         file: The scenario file, as the user named it.
         step: The step's id, or its path if it has no id.
-        summary: The step in one line.
-        line: Line of the step in the file, from 1.
         trials: One trial for each planner and seed, planners outermost; a single trial when the
             straight line is free.
     """
@@ -63,7 +61,6 @@ def collect(
     not compared; so are motions with path constraints, which have their own planner.
 
     Args:
-        path: The path of the scenario.
         planners: Planners of `ompl`, names of pipelines, or `PIPELINE/PLANNER`.
         seeds: Scenario seeds; `harness run --seed` plans the same motions.
         on_motion: Called with each motion when its trials are complete.

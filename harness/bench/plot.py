@@ -26,9 +26,7 @@ def plot(motions: Sequence[Motion], planners: Sequence[str], title: str) -> str:
     """The text of an SVG file: boxes from quartile to quartile, whiskers to the extremes.
 
     Args:
-        motions: The motions that were planned.
         planners: The rows of each panel, in this order.
-        title: Title of the picture.
     """
     panels = [_success(motions, planners)]
     panels += [_boxes(quantity, motions, planners) for quantity in QUANTITIES]

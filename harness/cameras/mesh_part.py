@@ -32,11 +32,11 @@ def coarsen(
     vertices: FloatArray, faces: IntArray, grid: float = GRID
 ) -> tuple[FloatArray, IntArray]:
     """Merge vertices that share a cell of a grid [m] and drop triangles that collapse."""
-    cells, inverse = np.unique(
-        np.round(vertices / grid).astype(np.int64), axis=0, return_inverse=True
-    )
-    inverse = inverse.reshape(-1)
-    counts = np.bincount(inverse, minlength=len(cells))[:, None]
+    cells = np.round(vertices / grid).astype(np.int64)
+    cells -= cells.min(axis=0, initial=0)
+    numbers = np.ravel_multi_index((*cells.T,), (*(cells.max(axis=0, initial=0) + 1),))
+    inverse = np.unique(numbers, return_inverse=True)[1]
+    counts = np.bincount(inverse)[:, None]
     merged = np.stack([np.bincount(inverse, vertices[:, i]) for i in range(3)], axis=1) / counts
     faces = inverse[faces]
     a, b, c = faces.T

@@ -20,9 +20,8 @@ def load_obj(geometry: Mesh) -> tuple[MeshPart, ...]:
     them, and are converted to sRGB.
     """
     text = geometry.path.read_text(encoding="utf-8", errors="replace")
-    vertices = np.array(
-        " ".join(re.findall(r"^v (.*)$", text, re.MULTILINE)).split(), dtype=float
-    ).reshape(-1, 3) * np.array(geometry.scale)
+    lines = " ".join(re.findall(r"^v (.*)$", text, re.MULTILINE))
+    vertices = np.fromstring(lines, sep=" ").reshape(-1, 3) * np.array(geometry.scale)
     colours = _read_mtl(geometry.path, text)
     parts: list[MeshPart] = []
     for name, section in _sections(text):
@@ -44,9 +43,9 @@ def _faces(section: str, count: int) -> IntArray:
     lines = re.findall(r"^f (.*)$", section, re.MULTILINE)
     corners = [len(line.split()) for line in lines[:1]]
     if corners == [3]:
-        first = re.sub(r"/\S*", "", " ".join(lines)).split()
+        first = np.fromstring(re.sub(r"/\S*", "", " ".join(lines)), dtype=np.int64, sep=" ")
         if len(first) == 3 * len(lines):
-            faces = np.array(first, dtype=np.int64).reshape(-1, 3)
+            faces = first.reshape(-1, 3)
             return np.where(faces < 0, faces + count, faces - 1)
     fans: list[tuple[int, int, int]] = []
     for line in lines:

@@ -27,8 +27,6 @@ class LivePage:
         """Write nothing yet.
 
         Args:
-            suite: The suite that runs.
-            folder: The report folder of the suite.
             clock: Wall time [s]; it decides when a page is written, and nothing else.
         """
         from harness.reporting.suite.columns import Columns

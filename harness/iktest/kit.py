@@ -117,8 +117,6 @@ def check_ik(
     """Test a function, for tests: raise AssertionError with everything that was found.
 
     Args:
-        solver: The solver, as in `IkTest`.
-        robot: The robot, as in `IkTest`.
         **options: Other attributes of `IkTest`.
     """
     __tracebackhide__ = True

@@ -88,10 +88,8 @@ class MotionRequest:
     """What a motion planner must plan.
 
     Attributes:
-        group: The name of a planning group.
         start: The start positions of all movable joints, in description order.
         motion: The kind of motion, and where it goes.
-        options: The options of the planning call.
     """
 
     group: str

@@ -27,9 +27,7 @@ class Change:
             `robot`, `seed`, `outcome` ...
         name: The name of the step, expectation or library.
         before: The value in the first run, in words; `-` where it has none.
-        after: The value in the second run.
         amount: After less before, where both are one number; NaN elsewhere.
-        unit: The unit of the amount.
     """
 
     what: str
@@ -48,8 +46,6 @@ class FirstDifference:
         step: Id of the step it happened in; empty when the runs part before the first.
         signal: Its name, with the column's where it is a joint's.
         time: The time of the sample [s].
-        before: The value in the first run.
-        after: The value in the second run.
     """
 
     step: str

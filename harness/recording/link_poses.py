@@ -17,7 +17,6 @@ def replayed_link_poses(
     """T_world_link at every sample, shape (N, 7) each; (1, 7) of links that cannot move.
 
     Args:
-        robot: The record of the robot.
         joint_positions: Columns in the order of `robot.joints`, shape (N, n).
         links: The links to return; all when None.
     """

@@ -33,8 +33,6 @@ def reference_track(
     Without joint states, they are the transforms of a link that one of these joints moves.
 
     Args:
-        content: The content of the recording.
-        description: The description of the robot.
         arm_joints: Joints of the arm; all movable joints of a gripper without an arm.
     """
     arm = set(arm_joints)

@@ -62,13 +62,10 @@ class Recorded:
     """The scenario's knowledge about a recording.
 
     Attributes:
-        robot: The record of the robot.
-        description: The description of the robot.
         objects: Objects of the world, then those that steps add.
         at_start: Names of the world's objects.
         frames: Links whose poses expectations need.
         steps: Line and summary of each step, by id and by path.
-        title: Title of the scenario.
         gravity: Gravity in world axes [m/s^2].
     """
 

@@ -34,8 +34,6 @@ def campaign_html(columns: Columns, cases: Sequence[SuiteCase], folder: Path) ->
     """Map, distribution of margins and sensitivities; empty where too little varies.
 
     Args:
-        columns: What varies in the cases.
-        cases: The cases of the suite.
         folder: Where the page will stand; links are relative to it.
     """
     parameters = [each for each in columns.parameters if each.is_varying]

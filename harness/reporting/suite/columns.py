@@ -29,7 +29,6 @@ class Parameter:
 
     Attributes:
         path: Where it stands in the file.
-        unit: The unit of the numbers.
         words: The values of a parameter whose values are no numbers; the numbers count them.
         numbers: A number for each run; NaN where the run does not have the parameter.
     """

@@ -43,10 +43,8 @@ def suite_html(
     """One self-contained page; links to the cases' pages are relative to its folder.
 
     Args:
-        record: The record of the suite.
         columns: What varies in its cases, with at most `MOST_ROWS` listed.
         folder: Where the page will stand.
-        history: Worst margins of earlier runs.
     """
     total, passed = len(record.cases), columns.outcomes["passed"]
     rows = [_row(i, record.cases[i], folder, history) for i in columns.listed]

@@ -21,7 +21,6 @@ def table_lines(columns: Columns, style: Style = PLAIN) -> Iterator[str]:
 
     Args:
         columns: What varied in each case, and whether it passed.
-        style: The style of the terminal.
     """
     for parameter in columns.parameters:
         rows = list(_rows(parameter, columns.is_good))
