@@ -40,11 +40,11 @@ def coarsen(
     vertices: FloatArray, faces: IntArray, grid: float = GRID
 ) -> tuple[FloatArray, IntArray]:
     """Merge vertices that share a cell of a grid [m] and drop triangles that collapse."""
-    cells, inverse = np.unique(
-        np.round(vertices / grid).astype(np.int64), axis=0, return_inverse=True
-    )
-    inverse = inverse.reshape(-1)
-    counts = np.bincount(inverse, minlength=len(cells))[:, None]
+    cells = np.round(vertices / grid).astype(np.int64)
+    cells -= cells.min(axis=0, initial=0)
+    numbers = np.ravel_multi_index((*cells.T,), (*(cells.max(axis=0, initial=0) + 1),))
+    inverse = np.unique(numbers, return_inverse=True)[1]
+    counts = np.bincount(inverse)[:, None]
     merged = np.stack([np.bincount(inverse, vertices[:, i]) for i in range(3)], axis=1) / counts
     faces = inverse[faces]
     a, b, c = faces.T
@@ -60,9 +60,8 @@ def load_obj(geometry: Mesh) -> tuple[MeshPart, ...]:
     them, and are converted to sRGB.
     """
     text = geometry.path.read_text(encoding="utf-8", errors="replace")
-    vertices = np.array(
-        " ".join(re.findall(r"^v (.*)$", text, re.MULTILINE)).split(), dtype=float
-    ).reshape(-1, 3) * np.array(geometry.scale)
+    lines = " ".join(re.findall(r"^v (.*)$", text, re.MULTILINE))
+    vertices = np.fromstring(lines, sep=" ").reshape(-1, 3) * np.array(geometry.scale)
     colours = _read_mtl(geometry.path, text)
     parts: list[MeshPart] = []
     for name, section in _sections(text):
@@ -84,9 +83,9 @@ def _faces(section: str, count: int) -> IntArray:
     lines = re.findall(r"^f (.*)$", section, re.MULTILINE)
     corners = [len(line.split()) for line in lines[:1]]
     if corners == [3]:
-        first = re.sub(r"/\S*", "", " ".join(lines)).split()
+        first = np.fromstring(re.sub(r"/\S*", "", " ".join(lines)), dtype=np.int64, sep=" ")
         if len(first) == 3 * len(lines):
-            faces = np.array(first, dtype=np.int64).reshape(-1, 3)
+            faces = first.reshape(-1, 3)
             return np.where(faces < 0, faces + count, faces - 1)
     fans: list[tuple[int, int, int]] = []
     for line in lines:

@@ -140,6 +140,8 @@ def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
             if step.status == "failed":
                 say(f"{step.id} failed, {step.error_code}: {step.message}")
         _print_grade(grade)
+        if code != _code(grade):
+            say("not passed: every point is earned, but a step failed")
         if case.report_dir:
             say(f"report: {case.report_dir}")
     show_wall(result)

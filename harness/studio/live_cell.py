@@ -176,7 +176,7 @@ class LiveCell:
             self.simulator.stop_sample = None
         if self.execution.ended_early:
             self.execution.ended_early = ""
-            self.history[-1] = replace(self.history[-1], is_run=False, ended_early="")
+            self.history[-1] = replace(self.history[-1], ended_early="")
 
     def go_to(self, count: int) -> None:
         """Make the state the one after some steps: forwards by executing, backwards restored."""
@@ -380,7 +380,7 @@ class LiveCell:
         self.is_by_hand = self._is_idle = False
 
     def _saved(self, steps: int) -> CellState:
-        is_run = not self.history or self.is_run
+        is_run = not self.history or (self.is_run and not self.simulator.was_stopped)
         return CellState.of(self.execution, self.simulator, self.scene, steps, is_run=is_run)
 
     def _restore(self, state: CellState) -> None:

@@ -39,7 +39,7 @@ def browser():
         yield browser
 
 
-def wait_for(page, expression, seconds=30.0):
+def wait_for(page, expression, seconds=120.0):
     """Wait until an expression is true in a page, whose policy keeps it from evaluating any."""
     end = time.monotonic() + seconds
     while not page.evaluate(expression):

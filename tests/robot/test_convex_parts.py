@@ -19,7 +19,12 @@ from harness.robot.decomposition.decomposition import MOST_PARTS, decompose
 from harness.robot.decomposition.parts_cache import stored_decomposition
 from harness.robot.decomposition.solid_grid import surface_points
 from harness.robot.load import load_robot
-from harness.robot.mesh_file import decomposition_of, exact_surface, hull_points
+from harness.robot.mesh_file import (
+    decomposition_of,
+    exact_surface,
+    hull_points,
+    read_triangles,
+)
 from harness.robot_tools.robot_check import check_robot
 from tests.robot.arm_files import SHAPE, SRDF, URDF
 from tests.robot.vessels import vessel, write_obj
@@ -57,8 +62,14 @@ def is_in(parts, points):
 
 @pytest.mark.parametrize(
     "mesh",
-    [vessel(**BIN), vessel(**CUP), broken(*vessel(**BIN)), open_sheet(*vessel(**BIN))],
-    ids=["bin", "cup", "broken", "open"],
+    [
+        vessel(**BIN),
+        vessel(**BIN | {"sides": 6, "inner": 0.094}),
+        vessel(**CUP),
+        broken(*vessel(**BIN)),
+        open_sheet(*vessel(**BIN)),
+    ],
+    ids=["bin", "six sides", "cup", "broken", "open"],
 )
 def test_the_parts_hold_the_whole_surface_and_stay_as_near_to_it_as_they_say(mesh, tmp_path):
     vertices, faces = mesh
@@ -105,6 +116,24 @@ def test_another_process_finds_the_same_parts(tmp_path):
         check=True,
     )
     assert there.stdout == b"".join(part.tobytes() for part in here.parts)
+
+
+def test_thin_triangles_have_no_more_points_than_their_length_needs():
+    needle = np.array([[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 1e-4, 0.0]]])
+    points = surface_points(needle, 0.001)
+    assert len(points) < 1100
+    assert np.diff(np.sort(points[:, 0])).max() < 0.0011
+    assert {tuple(corner) for corner in needle[0]} <= {tuple(point) for point in points}
+
+
+def test_a_mesh_whose_parts_are_stored_is_not_read_again(tmp_path):
+    path = write_obj(tmp_path / "bin.obj", *vessel(**BIN))
+    shapes = collision_shapes([Shape(Mesh(path))])
+    other = write_obj(tmp_path / "copy.obj", *vessel(**BIN))
+    before = read_triangles.cache_info().misses
+    assert len(collision_shapes([Shape(Mesh(other))])) == len(shapes)
+    hull_points(Mesh(other))
+    assert read_triangles.cache_info().misses == before
 
 
 def box_triangles():

@@ -75,6 +75,14 @@ def test_a_node_that_crashes_after_its_work_is_mentioned(tmp_path, capsys):
     assert "  done" in said
 
 
+def test_points_do_not_hide_a_step_that_failed(tmp_path, capsys):
+    file = scenario(tmp_path)
+    command = ["--node", "true", "--report-dir", str(tmp_path / "r")]
+    assert main(["grade", str(file), *command]) == 1
+    said = capsys.readouterr().out
+    assert "1 of 1 points\nnot passed: every point is earned, but a step failed" in said
+
+
 def test_a_command_that_cannot_be_started_is_named(tmp_path, capsys):
     main(["grade", BOX, "--node", "/no/such/program", "--report-dir", str(tmp_path)])
     assert "`/no/such/program` cannot be started: No such file" in capsys.readouterr().out
