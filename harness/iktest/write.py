@@ -15,7 +15,7 @@ from harness.suite.discovery import UsageError
 FILE = "ik_test.json"
 
 
-def write_report(report: IkReport, chain: Chain, folder: Path) -> IkReport:
+def write_ik_report(report: IkReport, chain: Chain, folder: Path) -> IkReport:
     """Write a report; findings of an earlier one in the folder are replaced.
 
     Returns:
