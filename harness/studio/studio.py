@@ -233,9 +233,7 @@ class Studio(GoalActions):
         count = self.cell.steps_done
         self._take_text(self.cell.document.with_expectations(texts, count - 1).text)
         if self.cell.steps_done < count:  # what they observe needs another record from the start
-            self.cell.repeat(count)
-            self.show_cell()
-            self.session.broadcast(robot_message(self.cell))
+            self.working("repeating the steps", lambda: self.cell.repeat(count))
         self.verdicts.begin(self.cell, is_last=True)
         return {}
 

@@ -298,5 +298,6 @@ def test_expectations_that_observe_more_keep_the_steps_before_them(studio):
     links, positions = studio.cell.prepared.observed_links, studio.cell.joint_positions()
     assert reply(studio, "expect", texts=["tcp_pose: {link: link3, pose: {}}"]) == {}
     assert studio.cell.prepared.observed_links != links
+    assert studio.busy == ""
     assert studio.cell.steps_done == 1
     assert studio.cell.joint_positions() == pytest.approx(positions, abs=1e-9)
