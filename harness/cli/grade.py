@@ -113,7 +113,7 @@ def _run_node(arguments: argparse.Namespace) -> int:
 def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
     from contextlib import nullcontext
 
-    from harness.cli.bridge import bridge_request, show_case, show_wall
+    from harness.cli.bridge import bridge_request, show_case, show_remarks
     from harness.grading.grade import Grade, graded
     from harness.recording.store import read_run
     from harness.ros.bridge import run_bridge
@@ -127,7 +127,7 @@ def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
     if case.outcome in ("invalid", "error"):
         if not arguments.json:
             show_case(case, request.run)
-        show_wall(result)
+        show_remarks(result)
         problems = [str(problem) for problem in case.problems]
         code = EXIT_CODES[case.outcome]
         said = {"outcome": case.outcome, "message": case.message, "problems": problems}
@@ -144,7 +144,7 @@ def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
             say("not passed: every point is earned, but a step failed")
         if case.report_dir:
             say(f"report: {case.report_dir}")
-    show_wall(result)
+    show_remarks(result)
     return code, {**_document(grade), "exit_code": code}
 
 
