@@ -33,8 +33,9 @@ class NamedTarget(Predicate):
         group = at.scope.check_group(self.group, at.key("group"))
         at.scope.check_state(group, self.state, at.key("state"))
         state = at.scope.description.states_of(group).get(self.state)
-        targets = {} if state is None else state.positions
-        check_tolerance(at, targets, self.tolerance, "tolerance" in self.model_fields_set)
+        if state is not None:
+            is_given = "tolerance" in self.model_fields_set
+            check_tolerance(at, state.positions, self.tolerance, is_given)
 
     def signal(self, window: Window) -> MarginSignal:
         """The worst joint's distance from the named state [rad or m]."""
