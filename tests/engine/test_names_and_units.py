@@ -122,3 +122,9 @@ def test_a_number_of_a_formula_is_no_larger_than_any_other(tmp_path):
     for number, is_right in (("1e9", True), ("1.1e9", False), ("1e999", False)):
         said = messages(tmp_path, rest=f"expect:\n  - formula: always z(tcp) < {number}\n")
         assert [f"{number} is too large" in each for each in said] == [True] * (not is_right)
+
+
+def test_a_group_that_there_is_not_is_reported_on_every_step(tmp_path):
+    for step in ("wait: 0.1 s", "settle: {}", "move_to: home"):
+        found = messages(tmp_path, f"- {{{step}, group: ghost}}")
+        assert any("planning group" in each and "ghost" in each for each in found), (step, found)
