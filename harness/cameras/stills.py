@@ -24,7 +24,7 @@ WIDTH, HEIGHT = 640, 480
 STATES = 40
 """Recorded states that the viewpoint is fitted to."""
 
-SHADOW_SIZE = 2048
+SHADOW_SIZE = 1024
 """Resolution of shadows [pixels]."""
 
 FARTHEST_IN_VIEW = 1.3

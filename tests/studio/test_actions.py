@@ -64,6 +64,27 @@ def test_an_object_is_moved_in_the_text_at_the_start_and_live_afterwards(studio)
     assert not studio.cell.is_run
 
 
+@pytest.mark.parametrize(
+    ("kind", "size", "corner", "larger", "center"),
+    [
+        ("box", [0.04, 0.04, 0.04], [0.24, 0.02, 0.06], [0.06, 0.04, 0.06], [0.21, 0, 0.03]),
+        ("cylinder", [0.04, 0.04], [0.22, 0, 0.06], [0.04, 0.06], [0.2, 0, 0.03]),
+        ("sphere", [0.04], [0.2, 0, 0.05], [0.05], [0.2, 0, 0.025]),
+    ],
+)
+def test_a_dragged_corner_resizes_and_the_opposite_corner_stays(
+    studio, kind, size, corner, larger, center
+):
+    reply(studio, "add_object", name="a", kind=kind, size=size, xyz=[0.2, 0, 0.02])
+    studio.resize_object("a", np.array(corner))
+    [form] = studio_module.robot_message(studio.cell)["objects"]
+    assert (form["size"], form["xyz"]) == (pytest.approx(larger), pytest.approx(center))
+    reply(studio, "execute", step="wait: 10 ms")
+    text = studio.text
+    studio.resize_object("a", np.array(corner) + 0.1)
+    assert studio.text == text, "after the first step an object keeps its size"
+
+
 def test_objects_that_overlap_are_shown_before_anything_moves(studio):
     reply(studio, "add_object", **{**BOX, "xyz": [0.2, 0, 0.03]})
     [overlap] = studio_module.robot_message(studio.cell)["overlaps"]
@@ -236,6 +257,24 @@ def test_undo_takes_the_step_out_of_the_text_and_the_state(studio):
     reply(studio, "undo")
     assert studio.text == before
     assert np.array_equal(studio.cell.joint_positions(), start)
+
+
+def test_what_is_seen_is_proposed_with_names_and_poses(studio):
+    def seen():
+        found = reply(studio, "expect_seen")["proposals"]
+        return [each["text"].partition(", pose")[0] for each in found]
+
+    reply(
+        studio, "add_object", name="box", kind="box", size=[0.03, 0.03, 0.03], xyz=[0.2, 0, 0.015]
+    )
+    reply(studio, "execute", step="move_to: home")
+    assert seen() == ["named_target: home"], "what has not moved is of no interest"
+    for step in ("gripper: open", "pick: box"):
+        assert reply(studio, "execute", step=step)["status"] == "passed"
+    assert "grasped: box" in seen()
+    place = "place: {object: box, pose: {xyz: [0.2, 0.05, 0.015]}}"
+    assert reply(studio, "execute", step=place)["status"] == "passed"
+    assert {"placed: {object: box, on: ground_plane", "upright: box"} <= set(seen())
 
 
 def test_a_camera_shows_the_cell_as_it_is(tmp_path):
