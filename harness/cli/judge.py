@@ -6,20 +6,29 @@ import argparse
 import sys
 from pathlib import Path
 
-from harness.cli.output import guarded, only_json_on_stdout, say
+from harness.cli.files import run_folder
+from harness.cli.output import only_json_on_stdout, say
+from harness.cli.shared_options import STRICT, add_json, add_plugin
 from harness.suite.discovery import UsageError
 from harness.suite.outcome import EXIT_CODES
 
 
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness judge`."""
+    add = command.add_argument
+    add("folder", metavar="RUN", help="the run's report folder")
+    text = "judge by the expectations of this scenario instead"
+    add("--with", metavar="FILE", dest="with_file", help=text)
+    add_plugin(command)
+    text = "list all contacts: bodies, first time, duration, peak force"
+    add("--contacts", action="store_true", help=text)
+    add("--strict", action="store_true", help=STRICT)
+    add_json(command)
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Judge a run's folder and print every verdict."""
-    return guarded(lambda: _run(arguments))
-
-
-def _run(arguments: argparse.Namespace) -> int:
-    folder = Path(arguments.folder)
-    if not (folder / "run.json").is_file():
-        raise UsageError(f"'{folder}' is no run's folder: it has no run.json")
+    folder = run_folder(arguments.folder)
     from harness.observation.contacts import contact_records
     from harness.recording.store import blames_changes, read_run
     from harness.reporting.contacts import contact_lines

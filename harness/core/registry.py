@@ -19,7 +19,7 @@ import os
 import pkgutil
 import sys
 import traceback
-from collections.abc import Generator, Iterator, Mapping
+from collections.abc import Collection, Generator, Iterator, Mapping, Set
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -167,6 +167,11 @@ class Registry(Mapping[str, P]):
         return noun(self.kind)
 
     @property
+    def built_in_names(self) -> Set[str]:
+        """The names of the built-in plug-ins, which may not be imported yet."""
+        return self._built_in_modules.keys()
+
+    @property
     def _built_in_modules(self) -> dict[str, str]:
         """Module of each built-in by its name; a name that is a keyword has an underscore."""
         if self._modules is None:
@@ -253,6 +258,13 @@ def _check_class(plugin: type[Plugin], what: str, package: str) -> None:
     if missing:
         names = ", ".join(f"`{each}`" for each in missing)
         raise PluginError(package, f"{what} needs the method {names}")
+
+
+def import_built_in(kinds: Collection[str], words: Collection[str]) -> None:
+    """Import the built-in plug-ins that words name, for this process and its forks."""
+    for found in (_registries[kind] for kind in kinds):
+        for name in found.built_in_names & set(words):
+            found[name]
 
 
 def register_module(module: ModuleType) -> None:

@@ -31,7 +31,7 @@ MOST_RESULTS = 4096
 """Number of results that are kept."""
 
 LOOK_EVERY = 64
-"""Results that a process keeps until it looks again whether there is room."""
+"""Results that are kept, approximately, until a process looks again whether there is room."""
 
 T = TypeVar("T")
 
@@ -81,9 +81,9 @@ class SharedResults:
         try:
             part.write_bytes(pickle.dumps(result, pickle.HIGHEST_PROTOCOL))
             part.replace(self.folder / key)
-            if self._kept % LOOK_EVERY == 0:
-                self._make_room()
             self._kept += 1
+            if (os.getpid() + self._kept) % LOOK_EVERY == 0:  # in some of the processes at least
+                self._make_room()
         except OSError:
             part.unlink(missing_ok=True)
 
@@ -120,23 +120,32 @@ class Chain:
         self._keeps = False
         self.is_over = False
 
-    def find(self, key: str, amount: int = 1) -> Any:
-        """The result of a key, which counts as so many; None where there is none."""
-        found = None if self.is_over else self._results.find(key)
-        if found is not None:
-            self._results.tally.taken[self._kind] += amount
-        return found
+    def find(self, key: str) -> Any:
+        """What is known under a key; None where that is nothing, or the chain is over."""
+        return None if self.is_over else self._results.find(key)
 
-    def note(self, amount: int = 1) -> None:
+    def take(self, amount: int) -> None:
+        """Count what was taken of a result that was found."""
+        self._results.tally.taken[self._kind] += amount
+
+    def note(self, amount: int) -> None:
         """Count what was computed and is not kept."""
         self._results.tally.computed[self._kind] += amount
 
-    def keep(self, key: str, result: Callable[[], object], amount: int = 1) -> None:
-        """Keep a result that was computed; the chain is over at the first of its own."""
+    def keep(self, key: str, known: Callable[[], object], amount: int, variant: str) -> None:
+        """Keep what is known under a key; the chain is over at the first result of its own.
+
+        Args:
+            key: The key that others look for.
+            known: Returns what they find.
+            amount: What the result that was computed counts.
+            variant: Key of what a result follows from besides.
+        """
         self.note(amount)
-        self._keeps = self._keeps or (not self.is_over and self._results.was_seen(key))
-        if self._keeps:
-            self._results.keep(key, result())
+        is_kept = self._keeps or (not self.is_over and self._results.was_seen(key + variant))
+        self._keeps = is_kept
+        if is_kept:
+            self._results.keep(key, known())
         else:
             self.is_over = True
 
@@ -175,6 +184,13 @@ def begin(*, share: bool = True) -> Tally:
     return tally
 
 
+def count(tally: Tally) -> None:
+    """Add what a fork of this process took and computed to the tally of its case."""
+    if _shared is not None:
+        _shared.tally.taken += tally.taken
+        _shared.tally.computed += tally.computed
+
+
 def is_sharing() -> bool:
     """Whether this process shares results with others."""
     return _shared is not None
@@ -185,13 +201,21 @@ def chain(kind: str) -> Chain | None:
     return None if _shared is None else Chain(_shared, kind)
 
 
-def shared(kind: str, inputs: Callable[[], tuple[object, ...]], compute: Callable[[], T]) -> T:
+def shared(
+    kind: str,
+    inputs: Callable[[], tuple[object, ...]],
+    compute: Callable[[], T],
+    *,
+    is_often_needed: bool = True,
+) -> T:
     """The result of a computation, from a case that had the same inputs or computed here.
 
     Args:
         kind: What the result is; a part of its key.
         inputs: Everything that the result follows from; called only where results are shared.
         compute: A pure function of the inputs, whose result can be pickled.
+        is_often_needed: Whether the first case keeps the result; else the second one that has the
+            same inputs does, which costs less where most inputs are different in every case.
     """
     if _shared is None:
         return compute()
@@ -205,5 +229,6 @@ def shared(kind: str, inputs: Callable[[], tuple[object, ...]], compute: Callabl
         return found
     result = compute()
     _shared.tally.computed[kind] += 1
-    _shared.keep(key, result)
+    if is_often_needed or _shared.was_seen(key):
+        _shared.keep(key, result)
     return result

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from harness.core.geometry import Shape
 from harness.core.sharing import shared
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.observation.body_tracks import (
     BodyTrack,
-    TrackedShape,
     carried_track,
     link_track,
     links_with_shapes,
@@ -39,7 +39,7 @@ from harness.observation.sampled_clearance import (
 )
 from harness.planning.model.robot_model import RobotModel
 from harness.recording.motion import Motion
-from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
+from harness.recording.run import AttachmentRecord, ObjectRecord, Pair, Signals
 from harness.robot.description import RobotDescription
 from harness.robot.forward_kinematics import LinkPoses
 
@@ -156,63 +156,36 @@ class CoalClearance:
         attachments: Sequence[AttachmentRecord],
         cutoff: float,
     ) -> MeasuredClearance:
-        """Distances at every given sample, from a case that moved alike or measured here."""
+        """Distances at every given sample."""
         links = LinkPoses(self.description, motion.joint_positions)
         tracks = {
             record.name: object_track(record, attachments, motion, links) for record in objects
         }
-
-        def inputs() -> tuple[object, ...]:
-            bodies = [
-                (record.name, record.is_static, record.shapes, track.rotations, track.translations)
-                for record, track in zip(objects, tracks.values(), strict=True)
-            ]
-            held = [
-                (each.object, each.represents, each.link, each.pose_in_link, during)
-                for each in attachments
-                if (during := _during(each, motion)).any()
-            ]
-            in_physics = sorted(motion.object_poses)
-            return self.description.key, motion.joint_positions, bodies, held, in_physics, cutoff
-
-        return shared(
-            "distances",
-            inputs,
-            lambda: self._measure_all(motion, links, tracks, objects, attachments, cutoff),
-        )
-
-    def _measure_all(
-        self,
-        motion: Motion,
-        links: LinkPoses,
-        tracks: Mapping[str, BodyTrack],
-        objects: Sequence[ObjectRecord],
-        attachments: Sequence[AttachmentRecord],
-        cutoff: float,
-    ) -> MeasuredClearance:
         found = MeasuredClearance(len(motion.times))
-        shapes = {record.name: tracked_shapes(record.name, record.shapes) for record in objects}
-        self._robot_to_itself(found, links, cutoff)
+        self._robot_to_itself(found, links, motion, cutoff)
         for record in objects:
             there = tracks[record.name].present & ~_held(record.name, attachments, motion)
-            self._robot_to_object(
-                found, links, record, tracks[record.name], shapes[record.name], there, cutoff
-            )
+            if there.any():
+                track = tracks[record.name]
+                self._robot_to_object(found, links, record, track, there, motion, cutoff)
         for attachment in attachments:
-            self._held_to_objects(found, links, attachment, objects, tracks, shapes, motion, cutoff)
+            self._held_to_objects(found, links, attachment, objects, tracks, motion, cutoff)
         return found
 
-    def _robot_to_itself(self, found: MeasuredClearance, links: LinkPoses, cutoff: float) -> None:
-        names = list(self._shapes)
-        pairs: list[ShapePair] = []
-        for later, second in enumerate(names):
-            for first in names[:later]:
-                if self._is_self_pair(first, second):
-                    seen = relative_track(link_track(links, first), link_track(links, second))
-                    pairs += pairs_between(self._shapes[first], self._shapes[second], seen)
-        if pairs:
-            everywhere = np.ones(found.count, dtype=bool)
-            self._measure(found, (ROBOT, ROBOT), everywhere, pairs, cutoff)
+    def _robot_to_itself(
+        self, found: MeasuredClearance, links: LinkPoses, motion: Motion, cutoff: float
+    ) -> None:
+        def pairs() -> Iterator[ShapePair]:
+            names = list(self._shapes)
+            for later, second in enumerate(names):
+                for first in names[:later]:
+                    if self._is_self_pair(first, second):
+                        seen = relative_track(link_track(links, first), link_track(links, second))
+                        yield from pairs_between(self._shapes[first], self._shapes[second], seen)
+
+        inputs = self.description.key, motion.joint_positions
+        everywhere = np.ones(found.count, dtype=bool)
+        self._measure(found, (ROBOT, ROBOT), everywhere, inputs, pairs, cutoff)
 
     def _robot_to_object(
         self,
@@ -220,20 +193,25 @@ class CoalClearance:
         links: LinkPoses,
         record: ObjectRecord,
         track: BodyTrack,
-        shapes: Sequence[TrackedShape],
         there: BoolArray,
+        motion: Motion,
         cutoff: float,
     ) -> None:
-        if not there.any() or not shapes:
-            return
-        standing = self.description.static_links if record.is_static else frozenset()
-        pairs: list[ShapePair] = []
-        for link, link_shapes in self._shapes.items():
-            if link not in standing:
-                seen = relative_track(link_track(links, link).part(there), track.part(there))
-                pairs += pairs_between(link_shapes, shapes, seen)
-        if pairs:
-            self._measure(found, (ROBOT, record.name), there, pairs, cutoff)
+        track = track.part(there)
+
+        def pairs() -> Iterator[ShapePair]:
+            standing = self.description.static_links if record.is_static else frozenset()
+            shapes = tracked_shapes(record.name, record.shapes)
+            for link, link_shapes in self._shapes.items():
+                if link not in standing:
+                    seen = relative_track(link_track(links, link).part(there), track)
+                    yield from pairs_between(link_shapes, shapes, seen)
+
+        inputs = (
+            *(self.description.key, motion.joint_positions[there]),
+            *(record.shapes, record.is_static, track.rotations, track.translations),
+        )
+        self._measure(found, (ROBOT, record.name), there, inputs, pairs, cutoff)
 
     def _held_to_objects(
         self,
@@ -242,7 +220,6 @@ class CoalClearance:
         attachment: AttachmentRecord,
         objects: Sequence[ObjectRecord],
         tracks: Mapping[str, BodyTrack],
-        shapes: Mapping[str, Sequence[TrackedShape]],
         motion: Motion,
         cutoff: float,
     ) -> None:
@@ -253,6 +230,7 @@ class CoalClearance:
         for name in (attachment.object, attachment.represents):
             if name in motion.object_poses and name in tracks:
                 held[name] = tracks[name]
+        shapes = {record.name: record.shapes for record in objects}
         same = {attachment.object, attachment.represents}
         for name, track in held.items():
             for record in objects:
@@ -261,24 +239,51 @@ class CoalClearance:
                 there &= ~_held(record.name, (attachment,), motion)
                 if record.name in same or not there.any():
                     continue
-                seen = relative_track(track.part(there), other.part(there))
-                pairs = pairs_between(shapes.get(name, ()), shapes[record.name], seen)
-                if pairs:
-                    distances, _ = smallest_distances(pairs, cutoff)
-                    moved = largest_travel(pairs, cutoff)
-                    found.put((name, record.name), there, distances, None, moved)
+                bodies = (name, shapes.get(name, ())), (record.name, record.shapes)
+                tracked = track.part(there), other.part(there)
+                self._object_to_object(found, there, bodies, tracked, cutoff)
+
+    def _object_to_object(
+        self,
+        found: MeasuredClearance,
+        there: BoolArray,
+        bodies: tuple[tuple[str, Sequence[Shape]], tuple[str, Sequence[Shape]]],
+        tracks: tuple[BodyTrack, BodyTrack],
+        cutoff: float,
+    ) -> None:
+        """Distances of two objects, where both are there."""
+
+        def pairs() -> Sequence[ShapePair]:
+            first, second = (tracked_shapes(*body) for body in bodies)
+            return pairs_between(first, second, relative_track(*tracks))
+
+        inputs = bodies, [(track.rotations, track.translations) for track in tracks]
+        (first, _), (second, _) = bodies
+        self._measure(found, (first, second), there, inputs, pairs, cutoff)
 
     def _measure(
         self,
         found: MeasuredClearance,
-        key: tuple[str, str],
+        key: Pair,
         there: BoolArray,
-        pairs: Sequence[ShapePair],
+        inputs: tuple[object, ...],
+        pairs: Callable[[], Iterable[ShapePair]],
         cutoff: float,
     ) -> None:
-        distances, which = smallest_distances(pairs, cutoff)
-        of_pair = np.array([self._index[pair.first.body] for pair in pairs] + [-1])
-        found.put(key, there, distances, of_pair[which], largest_travel(pairs, cutoff))
+        """Distances of two bodies, measured here or by a case in which they moved alike."""
+
+        def measured() -> tuple[FloatArray, IntArray, FloatArray] | tuple[()]:
+            every = list(pairs())
+            if not every:
+                return ()
+            distances, which = smallest_distances(every, cutoff)
+            of_pair = np.array([self._index.get(pair.first.body, -1) for pair in every] + [-1])
+            return distances, of_pair[which], largest_travel(every, cutoff)
+
+        result = shared("distances", lambda: (*inputs, cutoff), measured, is_often_needed=False)
+        if result:
+            distances, links, moved = result
+            found.put(key, there, distances, links if key[0] == ROBOT else None, moved)
 
     def _is_self_pair(self, first: str, second: str) -> bool:
         robot = self._robot

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from harness.reporting.result import CaseResult
 
-COUNTED = ("plans", "goals")
+COUNTED = ("plans", "goals", "models")
 """Kinds of which there are a few; of the others a share is said."""
 
 

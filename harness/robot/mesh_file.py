@@ -9,6 +9,8 @@ its `up_axis` is not.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -77,14 +79,17 @@ def convex_hull(geometry: Mesh) -> Any:
     Raises:
         RobotError: As `read_triangles`; or the mesh is flat, or Qhull fails.
     """
-    if geometry.part is not None:
-        points = decomposition_of(geometry).parts[geometry.part]
-    else:
-        points = np.array(_load(geometry).vertices())
-        if _thickness(points) < FLAT:  # Qhull can crash on such points
-            raise RobotError(f"{geometry.path.name} is flat: it encloses nothing to touch")
-    try:
+    found = decomposition_of(geometry)
+    points = found.hull if geometry.part is None else found.parts[geometry.part]
+    with _hull_errors(geometry):
         return hull_of(points)
+
+
+@contextmanager
+def _hull_errors(geometry: Mesh) -> Iterator[None]:
+    """Names the mesh where Qhull fails."""
+    try:
+        yield
     except (RuntimeError, ValueError) as error:
         reason = str(error).splitlines()[-1]
         raise RobotError(f"{geometry.path.name} has no convex hull: {reason}") from error
@@ -124,11 +129,13 @@ def decomposition_of(geometry: Mesh) -> Decomposition:
 def _decomposition(geometry: Mesh) -> Decomposition:
     def triangles() -> FloatArray:
         mesh = read_triangles(geometry)
+        if _thickness(mesh.vertices) < FLAT:  # Qhull can crash on such points
+            raise RobotError(f"{geometry.path.name} is flat: it encloses nothing to touch")
         return mesh.vertices[mesh.faces]
 
-    convex_hull(geometry)  # refuses what is damaged or flat
     factors = np.array(geometry.scale) * metres_per_unit(geometry)
-    return stored_decomposition(geometry.path.read_bytes(), factors, triangles)
+    with _hull_errors(geometry):
+        return stored_decomposition(geometry.path.read_bytes(), factors, triangles)
 
 
 def hull_points(geometry: Mesh) -> FloatArray:

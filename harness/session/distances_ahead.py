@@ -6,7 +6,9 @@ from functools import partial
 from types import TracebackType
 from typing import TYPE_CHECKING
 
+from harness.core import sharing
 from harness.core.activity import Activity, unobserved
+from harness.core.sharing import Tally
 from harness.engine.execute import ProgramExecution
 from harness.observation.beliefs import believed_poses
 from harness.ports.simulation import Simulator
@@ -32,7 +34,7 @@ class DistancesAhead:
         self._prepared = prepared
         self._measured: Parts = {}
         self._begun = 0
-        self._background: Background[Parts] | None = None
+        self._background: Background[tuple[Parts, Tally]] | None = None
 
     def __enter__(self) -> DistancesAhead:
         return self
@@ -74,7 +76,9 @@ class DistancesAhead:
 
     def _take(self) -> None:
         if self._background is not None:
-            self._measured |= self._background.result(unobserved)
+            measured, tally = self._background.result(unobserved)
+            self._measured |= measured
+            sharing.count(tally)
             self._background = None
 
     def _parts(
@@ -83,17 +87,20 @@ class DistancesAhead:
         simulator: MujocoSimulator,
         numbers: range,
         _: Activity,
-    ) -> Parts:
+    ) -> tuple[Parts, Tally]:
+        """Parts of the run, and what was shared to measure them; in the other process."""
         from harness.observation.clearance import CoalClearance
 
+        tally = sharing.begin()
         prepared, done = self._prepared, execution.finish()
         motion = simulator.motion()
         believed = believed_poses(done.beliefs, motion.joint_positions, prepared.kinematics)
         poses = {**motion.object_poses, **believed}
-        return CoalClearance(prepared.program.description).measured_parts(
+        parts = CoalClearance(prepared.program.description).measured_parts(
             Motion(motion.times, motion.joint_positions, poses),
             done.objects,
             done.attachments,
             prepared.observations.recorded_cutoff,
             numbers,
         )
+        return parts, tally

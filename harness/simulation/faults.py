@@ -12,6 +12,7 @@ import mujoco
 import numpy as np
 
 from harness.core.types import FloatArray
+from harness.simulation.geoms import set_smaller_frictions
 from harness.simulation.model import PhysicsModel
 
 STALL_SOLREF = (0.002, 1.0)
@@ -64,8 +65,7 @@ class MujocoFaults:
         ratio = sliding / old.sliding if old.sliding > 0 else 1.0
         new = (sliding, old.torsional * ratio, old.rolling * ratio)
         model.geom_friction[place.geoms] = new
-        self._rank_surfaces()
-        self._set_pair_frictions(range(place.geoms.start, place.geoms.stop))
+        set_smaller_frictions(model)
         return before
 
     def weaken_gripper(self, share: float) -> float:
@@ -135,19 +135,3 @@ class MujocoFaults:
 
     def _draw(self, samples: int) -> FloatArray:
         return self._rng.normal(0.0, self._deviation, (samples, self.noise.shape[1]))
-
-    def _rank_surfaces(self) -> None:
-        """Give the surface with the least friction the highest priority, as `Surfaces` does."""
-        model = self._physics.model
-        frictions = [tuple(row) for row in model.geom_friction]
-        ranked = sorted(set(frictions), reverse=True)
-        model.geom_priority[:] = [ranked.index(friction) for friction in frictions]
-
-    def _set_pair_frictions(self, geoms: range) -> None:
-        model = self._physics.model
-        for pair in range(model.npair):
-            first, second = int(model.pair_geom1[pair]), int(model.pair_geom2[pair])
-            if first in geoms or second in geoms:
-                smaller = min(tuple(model.geom_friction[first]), tuple(model.geom_friction[second]))
-                sliding, torsional, rolling = smaller
-                model.pair_friction[pair] = sliding, sliding, torsional, rolling, rolling

@@ -4,9 +4,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
-
 import mujoco
 
 from harness.core.geometry import (
@@ -36,42 +33,29 @@ CONTACT_DIMENSIONS = 6
 """Normal force, two sliding, one torsional and two rolling friction directions."""
 
 
-@dataclass(frozen=True)
-class Surfaces:
-    """Ranks surfaces so that the smaller friction of a pair in contact applies.
-
-    MuJoCo takes the larger friction of a pair unless one geom has a higher `priority`; then that
-    geom's values count. So the surface with the least friction gets the highest priority.
-    """
-
-    ranked: tuple[Friction, ...]
-
-    @classmethod
-    def of(cls, frictions: Iterable[Friction]) -> Surfaces:
-        """Rank all surfaces of a model, the roughest first."""
-        return cls(tuple(sorted(set(frictions), key=_roughness, reverse=True)))
-
-    def smaller(self, first: Friction, second: Friction) -> Friction:
-        """The friction that applies between two surfaces."""
-        return min(first, second, key=_roughness)
-
-    def priority(self, friction: Friction) -> int:
-        """Contact priority of a surface."""
-        return self.ranked.index(friction)
-
-
-def _roughness(friction: Friction) -> tuple[float, float, float]:
+def roughness(friction: Friction) -> tuple[float, float, float]:
+    """The frictions of a surface as MuJoCo orders them."""
     return friction.sliding, friction.torsional, friction.rolling
 
 
-def add_collision_geom(
-    spec: mujoco.MjSpec,
-    body: mujoco.MjsBody,
-    shape: Shape,
-    friction: Friction,
-    surfaces: Surfaces,
-) -> None:
-    """Put a massless contact geom on a body."""
+def set_smaller_frictions(model: mujoco.MjModel) -> None:
+    """Let the smaller friction of two surfaces in contact apply, as the geoms have them now.
+
+    MuJoCo takes the larger friction of a pair unless one geom has a higher `priority`; then that
+    geom's values count. So the surface with the least friction gets the highest priority. An
+    explicit pair has its own values.
+    """
+    frictions = [tuple(row) for row in model.geom_friction]
+    ranked = sorted(set(frictions), reverse=True)
+    model.geom_priority[:] = [ranked.index(friction) for friction in frictions]
+    pairs = zip(model.pair_geom1.tolist(), model.pair_geom2.tolist(), strict=True)
+    for pair, (first, second) in enumerate(pairs):
+        sliding, torsional, rolling = min(frictions[first], frictions[second])
+        model.pair_friction[pair] = sliding, sliding, torsional, rolling, rolling
+
+
+def add_collision_geom(spec: mujoco.MjSpec, body: mujoco.MjsBody, shape: Shape) -> None:
+    """Put a massless contact geom on a body; its friction is set in the compiled model."""
     kind, size = geom_kind_and_size(shape.geometry)
     geom = body.add_geom(name=f"{body.name} {len(body.geoms)}", type=kind, size=size)
     geom.pos = shape.pose.translation
@@ -80,8 +64,6 @@ def add_collision_geom(
         geom.meshname = add_mesh(spec, shape.geometry)
     geom.mass = 0.0
     geom.rgba = shape.rgba
-    geom.friction = _roughness(friction)
-    geom.priority = surfaces.priority(friction)
     geom.condim = CONTACT_DIMENSIONS
     geom.solref = CONTACT_SOLREF
     geom.solimp = CONTACT_SOLIMP

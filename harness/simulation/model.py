@@ -10,6 +10,8 @@ from dataclasses import dataclass, replace
 import mujoco
 import numpy as np
 
+from harness.core.geometry import Friction
+from harness.core.sharing import shared
 from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
 from harness.robot.collision_shapes import convex_shapes
@@ -19,7 +21,8 @@ from harness.simulation.geoms import (
     CONTACT_DIMENSIONS,
     CONTACT_SOLIMP,
     CONTACT_SOLREF,
-    Surfaces,
+    roughness,
+    set_smaller_frictions,
 )
 from harness.simulation.robot_mjcf import add_robot, joint_range, link_friction
 from harness.simulation.servo import Servos, add_servos, design_servos
@@ -117,10 +120,34 @@ def build_model(
         replace(obj, shapes=convex_shapes(obj.shapes)) for obj in objects if obj.in_simulation
     ]
     refuse_unusable_masses(simulated)
-    surfaces = Surfaces.of(
-        [link_friction(description, link.name) for link in description.links]
-        + [obj.friction_of(shape) for obj in simulated for shape in obj.shapes]
+    structure = [_without_surfaces(obj) for obj in simulated]
+    option = gravity, timestep, tuple(frames), sorted(present)
+    servos, model = shared(
+        "models",
+        lambda: (description.key, structure, option),
+        lambda: _compiled(description, simulated, present, gravity, timestep, frames),
     )
+    physics = _places(model, description, servos, simulated, tuple(frames))
+    _set_surfaces(physics)
+    for name, place in physics.objects.items():
+        set_presence(model, place, present=name in present)
+    return physics
+
+
+def _without_surfaces(obj: WorldObject) -> WorldObject:
+    shapes = tuple(replace(shape, friction=None) for shape in obj.shapes)
+    return replace(obj, friction=Friction(), shapes=shapes)
+
+
+def _compiled(
+    description: RobotDescription,
+    objects: Sequence[WorldObject],
+    present: Collection[str],
+    gravity: tuple[float, float, float],
+    timestep: float,
+    frames: Sequence[str],
+) -> tuple[Servos, mujoco.MjModel]:
+    """The servos and the compiled model, in which every surface has the same friction."""
     servos = design_servos(description, timestep)
     spec = mujoco.MjSpec()
     spec.compiler.degree = False
@@ -131,13 +158,11 @@ def build_model(
     option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     option.impratio = 10.0
     option.disableflags = mujoco.mjtDisableBit.mjDSBL_AUTORESET
-    add_robot(spec, description, surfaces)
+    add_robot(spec, description)
     add_servos(spec, description, servos)
-    for index, obj in enumerate(simulated):
-        is_present = obj.name in present
-        pose = obj.pose if is_present else parking_pose(index)
-        add_object(spec, obj, pose, surfaces)
-    _add_grasp_contacts(spec, description, simulated, surfaces)
+    for index, obj in enumerate(objects):
+        add_object(spec, obj, obj.pose if obj.name in present else parking_pose(index))
+    _add_grasp_contacts(spec, description, objects)
     for frame in (description.tcp_link, *frames):
         _add_frame_sensors(spec, frame)
     for joint in description.movable_joints:
@@ -147,11 +172,19 @@ def build_model(
                 objtype=mujoco.mjtObj.mjOBJ_ACTUATOR,
                 objname=joint.name,
             )
-    model = compile_model(spec)
-    physics = _places(model, description, servos, simulated, tuple(frames))
-    for name, place in physics.objects.items():
-        set_presence(model, place, present=name in present)
-    return physics
+    return servos, compile_model(spec)
+
+
+def _set_surfaces(physics: PhysicsModel) -> None:
+    """Give every geom the friction of its surface."""
+    model = physics.model
+    for body in physics.robot_bodies:
+        friction = link_friction(physics.description, physics.body_names[body])
+        model.geom_friction[model.geom_bodyid == body] = roughness(friction)
+    for place in physics.objects.values():
+        frictions = [roughness(place.obj.friction_of(shape)) for shape in place.obj.shapes]
+        model.geom_friction[place.geoms] = np.array(frictions).reshape(-1, 3)
+    set_smaller_frictions(model)
 
 
 def set_presence(model: mujoco.MjModel, place: ObjectPlace, *, present: bool) -> None:
@@ -171,7 +204,6 @@ def _add_grasp_contacts(
     spec: mujoco.MjSpec,
     description: RobotDescription,
     objects: Sequence[WorldObject],
-    surfaces: Surfaces,
 ) -> None:
     """Add an explicit contact pair for each geom of the fingers and of the free objects.
 
@@ -183,15 +215,10 @@ def _add_grasp_contacts(
     damping = FRICTION_DAMPING_PER_STEP / spec.option.timestep
     for link in gripper.links:
         for obj in (obj for obj in objects if not obj.is_static):
-            own = link_friction(description, link)
             for finger_geom in spec.body(link).geoms:
-                for shape, object_geom in zip(obj.shapes, spec.body(obj.name).geoms, strict=True):
-                    friction = surfaces.smaller(own, obj.friction_of(shape))
-                    sliding, torsional = friction.sliding, friction.torsional
-                    rolling = friction.rolling
+                for object_geom in spec.body(obj.name).geoms:
                     pair = spec.add_pair(geomname1=finger_geom.name, geomname2=object_geom.name)
                     pair.condim = CONTACT_DIMENSIONS
-                    pair.friction = sliding, sliding, torsional, rolling, rolling
                     pair.solref, pair.solimp = CONTACT_SOLREF, CONTACT_SOLIMP
                     pair.solreffriction = -1.0, -damping
 

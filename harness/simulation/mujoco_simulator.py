@@ -322,6 +322,8 @@ class MujocoSimulator:
     def stream(self, rows: tuple[FloatArray, FloatArray, FloatArray]) -> None:
         """Advance along set points of all actuated joints, one physics step from row to row.
 
+        `command` has to follow the last of these calls, before anything is held.
+
         Args:
             rows: Positions, velocities and accelerations, shape (N + 1, m) each; the first row is
                 where the command stands.
@@ -330,7 +332,6 @@ class MujocoSimulator:
         self._recording.refuse_beyond(len(points) - 1)
         self.renew_grip_limit()
         self.follow(points, 0, len(points) - 1)
-        self._control = self._controls(self._still(self._command))[0]
 
     def measured(self, first: int) -> tuple[FloatArray, FloatArray]:
         """Positions and velocities from a sample on, description order, shape (N, n) each."""

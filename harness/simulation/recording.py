@@ -41,13 +41,13 @@ _DIVERGED = (
 
 @dataclass(frozen=True, eq=False)
 class RecordedPart:
-    """Consecutive samples; the sensors and contacts of the last one are left out.
+    """Consecutive samples.
 
     Attributes:
         positions: MuJoCo's positions, shape (N, nq).
         velocities: MuJoCo's velocities, shape (N, nv).
-        sensors: Sensor data, shape (N - 1, nsensordata).
-        contacts: The contacts of the same N - 1 samples.
+        sensors: Sensor data, shape (N, nsensordata).
+        contacts: The contacts of the samples.
     """
 
     positions: FloatArray
@@ -128,14 +128,14 @@ class Recording:
         return RecordedPart(
             self._qpos[first:end],
             self._qvel[first:end],
-            self._sensors[first : end - 1],
-            self._contacts.part(first, end - 1),
+            self._sensors[first:end],
+            self._contacts.part(first, end),
         )
 
     def take(
         self, part: RecordedPart, commands: FloatArray, command_velocities: FloatArray
     ) -> None:
-        """Go on with samples of another run; the physics stands at the last one of them."""
+        """Go on with samples of another run."""
         first, end = self.count, self.count + len(part.positions)
         self._reserve(end)
         self._commands[first:end], self._command_velocities[first:end] = (
@@ -143,10 +143,9 @@ class Recording:
             command_velocities,
         )
         self._qpos[first:end], self._qvel[first:end] = part.positions, part.velocities
-        self._sensors[first : end - 1] = part.sensors
+        self._sensors[first:end] = part.sensors
         self._contacts.take(first, part.contacts)
         self.count = end
-        self._record_forces_of_last_row()
 
     def touching_geoms(self, first: int, last: int) -> IntArray:
         """Pairs of geoms that touch in samples first to last - 1, in order, shape (K, 2)."""

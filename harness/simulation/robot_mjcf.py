@@ -14,7 +14,7 @@ from harness.core.types import FloatArray
 from harness.robot.collision_shapes import convex_shapes
 from harness.robot.description import Inertial, Joint, RobotDescription
 from harness.robot.tree import excluded_contacts
-from harness.simulation.geoms import Surfaces, add_collision_geom
+from harness.simulation.geoms import add_collision_geom
 
 LINK_FRICTION = Friction()
 """Surface of robot links other than the finger pads."""
@@ -44,13 +44,12 @@ def link_friction(description: RobotDescription, link: str) -> Friction:
     return LINK_FRICTION
 
 
-def add_robot(spec: mujoco.MjSpec, description: RobotDescription, surfaces: Surfaces) -> None:
+def add_robot(spec: mujoco.MjSpec, description: RobotDescription) -> None:
     """Add one body for each link, under the same name and in double precision.
 
     Args:
         spec: A specification in radians; `world` is its world body.
         description: The description of the composed robot.
-        surfaces: Ranking that holds every link's friction.
     """
     bodies = {"world": spec.worldbody}
     links = {link.name: link for link in description.links}
@@ -64,7 +63,7 @@ def add_robot(spec: mujoco.MjSpec, description: RobotDescription, surfaces: Surf
         if joint.is_movable:
             _add_joint(body, joint, joint_range(description, joint))
         for shape in convex_shapes(link.collisions):
-            add_collision_geom(spec, body, shape, link_friction(description, link.name), surfaces)
+            add_collision_geom(spec, body, shape)
         bodies[link.name] = body
     for joint in description.joints:
         if joint.mimic is not None:

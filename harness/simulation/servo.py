@@ -12,8 +12,7 @@ import numpy as np
 from harness.core.types import FloatArray
 from harness.robot.description import RobotDescription
 from harness.simulation.compiling import compile_model
-from harness.simulation.geoms import Surfaces
-from harness.simulation.robot_mjcf import add_robot, coupling, link_friction
+from harness.simulation.robot_mjcf import add_robot, coupling
 
 BANDWIDTH_PER_STEP = 0.3
 """Natural frequency of an arm servo times the physics step; 300 rad/s at 1 ms.
@@ -59,8 +58,7 @@ def bare_robot(description: RobotDescription) -> mujoco.MjSpec:
     """The robot alone, without servos."""
     spec = mujoco.MjSpec()
     spec.compiler.degree = False
-    surfaces = Surfaces.of(link_friction(description, link.name) for link in description.links)
-    add_robot(spec, description, surfaces)
+    add_robot(spec, description)
     return spec
 
 

@@ -10,7 +10,7 @@ touched can have had an effect, and a stretch is taken only by a case in which t
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
+import hashlib
 from dataclasses import dataclass
 
 import mujoco
@@ -25,15 +25,26 @@ from harness.simulation.snapshot import CHANGED_IN_PLACE, STATE
 SURFACES = ("geom_friction", "geom_priority", "pair_friction")
 """Arrays of the model that only contacts read."""
 
-
 SHORTEST = 8
 """Steps of a stretch that is worth looking up."""
+
+MOST_VARIANTS = 4
+"""Stretches that are kept for one beginning: those that differ in the surfaces that touched."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Stretch:
-    """What was recorded in a stretch, and the state at its end."""
+    """What was recorded in a stretch.
 
+    Attributes:
+        touching: The pairs of geoms that touched, shape (K, 2).
+        surfaces: Key of their friction.
+        recorded: The samples that it consists of.
+        state: MuJoCo's state at the end.
+    """
+
+    touching: IntArray
+    surfaces: str
     recorded: RecordedPart
     state: FloatArray
 
@@ -44,7 +55,10 @@ class SharedPhysics:
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, recording: Recording) -> None:
         self._model, self._data, self._recording = model, data, recording
         self._chain = chain("physics")
-        self._key = "" if self._chain is None else _model_key(model)
+        if self._chain is None:
+            return
+        self._model_key = _model_key(model).encode()
+        self._changed = [getattr(model, each) for each in CHANGED_IN_PLACE if each not in SURFACES]
         pairs = zip(model.pair_geom1.tolist(), model.pair_geom2.tolist(), strict=True)
         self._explicit: dict[tuple[int, int], int] = {}
         for number, (first, second) in enumerate(pairs):
@@ -61,33 +75,41 @@ class SharedPhysics:
                 self._chain.note(max(0, steps))
             return
         first = recording.count
-        key = exact_key(self._key, self._changed(), self._state(), controls)
-        known: Sequence[IntArray] = self._chain.find(key, 0) or ()
-        for touching in known:
-            stretch = self._chain.find(self._with_surfaces(key, touching), steps)
-            if stretch is not None:
+        key = self._key(controls)
+        known: tuple[_Stretch, ...] = self._chain.find(key) or ()
+        for stretch in known:
+            if self._surfaces(stretch.touching) == stretch.surfaces:
+                self._chain.take(steps)
                 mujoco.mj_setState(self._model, self._data, stretch.state, STATE)
                 recording.take(stretch.recorded, commands, command_velocities)
                 return
         recording.advance(controls, commands, command_velocities)
-        touching = recording.touching_geoms(first - 1, first + steps - 1)
-        whole_key = self._with_surfaces(key, touching)
-        self._chain.keep(whole_key, lambda: _Stretch(recording.part(first), self._state()), steps)
-        if not any(np.array_equal(touching, each) for each in known):
-            self._chain.keep(key, lambda: (*known, touching), 0)
+        touching = recording.touching_geoms(first - 1, first + steps)
+        surfaces = self._surfaces(touching)
+
+        def variants() -> tuple[_Stretch, ...]:
+            stretch = _Stretch(touching, surfaces, recording.part(first), self._state())
+            return (*known[1 - MOST_VARIANTS :], stretch)
+
+        self._chain.keep(key, variants, steps, surfaces)
+
+    def _key(self, controls: FloatArray) -> str:
+        """Key of all that the next steps follow from, except for the surfaces.
+
+        The shapes of all arrays but the last one are those of the model.
+        """
+        hasher = hashlib.sha256(self._model_key)
+        for values in (*self._changed, self._state(), controls):
+            hasher.update(np.ascontiguousarray(values).data)
+        return hasher.hexdigest()
 
     def _state(self) -> FloatArray:
         state = np.empty(mujoco.mj_stateSize(self._model, STATE))
         mujoco.mj_getState(self._model, self._data, state, STATE)
         return state
 
-    def _changed(self) -> list[object]:
-        """The arrays of the model that change during a run, but for the surfaces."""
-        names = (name for name in CHANGED_IN_PLACE if name not in SURFACES)
-        return [getattr(self._model, name) for name in names]
-
-    def _with_surfaces(self, key: str, touching: IntArray) -> str:
-        """The key of a stretch in which these pairs of geoms, shape (K, 2), touched.
+    def _surfaces(self, touching: IntArray) -> str:
+        """Key of the friction of pairs of geoms that touch, shape (K, 2).
 
         Of two surfaces the one with the higher priority decides, or both where it is equal; an
         explicit pair has its own friction.
@@ -99,7 +121,10 @@ class SharedPhysics:
         frictions[:, 1][order[:, 0] < 0] = 0.0
         pairs = [self._explicit.get((first, second), -1) for first, second in touching.tolist()]
         explicit = model.pair_friction[[pair for pair in pairs if pair >= 0]]
-        return exact_key(key, touching, order, frictions, np.array(pairs), explicit)
+        hasher = hashlib.sha256()
+        for values in (touching, order, frictions, np.array(pairs), explicit):
+            hasher.update(values.tobytes())
+        return hasher.hexdigest()
 
 
 def _model_key(model: mujoco.MjModel) -> str:

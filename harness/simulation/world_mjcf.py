@@ -9,7 +9,7 @@ import mujoco
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.robot.description import Inertial
-from harness.simulation.geoms import Surfaces, add_collision_geom
+from harness.simulation.geoms import add_collision_geom
 from harness.simulation.robot_mjcf import set_inertia
 
 WELD_SOLIMP = (0.999, 0.9999, 0.001, 0.5, 2.0)
@@ -26,7 +26,7 @@ def weld_name(name: str) -> str:
     return f"weld {name}"
 
 
-def add_object(spec: mujoco.MjSpec, obj: WorldObject, pose: SE3, surfaces: Surfaces) -> None:
+def add_object(spec: mujoco.MjSpec, obj: WorldObject, pose: SE3) -> None:
     """Add an object as a body of its name, fixed if static, else free.
 
     Free bodies have a gravity compensation that acts while they are parked, and a weld constraint
@@ -37,7 +37,7 @@ def add_object(spec: mujoco.MjSpec, obj: WorldObject, pose: SE3, surfaces: Surfa
     body.pos = pose.translation
     body.quat = pose.quat_wxyz
     for shape in obj.shapes:
-        add_collision_geom(spec, body, shape, obj.friction_of(shape), surfaces)
+        add_collision_geom(spec, body, shape)
     if obj.is_static:
         return
     body.add_freejoint(name=obj.name)

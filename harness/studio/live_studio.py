@@ -24,15 +24,14 @@ from harness.studio.live_camera import LiveCamera
 from harness.studio.live_cell import LiveCell
 from harness.studio.live_verdicts import LiveVerdicts
 from harness.studio.messages import (
-    NO_VERDICTS,
-    Message,
     cell_message,
     problem_message,
     robot_message,
 )
 from harness.studio.reach import Reach, ReachStudy
-from harness.studio.scene_view import SceneView
-from harness.studio.session import FRAME, RefusedError, Session
+from harness.studio.scene_view import Handle, SceneView
+from harness.studio.session import FRAME, Message, RefusedError, Session
+from harness.studio.verdict_messages import NO_VERDICTS
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 0.0)
 """Simulated seconds in a second of wall time; 0 is as fast as possible."""
@@ -81,6 +80,7 @@ class LiveStudio(ABC):
         self._due, self._frames = 0.0, 0
         self.nearest: Touch | None = None
         self.object_handle = ""
+        self.dragged: dict[str, FloatArray] = {}
         self._actions: dict[str, Callable[[Message], Message]] = {
             name.removeprefix("do_"): getattr(self, name)
             for name in dir(self)
@@ -173,13 +173,16 @@ class LiveStudio(ABC):
     def show_cell(self) -> None:
         if self.view is None or self._cell is None:
             return
-        self.object_handle = ""
+        self.object_handle, self.dragged = "", {}
         cell = self.cell
         program = cell.prepared.program
-        self.view.show_cell(program.description, cell.tcp_pose())
+        self.view.show_robot(program.description, cell.tcp_pose())
         self.view.show_objects(program.all_objects())
+        self.view.put_handle("object", None)
+        self.view.put_handle("size", None)
         self.view.move(cell.joint_positions(), cell.object_vectors())
-        self.study = self.reach = self.chosen = self.target = None
+        self.study = self.target = None
+        self.clear_preview()
 
     def _pace(self, samples: int) -> bool:
         """Wait as long as samples last, showing them; False where the motion is to stop."""
@@ -209,7 +212,8 @@ class LiveStudio(ABC):
             self._go_on(elapsed * (self.speed or 1.0))
         if self.view is not None and now - self._last_scene >= 0.9 * FRAME:
             self._last_scene = now
-            self.view.move(self.cell.joint_positions(), self.cell.object_vectors())
+            objects = {**self.cell.object_vectors(), **self.dragged}
+            self.view.move(self.cell.joint_positions(), objects)
         if is_due and self.session.viewers:
             self._frames += 1
             if self._frames % MEASURED_EVERY == 0 and not self.busy:
@@ -264,7 +268,7 @@ class LiveStudio(ABC):
             self.verdicts.begin(self.cell, is_last=True)
         self.clear_preview()
         if self.view is not None:
-            self.view.move_handle(self.cell.tcp_pose())
+            self.view.put_handle("tcp", self.cell.tcp_pose())
 
     # -- messages -----------------------------------------------------------------------------
 
@@ -330,7 +334,7 @@ class LiveStudio(ABC):
         )
 
     @abstractmethod
-    def on_drag(self, client: int, phase: str, pose: SE3, name: str) -> None:
+    def on_drag(self, client: int, phase: str, pose: SE3, kind: Handle) -> None:
         """A handle was moved on a page; called in the server's thread."""
 
     @abstractmethod
@@ -399,4 +403,4 @@ class LiveStudio(ABC):
         self.forget_verdicts()
         self.clear_preview()
         if self.view is not None:
-            self.view.move_handle(self.cell.tcp_pose())
+            self.view.put_handle("tcp", self.cell.tcp_pose())

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from harness.core.errors import HarnessError
-from harness.studio.judging import judged
+from harness.studio.judging import Judged, judged
 from harness.studio.live_cell import LiveCell
-from harness.studio.messages import NO_VERDICTS, Message, verdicts_message
 from harness.studio.newest import Newest
+from harness.studio.session import Message
+from harness.studio.verdict_messages import NO_VERDICTS, verdicts_message
 
 
 class LiveVerdicts:
@@ -39,7 +40,7 @@ class LiveVerdicts:
         """
         if is_last or not self._work.is_busy:
             self.text = cell.document.text
-            self._work.begin(lambda: verdicts_message(judged(cell)))
+            self._work.begin(lambda: _message(judged(cell)))
 
     def taken(self, *, wait: bool = False) -> Message | None:
         """The message for every page, once; None while there is nothing new."""
@@ -55,3 +56,9 @@ class LiveVerdicts:
         """Give up what was judged, and what is being judged."""
         self._work.cancel()
         self.message, self.text = NO_VERDICTS, ""
+
+
+def _message(judged: Judged) -> Message:
+    top_level = [each for each in judged.run.steps if "[" not in each.path.partition("[")[2]]
+    verdicts = zip(judged.verdicts, judged.is_decided, strict=True)
+    return verdicts_message(judged.outcome, judged.digest, top_level, verdicts)

@@ -3,33 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from harness.core.errors import Problem
 from harness.core.printable import printable
 from harness.language.step import STEPS
-from harness.recording.run import StepRecord, Verdict
+from harness.recording.run import StepRecord
 from harness.reporting.explanation import explanation_lines
-from harness.reporting.result import StepLine
-from harness.studio.judging import Judged
 from harness.studio.language_help import Names
 from harness.studio.live_cell import LiveCell
-from harness.studio.step_texts import MOTIONS, object_form
-
-Message = dict[str, Any]
+from harness.studio.object_texts import object_form
+from harness.studio.session import Message
+from harness.studio.step_texts import MOTIONS
 
 MOST_CONTACTS = 8
 """Contacts that are listed, strongest first."""
-
-NO_VERDICTS: Message = {
-    "type": "verdicts",
-    "outcome": "",
-    "digest": "",
-    "steps": [],
-    "verdicts": [],
-}
 
 
 def robot_message(cell: LiveCell) -> Message:
@@ -127,43 +116,6 @@ def failure_message(record: StepRecord) -> Message:
         "explanation": [
             printable(line) for line in explanation_lines(record.explanation, record.message)
         ],
-    }
-
-
-def verdicts_message(judged: Judged) -> Message:
-    """The verdicts, and what became of the steps of the file; `open` can still change."""
-    return {
-        "type": "verdicts",
-        "outcome": judged.outcome,
-        "digest": judged.digest,
-        "steps": [
-            step_message(step)
-            for step in judged.run.steps
-            if step.path.count("[") == 1 and "." not in step.path
-        ],
-        "verdicts": [
-            verdict_message(verdict, is_open=not is_decided)
-            for verdict, is_decided in zip(judged.verdicts, judged.is_decided, strict=True)
-        ],
-    }
-
-
-def step_message(step: StepRecord | StepLine) -> Message:
-    """What became of a step."""
-    return {"summary": printable(step.summary), "status": step.status, "line": step.line}
-
-
-def verdict_message(verdict: Verdict, *, is_open: bool) -> Message:
-    """A verdict, which can still change where it is open."""
-    margin = verdict.margin
-    return {
-        "text": printable(verdict.expectation),
-        "status": verdict.status,
-        "open": is_open,
-        "margin": None if margin is None or not np.isfinite(margin) else margin,
-        "unit": verdict.unit,
-        "line": verdict.line,
-        "reason": printable(verdict.reason),
     }
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import hashlib
 import json
 import queue
@@ -97,6 +98,10 @@ class Session:
         self._jobs.put(None)
         if self._thread is not None:
             self._thread.join(timeout=5.0)
+        for viewer in tuple(self.viewers):  # the last messages leave
+            with contextlib.suppress(TimeoutError, RuntimeError):
+                sent = asyncio.run_coroutine_threadsafe(viewer.outbox.join(), viewer.loop)
+                sent.result(timeout=1.0)
 
     def post(self, job: Callable[[], object]) -> None:
         """Let the cell's thread do something."""
@@ -262,5 +267,6 @@ async def _send_all(connection: ServerConnection, outbox: asyncio.Queue[str]) ->
     try:
         while True:
             await connection.send(await outbox.get())
+            outbox.task_done()
     except ConnectionClosed:
         return

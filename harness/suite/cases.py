@@ -25,7 +25,7 @@ HARD_CAP_SECONDS = 600.0
 LONGEST_WAIT = 60.0  # [s], then deadlines are looked at again
 
 MOST_READ = 1000
-"""Cases in which names of robots are looked for, approximately."""
+"""Cases in which names of steps and robots are looked for, approximately."""
 
 _WORD = re.compile(r"\w+")
 
@@ -62,11 +62,17 @@ def run_job(job: RunRequest, notify: Callable[[ProgressEvent], None]) -> CaseRes
 
 
 def read_ahead(words: Collection[str]) -> None:
-    """Do once what every run does: read the bundled robots that are named, look up versions."""
+    """Do once what every run does: import steps, read the robots that are named, look up versions.
+
+    Args:
+        words: The words of the scenarios.
+    """
+    from harness.core.registry import import_built_in
     from harness.robot.load import read_bundled
     from harness.session.record import library_versions
 
     library_versions()
+    import_built_in(("step", "expectation"), words)
     read_bundled(words)
 
 

@@ -23,9 +23,12 @@ from harness.suite.environment import server_environment, use_one_thread
 from harness.suite.server import receive, send
 
 RUN_MODULES = (
+    "harness.planning.ik.solvers.ur",
+    "harness.planning.search.pipelines.ompl",
     "harness.planning.timing.toppra_library",
     "harness.session.run_case",
     "harness.session.timed_simulator",
+    "harness.simulation.controllers.position_servo",
     "harness.observation.clearance",
     "harness.observation.link_overlaps",
     "harness.observation.looks_differ",

@@ -13,6 +13,7 @@ from tests.assertions import evidence_runs as shared
 from tests.assertions.evidence import Evidence, Free, Three
 from tests.assertions.synthetic_run import (
     BOX,
+    ROBOT,
     TABLE,
     attachment,
     changed,
@@ -341,3 +342,110 @@ EVIDENCE = Evidence(
         Free("contacts decide; how near it came is shown", "collision 3", "clearances", "+-"),
     ),
 )
+
+
+def test_the_hand_may_grip_hard_only_as_far_as_its_motor_explains():
+    """The motor presses with 2 N: fingers and weight explain 2 (2 + 0.98) + 1 = 6.96 N."""
+    for value, expected in ((6.9, False), (7.0, True)):
+        run = lift_run(value=value)
+        efforts = np.zeros((200, 2))
+        efforts[:, 1] = 4.0
+        run = changed(run, joint_efforts=efforts)
+        assert collides(run) is expected
+        reason = verdict(run, NEVER).reason
+        assert ("7.000 N over 50 ms, where weight and grip explain 6.960 N" in reason) is expected
+
+
+def test_names_of_allowed_pairs_and_their_words_count_in_either_order():
+    for allowed, expected in (
+        (("arm_link", "wall"), False),
+        (("wall", "arm_link"), False),
+        (("wall", "robot"), False),
+        (("any", "wall"), False),
+        (("gripper", "wall"), True),
+        (("arm_link", "Table"), True),
+        (("box", "wall"), True),
+    ):
+        base = make_run(objects=(TABLE, BOX, WALL), allowed_contacts=(allowed,))
+        assert collides(touching("arm_link", "wall", (30, 41), run=base)) is expected, allowed
+
+
+def test_a_fixed_link_that_hits_what_moves_and_a_moving_one_that_hits_a_table_collide():
+    assert collides(touching("base_link", "box", (30, 41)))
+    assert collides(touching("arm_link", "Table", (30, 41)))
+
+
+def carried(*spans, **changes):
+    """A box that is held from 0.5 to 1.5 s and touches a shelf below it at some spans."""
+    shelf = thing("shelf", Box((0.5, 0.5, 0.02)), static=True)
+    run = lift_run(grip=(50, 150), objects=(TABLE, BOX, shelf), **changes)
+    forces = {**run.signals.contact_forces, ("box", "shelf"): force(200, *spans, value=1.0)}
+    poses = {**run.signals.object_poses, "shelf": shelf_poses(-0.02)}
+    return changed(run, contact_forces=forces, object_poses=poses)
+
+
+def shelf_poses(z):
+    poses = np.zeros((200, 7))
+    poses[:, 2], poses[:, 3] = z, 1.0
+    return poses
+
+
+@pytest.mark.parametrize(
+    ("spans", "expected"),
+    [
+        (((40, 45),), False),  # before it is held
+        (((40, 60),), False),  # it was there when it was gripped
+        (((50, 55),), False),
+        (((51, 55),), True),
+        (((150, 190),), False),  # after it was released
+        (((149, 190),), False),  # put down: it stays where it is
+        (((148, 151),), True),  # it touched on its way: the hold lasts to sample 150
+        (((148, 152),), False),
+        (((40, 48), (55, 60)), False),  # a short gap ends no contact
+        (((30, 40), (55, 60)), True),
+    ],
+)
+def test_what_the_hand_holds_may_leave_and_be_put_down_but_hits_nothing_on_its_way(spans, expected):
+    assert collides(carried(*spans)) is expected
+
+
+def test_the_put_down_needs_something_below():
+    run = carried((145, 180))
+    assert not collides(run)
+    above = changed(run, object_poses={**run.signals.object_poses, "shelf": shelf_poses(0.5)})
+    assert collides(above)
+
+
+def test_what_is_held_may_press_as_much_as_its_weight_explains():
+    """2 * 0.98 + 1 = 2.96 N; while the gripper moves the grip of 2 N counts too."""
+    efforts = np.zeros((200, 2))
+    efforts[:, 1] = 4.0
+    for value, steps, expected in (
+        (2.9, (), False),
+        (3.0, (), True),
+        (6.9, (step("open", 85, 200, "gripper"),), False),
+        (7.0, (step("open", 85, 200, "gripper"),), True),
+    ):
+        run = carried((145, 180), steps=(step("close", 39, 80, "gripper"), *steps))
+        forces = dict(run.signals.contact_forces)
+        forces["box", "shelf"] = force(200, (145, 180), value=value)
+        assert collides(changed(run, contact_forces=forces, joint_efforts=efforts)) is expected
+
+
+def test_what_is_held_may_not_be_dragged_along_what_it_left():
+    for distance, expected in ((0.0199, False), (0.0201, True)):
+        run = carried((40, 100))
+        poses = run.signals.object_poses["box"].copy()
+        poses[80:, 0] = distance
+        tcp = run.signals.tcp_pose.copy()
+        tcp[80:, 0] = distance
+        moved = {**run.signals.object_poses, "box": poses}
+        run = changed(run, object_poses=moved, tcp_pose=tcp)
+        assert collides(run) is expected
+        assert ("dragged along it by 20.1 mm" in verdict(run, NEVER).reason) is expected
+
+
+def test_two_objects_that_no_hand_holds_never_collide():
+    assert not collides(touching("box", "wall", (30, 41)))
+    bare = replace(ROBOT, gripper=None)
+    assert not collides(touching("box", "wall", (30, 41), robot=bare))

@@ -35,7 +35,7 @@ def test_mutants_are_drawn_where_code_is_executed():
         assert before != after
 
 
-def test_only_tests_that_ran_tell_about_a_mutant(tmp_path):
+def test_only_tests_that_ran_can_notice_a_mutant(tmp_path):
     """A mutant is noticed by a failed test, a timeout or an import; other ends are errors."""
     root = tmp_path / "project"
     (root / "halves").mkdir(parents=True)

@@ -40,6 +40,8 @@ TESTS = (
     "tests/planning/test_efforts.py",
     "tests/planning/test_verification.py",
     "tests/planning/test_path_constraints.py",
+    "tests/planning/test_held_constraints.py",
+    "tests/planning/test_verified_numbers.py",
     "tests/planning/test_linear_motion.py",
     "tests/robot/test_mimic_couplings.py",
     "tests/system/test_findings.py",
@@ -157,7 +159,7 @@ class Workshop:
 
 
 def _limit_processor_time(seconds: int) -> None:
-    # Beyond the first limit SIGXCPU ends the process, and is told apart from any other end.
+    # Beyond the first limit SIGXCPU ends the process, which no other end is mistaken for.
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 10))
 
 

@@ -49,7 +49,7 @@ def test_a_chain_is_kept_from_the_second_case_on():
             found = chain.find(str(value))
             taken.append(found is not None)
             if found is None:
-                chain.keep(str(value), lambda value=value: value)
+                chain.keep(str(value), lambda value=value: value, 1, "")
         return taken
 
     assert case([1, 2, 3]) == [False, False, False]

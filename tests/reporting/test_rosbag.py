@@ -388,8 +388,8 @@ def test_frames_are_published_raw_too_when_requested(folder, tmp_path):
     ("words", "said"),
     [
         (["{run}"], "nothing to export: say --bag DIR, --urdf FILE, or both"),
-        (["{run}/nowhere", "--bag", "{tmp}/bag"], "is no run's folder: it has no run.json"),
-        (["{run}", "--bag", "{run}/bag"], "is there already; nothing was written (--force"),
+        (["{run}/nowhere", "--bag", "{tmp}/bag"], "is not the folder of a run: it has no run.json"),
+        (["{run}", "--bag", "{run}/bag"], "exists already; nothing was written (--force"),
         (["{run}", "--bag", "{run}", "--force"], "is a folder and no bag; it is not replaced"),
         (["{run}", "--bag", "/proc/nowhere/bag"], "cannot write '/proc/nowhere'"),
     ],

@@ -20,7 +20,12 @@ from harness.robot.decomposition.decomposition import MOST_PARTS, decompose
 from harness.robot.decomposition.parts_cache import stored_decomposition
 from harness.robot.decomposition.solid_grid import surface_points
 from harness.robot.load import load_robot
-from harness.robot.mesh_file import decomposition_of, exact_surface, hull_points
+from harness.robot.mesh_file import (
+    decomposition_of,
+    exact_surface,
+    hull_points,
+    read_triangles,
+)
 from harness.robot_tools.robot_check import check_robot
 from tests.robot.arm_files import SHAPE, SRDF, URDF
 from tests.robot.vessels import vessel, write_obj
@@ -58,6 +63,7 @@ def is_in(parts, points):
 
 VESSELS = {
     "bin": vessel(**BIN),
+    "six sides": vessel(**BIN | {"sides": 6, "inner": 0.094}),
     "cup": vessel(**CUP),
     "broken": broken(*vessel(**BIN | {"sides": 3})),
     "open": open_sheet(*vessel(**BIN)),
@@ -115,6 +121,24 @@ def test_another_process_finds_the_same_parts(tmp_path):
         check=True,
     )
     assert there.stdout == b"".join(part.tobytes() for part in here.parts)
+
+
+def test_thin_triangles_have_no_more_points_than_their_length_needs():
+    needle = np.array([[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 1e-4, 0.0]]])
+    points = surface_points(needle, 0.001)
+    assert len(points) < 1100
+    assert np.diff(np.sort(points[:, 0])).max() < 0.0011
+    assert {tuple(corner) for corner in needle[0]} <= {tuple(point) for point in points}
+
+
+def test_a_mesh_whose_parts_are_stored_is_not_read_again(tmp_path):
+    path = write_obj(tmp_path / "bin.obj", *vessel(**BIN))
+    shapes = collision_shapes([Shape(Mesh(path))])
+    other = write_obj(tmp_path / "copy.obj", *vessel(**BIN))
+    before = read_triangles.cache_info().misses
+    assert len(collision_shapes([Shape(Mesh(other))])) == len(shapes)
+    hull_points(Mesh(other))
+    assert read_triangles.cache_info().misses == before
 
 
 def box_triangles():

@@ -100,7 +100,7 @@ def test_a_robot_that_falls_silent_ends_the_run(plan, capsys, monkeypatch):
         joints = ["joint1", "joint2", "joint3", "joint4", "gripper_left_joint"]
         still = message("sensor_msgs/msg/JointState", name=joints, position=np.zeros(5))
 
-        def accept(goal, content):
+        def accept(_, content):
             goals.append(content)
             return True
 

@@ -64,6 +64,27 @@ def test_an_object_is_moved_in_the_text_at_the_start_and_live_afterwards(studio)
     assert not studio.cell.is_run
 
 
+@pytest.mark.parametrize(
+    ("kind", "size", "corner", "larger", "center"),
+    [
+        ("box", [0.04, 0.04, 0.04], [0.24, 0.02, 0.06], [0.06, 0.04, 0.06], [0.21, 0, 0.03]),
+        ("cylinder", [0.04, 0.04], [0.22, 0, 0.06], [0.04, 0.06], [0.2, 0, 0.03]),
+        ("sphere", [0.04], [0.2, 0, 0.05], [0.05], [0.2, 0, 0.025]),
+    ],
+)
+def test_a_dragged_corner_resizes_and_the_opposite_corner_stays(
+    studio, kind, size, corner, larger, center
+):
+    reply(studio, "add_object", name="a", kind=kind, size=size, xyz=[0.2, 0, 0.02])
+    studio.resize_object("a", np.array(corner))
+    [form] = studio_module.robot_message(studio.cell)["objects"]
+    assert (form["size"], form["xyz"]) == (pytest.approx(larger), pytest.approx(center))
+    reply(studio, "execute", step="wait: 10 ms")
+    text = studio.text
+    studio.resize_object("a", np.array(corner) + 0.1)
+    assert studio.text == text, "after the first step an object keeps its size"
+
+
 def test_objects_that_overlap_are_shown_before_anything_moves(studio):
     reply(studio, "add_object", **{**BOX, "xyz": [0.2, 0, 0.03]})
     [overlap] = studio_module.robot_message(studio.cell)["overlaps"]
