@@ -79,7 +79,7 @@ def test_without_the_boxes_the_path_is_another(flagship, tmp_path):
     without = read_run(tmp_path / "run").run
 
     def motion(run, step):
-        return {record.id: record for record in run.steps}[step].trajectory["positions"]
+        return {record.id: record for record in run.steps}[step].trajectory.positions
 
     assert not all(
         np.array_equal(motion(with_boxes, step), motion(without, step))
