@@ -22,7 +22,7 @@ from harness.reporting.reporter import write_with
 from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.terminal import verdict_warnings
 from harness.session.distances_ahead import DistancesAhead
-from harness.session.external import ExternalSession, MakeSession, no_programs
+from harness.session.external import ExternalSession, MakeSession, NoPrograms
 from harness.session.observe import observed_run, with_believed_poses
 from harness.session.pictures import Pictures
 from harness.session.prepare import Prepared
@@ -36,7 +36,7 @@ from harness.session.timing import Clock
 def run_case(
     request: RunRequest,
     notify: Notify = lambda _: None,
-    make_session: MakeSession = no_programs,
+    make_session: MakeSession = NoPrograms,
     start: Callable[[RunRequest, Clock], Start] = start_case,
 ) -> CaseResult:
     """Load, compile, execute, observe, judge and report one case.
